@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Cost of a step: ns per fluid particle and evaluation by phase, ns per solid particle and step, of a
- * snapshot and a checkpoint; and the machine's rates of fma and copying for comparison. Prints CSV.
- *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
+ * Cost of a step: ns per fluid particle and evaluation by phase, ns per solid particle and step, of
+ * a snapshot and a checkpoint; and the machine's rates of fma and copying for comparison. Prints
+ * CSV. bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as
+ * well */
 #include "output/checkpoint.h"
 #include "counter.h"
 #include "base/simd.h"
@@ -189,8 +190,8 @@ static void sim_close(struct sim *x)
     scene_free(&x->scene);
 }
 
-/* A tank with a swirl of a twentieth of the speed of sound, so that particles are sorted as often as in a
- * flow. */
+/* A tank with a swirl of a twentieth of the speed of sound, so that particles are sorted as often
+ * as in a flow. */
 static void fluid_case(char *text, size_t size, double n, bool rich, const char *precision)
 {
     snprintf(text, size,
@@ -238,8 +239,8 @@ static void print_per_particle(const struct bench *b, const struct sim *x, int t
     print_row(b, "fluid", x->s.fluid.kernel->name, n, threads, part, unit, seconds);
 }
 
-/* Cost of a snapshot and a checkpoint, in a temporary folder. The first snapshot creates the file and is not
- * counted. */
+/* Cost of a snapshot and a checkpoint, in a temporary folder. The first snapshot creates the file
+ * and is not counted. */
 static void bench_output(struct bench *b, struct sim *x, int threads)
 {
     char folder[] = "bench-XXXXXX", kept[PATH_BYTES] = "";
@@ -275,26 +276,27 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
 }
 
 /* Pairs that a sweep computes, per fluid particle. */
-static double pairs_of(const struct simulation *s)
+static double pairs_of(const struct simulation *sim)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
-    const struct cluster_boxes *const boxes = &s->fluid.packed[KIND_FLUID].boxes;
+    const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
+    const struct cluster_boxes *const boxes = &sim->fluid.packed[KIND_FLUID].boxes;
     const int32_t n = list->n_active;
     int64_t clusters = 0;
     for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
         const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
-            neighbour_clusters_collect_half(&around, boxes, &s->cells, KIND_FLUID, list->active[k],
-                                            s->fluid.k.h, clusters_of(list, first, end));
+            neighbour_clusters_collect_half(&around, boxes, &sim->cells, KIND_FLUID,
+                                            list->active[k], sim->fluid.k.h,
+                                            clusters_of(list, first, end));
             for (int32_t own = 0; own < clusters_in(list, list->active[k]); own++) {
                 cluster_list_build_half(&near, &around, boxes);
                 clusters += near.n;
             }
         }
     }
-    return (double)(clusters * CLUSTER * CLUSTER) / (double)s->kind[KIND_FLUID].n;
+    return (double)(clusters * CLUSTER * CLUSTER) / (double)sim->kind[KIND_FLUID].n;
 }
 
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
@@ -342,18 +344,19 @@ static void bench_solid(struct bench *b, const char *form, const char *precision
              precision,
              strcmp(form, "paper") == 0 ? "gradient = linear\nhourglass_form = printed\n" : "");
     if (!sim_open(&x, text)) return;
-    struct particles *const p = &x.s.kind[KIND_SOLID];
+    struct particles *const particles = &x.s.kind[KIND_SOLID];
     for (int r = -1; r < b->reps; r++) {
         const double start = wall_clock();
-        solid_advance(&x.s.solid, p, x.s.dt_solid, STEPS, false);
-        if (r >= 0) b->sample[0][r] = 1e9 * (wall_clock() - start) / STEPS / (double)p->n;
+        solid_advance(&x.s.solid, particles, x.s.dt_solid, STEPS, false);
+        if (r >= 0) b->sample[0][r] = 1e9 * (wall_clock() - start) / STEPS / (double)particles->n;
     }
-    print_row(b, "solid", variant, p->n, threads, "step", "ns/particle/step", b->sample[0]);
-    const struct solid *const s = &x.s.solid;
+    print_row(b, "solid", variant, particles->n, threads, "step", "ns/particle/step", b->sample[0]);
+    const struct solid *const solid = &x.s.solid;
     double slots = 0;
-    for (int64_t k = 0; k < s->n_packs; k++) slots += s->pack[k].n_slots * s->sweeps->lanes;
-    for (int r = 0; r < b->reps; r++) b->sample[0][r] = slots / (double)p->n;
-    print_row(b, "solid", variant, p->n, threads, "slots", "1/particle", b->sample[0]);
+    for (int64_t k = 0; k < solid->n_packs; k++)
+        slots += solid->pack[k].n_slots * solid->sweeps->lanes;
+    for (int r = 0; r < b->reps; r++) b->sample[0][r] = slots / (double)particles->n;
+    print_row(b, "solid", variant, particles->n, threads, "slots", "1/particle", b->sample[0]);
     sim_close(&x);
 }
 

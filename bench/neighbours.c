@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Compares neighbour searches: cluster pair lists, full or, as in the program, half lists in chunks of
- * cells; a tile of candidates copied once per cell; and a neighbour list per particle with a skin (Verlet
- * 1967). The laws are Eqs. 1 and 3b, in single precision, on one thread, for the same particles. Prints
- * CSV; the sums of all methods agree but for rounding.
- *   bench_neighbours [--reps N] */
+ * Compares neighbour searches: cluster pair lists, full or, as in the program, half lists in chunks
+ * of cells; a tile of candidates copied once per cell; and a neighbour list per particle with a
+ * skin (Verlet 1967). The laws are Eqs. 1 and 3b, in single precision, on one thread, for the same
+ * particles. Prints CSV; the sums of all methods agree but for rounding. bench_neighbours [--reps
+ * N] */
 #include "fluid/fluid.h"
 #include "particles/morton.h"
 
@@ -65,7 +65,8 @@ static void place(void)
         if (count[cell_of(i)]++ == 0) first[cell_of(i)] = i;
 }
 
-/* Contributions of a vector of pairs to the three sums of a particle, or of one particle per group. */
+/* Contributions of a vector of pairs to the three sums of a particle, or of one particle per group.
+ */
 SPHFSI_INLINE void pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
                          vfloat volume, vfloat more[3])
 {
@@ -187,11 +188,12 @@ static int64_t full_pairs, half_pairs;
 static enum err clusters_create(struct diag *d)
 {
     const double lower[2] = {-0.5, -0.5}, upper[2] = {SIDE + 0.5, SIDE + 0.5};
-    struct particles *const p = &kinds[KIND_FLUID];
-    TRY(particles_create(p, &arena, N, G_POINT, "bench", d));
-    p->n = N;
+    struct particles *const particles = &kinds[KIND_FLUID];
+    TRY(particles_create(particles, &arena, N, G_POINT, "bench", d));
+    particles->n = N;
     for (int i = 0; i < N; i++)
-        p->x[i] = (double)field[X][i], p->y[i] = (double)field[Y][i], p->id[i] = i;
+        particles->x[i] = (double)field[X][i], particles->y[i] = (double)field[Y][i],
+        particles->id[i] = i;
     TRY(cells_create(&grid, &arena, lower, upper, 2 * (double)H, 0.75 * (double)H, kinds, d));
     TRY(cluster_boxes_create(&boxes, &arena, cells_clusters(&grid, N), d));
     packed = arena_alloc(&arena, (size_t)cells_clusters(&grid, N),
@@ -204,7 +206,7 @@ static void sort_clusters(void) { cells_sort(&grid, KIND_FLUID, &kinds[KIND_FLUI
 static void fill_clusters(void)
 {
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
-    const struct particles *const p = &kinds[KIND_FLUID];
+    const struct particles *const particles = &kinds[KIND_FLUID];
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
         const double centre[2] = {cell_centre_x(&grid, cell), cell_centre_y(&grid, cell)};
@@ -213,9 +215,9 @@ static void fill_clusters(void)
                           i = listed->start[cell] + m;
             float *const out = packed + cluster * FIELDS * CLUSTER + m % CLUSTER;
             const bool is = m < listed->count[cell];
-            for (int f = 0; f < FIELDS; f++) out[f * CLUSTER] = is ? field[f][p->id[i]] : 0;
-            out[X * CLUSTER] = is ? (float)(p->x[i] - centre[0]) : 1e9f;
-            out[Y * CLUSTER] = is ? (float)(p->y[i] - centre[1]) : 0;
+            for (int f = 0; f < FIELDS; f++) out[f * CLUSTER] = is ? field[f][particles->id[i]] : 0;
+            out[X * CLUSTER] = is ? (float)(particles->x[i] - centre[0]) : 1e9f;
+            out[Y * CLUSTER] = is ? (float)(particles->y[i] - centre[1]) : 0;
             if (!is) continue;
             const float at[2] = {out[X * CLUSTER] / H, out[Y * CLUSTER] / H};
             for (int side = 0; side < BOX_SIDES; side++) {
@@ -227,7 +229,8 @@ static void fill_clusters(void)
     }
 }
 
-/* Particles of a cluster from the r-th on, one per group, and their positions relative to the 3 x 3 cells. */
+/* Particles of a cluster from the r-th on, one per group, and their positions relative to the 3 x 3
+ * cells. */
 SPHFSI_INLINE void receivers_of(int32_t cluster, int r, vfloat me[FIELDS], vfloat x[3], vfloat y[3])
 {
     const float *const own = packed + cluster * FIELDS * CLUSTER + r;
@@ -277,11 +280,12 @@ static void sweep_clusters(void)
     }
 }
 
-/* Deferred sums of the clusters of a chunk: [cluster][sum][receiver][candidate]; cluster 0 is discarded. */
+/* Deferred sums of the clusters of a chunk: [cluster][sum][receiver][candidate]; cluster 0 is
+ * discarded. */
 static float deferred[1 + CHUNK_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
 
-/* The receivers of a cluster from the r-th on. Pairs of the half list serve both particles, so both volumes
- * are factors. */
+/* The receivers of a cluster from the r-th on. Pairs of the half list serve both particles, so both
+ * volumes are factors. */
 static void chunk_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
                             vfloat sum[3])
 {

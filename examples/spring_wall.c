@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * A wall on a spring, pushed by water: the program integrates the motion of the wall and passes it to the
- * library, which returns the force of the water.
+ * A wall on a spring, pushed by water: the program integrates the motion of the wall and passes it
+ * to the library, which returns the force of the water.
  *
  *     cc spring_wall.c $(pkg-config --cflags --libs sphfsi) -o spring_wall && ./spring_wall
  *
- * The wall has mass m per depth, and a spring of stiffness k holds it against a column of water of height
- * H. In equilibrium the spring is compressed by rho g H^2/(2 k) = 14 mm. */
+ * The wall has mass m per depth, and a spring of stiffness k holds it against a column of water of
+ * height H. In equilibrium the spring is compressed by rho g H^2/(2 k) = 14 mm. */
 #include <sphfsi.h>
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the program does with a case or a file, each action in the .c file that its group names. Lines of text
- * go through the message callback. */
+ * What the program does with a case or a file, each action in the .c file that its group names.
+ * Lines of text go through the message callback. */
 #ifndef SPHFSI_APP_ACTIONS_H
 #define SPHFSI_APP_ACTIONS_H
 
@@ -15,17 +15,18 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED
 /* --- closing.c --- */
 
 /* Prints at the end of a run: cost, losses, energy, differences from references. */
-void closing_say(const struct sphfsi_options *o, const struct simulation *s,
+void closing_say(const struct sphfsi_options *o, const struct simulation *sim,
                  const struct record *r);
 
-/* Prints how a stopped run continues: after a guard from the checkpoint with steps half as long, or, where
- * these would stop it again, what it takes once the case is changed; else a restart. */
-void closing_say_next(const struct sphfsi_options *o, const struct simulation *s,
+/* Prints how a stopped run continues: after a guard from the checkpoint with steps half as long,
+ * or, where these would stop it again, what it takes once the case is changed; else a restart. */
+void closing_say_next(const struct sphfsi_options *o, const struct simulation *sim,
                       const char *checkpoint, bool guard);
 
 /* --- explain.c --- */
 
-/* Prints effects, memory, time step and cost of a scene. Takes some steps in memory to measure the cost. */
+/* Prints effects, memory, time step and cost of a scene. Takes some steps in memory to measure the
+ * cost. */
 enum err explain_text(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
@@ -46,22 +47,24 @@ enum err explain_json(struct session *x, const struct heard *h, const struct sph
 /* --- preview.c --- */
 
 /* Draws the bodies as they are sampled, with sizes, clamps, probes, axes and a legend, as SVG. */
-enum err preview_draw(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
+enum err preview_draw(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
 /* --- inspect.c --- */
 
-/* Prints the contents of a checkpoint: of a file, or of the newest valid one in the folder of a run. ERR_INPUT: there is no valid checkpoint. */
+/* Prints the contents of a checkpoint: of a file, or of the newest valid one in the folder of a
+ * run. ERR_INPUT: there is no valid checkpoint. */
 enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
 /* --- manual.c --- */
 
-/* Prints every section and key with type, unit, default, range, meaning and example, in Markdown. */
+/* Prints every section and key with type, unit, default, range, meaning and example, in Markdown.
+ */
 void manual_keys(const struct sphfsi_options *o);
 
 /* Writes the example of a key to `text`: from src/app/data/key_examples.cfg, or its default; "". */
 struct param;
-void manual_example(const struct param *p, char *text, size_t size);
+void manual_example(const struct param *param, char *text, size_t size);
 
 /* A commented case as a template, or NULL. manual_template_name: the k-th name, NULL at the end. */
 const char *manual_template(const char *name);
@@ -70,6 +73,6 @@ const char *manual_template_name(int k);
 /* --- citations.c --- */
 
 /* Prints the publications of the methods that a scene uses. */
-void manual_cite(const struct scene *s, effect_set effects, const struct sphfsi_options *o);
+void manual_cite(const struct scene *scene, effect_set effects, const struct sphfsi_options *o);
 
 #endif

@@ -48,39 +48,39 @@ struct sphfsi_simulation {
 
 /* Begins a call of a function that takes the whole simulation; `end` ends it, unless this has
  * failed. */
-static enum err begin(struct sphfsi_simulation *s, const char *name, struct diag *d)
+static enum err begin(struct sphfsi_simulation *handle, const char *name, struct diag *d)
 {
     *d = (struct diag){.code = ERR_OK};
-    if (!s) return diag_fail(d, ERR_INPUT, "%s: the simulation is NULL", name);
-    if (atomic_exchange(&s->busy, true))
+    if (!handle) return diag_fail(d, ERR_INPUT, "%s: the simulation is NULL", name);
+    if (atomic_exchange(&handle->busy, true))
         return diag_fail(
             d, ERR_INPUT,
             "%s: this simulation is in use by another call. In another thread, wait until "
             "that call has returned; in a callback, do this after the call that "
             "invoked the callback has returned",
             name);
-    const enum err e = host_enter(&s->host, s->threads, d);
-    if (e) atomic_store(&s->busy, false);
+    const enum err e = host_enter(&handle->host, handle->threads, d);
+    if (e) atomic_store(&handle->busy, false);
     return e;
 }
 
-static enum sphfsi_status end(struct sphfsi_simulation *s, const struct diag *d, enum err e)
+static enum sphfsi_status end(struct sphfsi_simulation *handle, const struct diag *d, enum err e)
 {
-    host_use(s->host);
-    atomic_store(&s->busy, false);
+    host_use(handle->host);
+    atomic_store(&handle->busy, false);
     return call_result(d, e);
 }
 
-static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi_options *o,
+static enum err open_simulation(struct sphfsi_simulation *handle, const struct sphfsi_options *o,
                                 struct diag *d)
 {
-    TRY(session_open(&s->session, o, d));
-    struct simulation *const sim = &s->session.simulation;
+    TRY(session_open(&handle->session, o, d));
+    struct simulation *const sim = &handle->session.simulation;
     check_simulation(sim, d);
-    const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
-    if (!e) probes_follow(&s->probes, sim);
-    if (e) session_close(&s->session);
-    s->threads = thread_count();
+    const enum err e = probes_create(&handle->probes, sim, &sim->arena, d);
+    if (!e) probes_follow(&handle->probes, sim);
+    if (e) session_close(&handle->session);
+    handle->threads = thread_count();
     return e;
 }
 
@@ -92,34 +92,34 @@ enum sphfsi_status sphfsi_create(struct sphfsi_simulation **created,
     *created = NULL;
     enum err e = call_begin(&c, "create", options);
     if (e) return call_end(&c, e);
-    struct sphfsi_simulation *s = calloc(1, sizeof *s);
-    if (!s)
-        e = diag_fail(&c.diag, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *s);
+    struct sphfsi_simulation *handle = calloc(1, sizeof *handle);
+    if (!handle)
+        e = diag_fail(&c.diag, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *handle);
     else
-        e = open_simulation(s, &c.options, &c.diag);
+        e = open_simulation(handle, &c.options, &c.diag);
     if (e)
-        free(s);
+        free(handle);
     else
-        *created = s;
+        *created = handle;
     return call_end(&c, e);
 }
 
-enum sphfsi_status sphfsi_free(struct sphfsi_simulation *s)
+enum sphfsi_status sphfsi_free(struct sphfsi_simulation *handle)
 {
     struct diag d;
-    if (!s) return SPHFSI_OK;
-    const enum err e = begin(s, "free", &d);
+    if (!handle) return SPHFSI_OK;
+    const enum err e = begin(handle, "free", &d);
     if (e) return call_result(&d, e);
-    const enum sphfsi_status status = end(s, &d, ERR_OK);
-    session_close(&s->session);
-    free(s);
+    const enum sphfsi_status status = end(handle, &d, ERR_OK);
+    session_close(&handle->session);
+    free(handle);
     return status;
 }
 
-static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
+static enum err step(struct sphfsi_simulation *handle, double limit, struct diag *d)
 {
-    struct simulation *const sim = &s->session.simulation;
-    if (s->stopped)
+    struct simulation *const sim = &handle->session.simulation;
+    if (handle->stopped)
         return diag_fail(d, ERR_GUARD,
                          "step: this simulation was stopped because its state is not valid, as the "
                          "earlier error says; create a new one");
@@ -130,44 +130,44 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
                          limit, sim->state.time);
     enum err e = relax_to_rest(sim, d);
     if (!e) e = simulation_step(sim, limit, d);
-    if (!e) probes_follow(&s->probes, sim);
-    s->stopped = e == ERR_GUARD;
+    if (!e) probes_follow(&handle->probes, sim);
+    handle->stopped = e == ERR_GUARD;
     return e;
 }
 
-enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
+enum sphfsi_status sphfsi_step(struct sphfsi_simulation *handle, double limit)
 {
     struct diag d;
-    const enum err e = begin(s, "step", &d);
-    return e ? call_result(&d, e) : end(s, &d, step(s, limit, &d));
+    const enum err e = begin(handle, "step", &d);
+    return e ? call_result(&d, e) : end(handle, &d, step(handle, limit, &d));
 }
 
-enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time)
+enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *handle, double time)
 {
     struct diag d;
-    enum err e = begin(s, "advance", &d);
+    enum err e = begin(handle, "advance", &d);
     if (e) return call_result(&d, e);
     if (!isfinite(time))
         e = diag_fail(&d, ERR_INPUT, "advance: the time %g s is not a finite number", time);
     do {
-        if (!e) e = step(s, time, &d);
-    } while (!e && sphfsi_time(s) < time);
-    return end(s, &d, e);
+        if (!e) e = step(handle, time, &d);
+    } while (!e && sphfsi_time(handle) < time);
+    return end(handle, &d, e);
 }
 
-double sphfsi_time(const struct sphfsi_simulation *s)
+double sphfsi_time(const struct sphfsi_simulation *handle)
 {
-    return s ? s->session.simulation.state.time : (double)NAN;
+    return handle ? handle->session.simulation.state.time : (double)NAN;
 }
 
-double sphfsi_end_time(const struct sphfsi_simulation *s)
+double sphfsi_end_time(const struct sphfsi_simulation *handle)
 {
-    return s ? s->session.scene.top.end_time : (double)NAN;
+    return handle ? handle->session.scene.top.end_time : (double)NAN;
 }
 
-double sphfsi_time_step(const struct sphfsi_simulation *s)
+double sphfsi_time_step(const struct sphfsi_simulation *handle)
 {
-    return s ? s->session.simulation.state.dt : (double)NAN;
+    return handle ? handle->session.simulation.state.dt : (double)NAN;
 }
 
 /* The first multiple of an interval after the time, as a run finds it. */
@@ -179,38 +179,38 @@ static double output_after(double interval, double time)
     return due_time(&u);
 }
 
-double sphfsi_next_output(const struct sphfsi_simulation *s)
+double sphfsi_next_output(const struct sphfsi_simulation *handle)
 {
-    if (!s) return (double)NAN;
-    const struct scene_output *const out = &s->session.scene.output;
+    if (!handle) return (double)NAN;
+    const struct scene_output *const out = &handle->session.scene.output;
     const double interval[] = {out->ledger_interval, out->snapshot_interval,
                                out->checkpoint_interval};
-    const double time = s->session.simulation.state.time;
-    double next = s->session.scene.top.end_time;
+    const double time = handle->session.simulation.state.time;
+    double next = handle->session.scene.top.end_time;
     for (size_t k = 0; k < COUNT_OF(interval); k++)
         next = min2(next, output_after(interval[k], time));
-    for (int k = 0; k < s->probes.n_files; k++)
-        next = min2(next, output_after(s->probes.file[k].interval, time));
+    for (int k = 0; k < handle->probes.n_files; k++)
+        next = min2(next, output_after(handle->probes.file[k].interval, time));
     return next;
 }
 
-int64_t sphfsi_steps(const struct sphfsi_simulation *s)
+int64_t sphfsi_steps(const struct sphfsi_simulation *handle)
 {
-    return s ? s->session.simulation.state.steps : 0;
+    return handle ? handle->session.simulation.state.steps : 0;
 }
 
-int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind)
+int64_t sphfsi_count(const struct sphfsi_simulation *handle, enum sphfsi_kind kind)
 {
-    return s && (unsigned)kind < KIND_COUNT ? s->session.simulation.kind[kind].n : 0;
+    return handle && (unsigned)kind < KIND_COUNT ? handle->session.simulation.kind[kind].n : 0;
 }
 
-uint64_t sphfsi_hash(struct sphfsi_simulation *s)
+uint64_t sphfsi_hash(struct sphfsi_simulation *handle)
 {
     struct diag d;
-    const enum err e = begin(s, "hash", &d);
+    const enum err e = begin(handle, "hash", &d);
     if (e) return call_result(&d, e), 0;
-    const uint64_t hash = simulation_hash(&s->session.simulation);
-    end(s, &d, ERR_OK);
+    const uint64_t hash = simulation_hash(&handle->session.simulation);
+    end(handle, &d, ERR_OK);
     return hash;
 }
 
@@ -227,37 +227,37 @@ static const struct {
 };
 #undef POINTDATA
 
-static bool has_file_field(const struct simulation *s, enum kind kind, enum data what)
+static bool has_file_field(const struct simulation *sim, enum kind kind, enum data what)
 {
-    const struct particles *const p = &s->kind[kind];
+    const struct particles *const particles = &sim->kind[kind];
     const bool solid = kind == KIND_SOLID;
     switch (what) {
     case D_VELOCITY: return true;
-    case D_DENSITY: return solid || p->dens;
-    case D_PRESSURE: return p->p;
+    case D_DENSITY: return solid || particles->dens;
+    case D_PRESSURE: return particles->p;
     case D_STRESS:
     case D_VON_MISES:
     case D_DET_F: return solid;
-    case D_DISPLACEMENT: return solid || p->X;
+    case D_DISPLACEMENT: return solid || particles->X;
     default: return false; /* an array of the particles has the name */
     }
 }
 
 /* The name of the k-th field of a kind, first the arrays of particles; NULL behind the last. */
-static const char *field_name(const struct simulation *s, enum kind kind, int k)
+static const char *field_name(const struct simulation *sim, enum kind kind, int k)
 {
-    if (s->kind[kind].capacity == 0) return NULL;
+    if (sim->kind[kind].capacity == 0) return NULL;
     for (int f = 0; f < field_count; f++)
-        if (field_array(&s->kind[kind], &field_table[f]) && k-- == 0) return field_table[f].name;
+        if (field_array(&sim->kind[kind], &field_table[f]) && k-- == 0) return field_table[f].name;
     for (size_t f = 0; f < COUNT_OF(file_field); f++)
-        if (has_file_field(s, kind, file_field[f].what) && k-- == 0) return file_field[f].name;
+        if (has_file_field(sim, kind, file_field[f].what) && k-- == 0) return file_field[f].name;
     return NULL;
 }
 
-const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind, int k)
+const char *sphfsi_field_name(const struct sphfsi_simulation *handle, enum sphfsi_kind kind, int k)
 {
-    if (!s || (unsigned)kind >= KIND_COUNT || k < 0) return NULL;
-    return field_name(&s->session.simulation, (enum kind)kind, k);
+    if (!handle || (unsigned)kind >= KIND_COUNT || k < 0) return NULL;
+    return field_name(&handle->session.simulation, (enum kind)kind, k);
 }
 
 static enum sphfsi_type type_of(const struct field_info *f)
@@ -272,19 +272,20 @@ static bool is_evaluated(const struct field_info *f)
     return f->keep == KEEP_DERIVED || strcmp(f->name, "ax") == 0 || strcmp(f->name, "ay") == 0;
 }
 
-static bool view_array(struct simulation *s, enum kind kind, const char *name,
+static bool view_array(struct simulation *sim, enum kind kind, const char *name,
                        struct sphfsi_view *view)
 {
-    const struct particles *const p = &s->kind[kind];
+    const struct particles *const particles = &sim->kind[kind];
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
-        if (strcmp(f->name, name) != 0 || !field_array(p, f)) continue;
-        if (is_evaluated(f)) simulation_refresh(s);
-        const void *const data = field_array(p, f); /* integrators exchange arrays */
+        if (strcmp(f->name, name) != 0 || !field_array(particles, f)) continue;
+        if (is_evaluated(f)) simulation_refresh(sim);
+        const void *const data = field_array(particles, f); /* integrators exchange arrays */
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
-            solid_show(&s->solid, &s->kind[KIND_SOLID]);
-        if (kind == KIND_FLUID && data == p->p) fluid_show(&s->fluid, &s->kind[KIND_FLUID]);
-        *view = (struct sphfsi_view){data, p->n, type_of(f), 1, f->unit, f->meaning};
+            solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+        if (kind == KIND_FLUID && data == particles->p)
+            fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
+        *view = (struct sphfsi_view){data, particles->n, type_of(f), 1, f->unit, f->meaning};
         return true;
     }
     return false;
@@ -303,11 +304,11 @@ static const char *unit_of(enum data what)
     }
 }
 
-static enum err compute(struct sphfsi_simulation *s, enum kind kind, const char *name,
+static enum err compute(struct sphfsi_simulation *handle, enum kind kind, const char *name,
                         enum data what, int width, struct diag *d)
 {
-    struct simulation *const sim = &s->session.simulation;
-    double **const to = &s->computed[kind][what];
+    struct simulation *const sim = &handle->session.simulation;
+    double **const to = &handle->computed[kind][what];
     const size_t capacity = (size_t)sim->kind[kind].capacity * (size_t)width;
     if (!*to) *to = arena_alloc(&sim->arena, capacity, sizeof **to, name, d);
     if (!*to) return ERR_MEMORY;
@@ -318,18 +319,18 @@ static enum err compute(struct sphfsi_simulation *s, enum kind kind, const char 
     return ERR_OK;
 }
 
-static enum err view_computed(struct sphfsi_simulation *s, enum kind kind, const char *name,
+static enum err view_computed(struct sphfsi_simulation *handle, enum kind kind, const char *name,
                               struct sphfsi_view *view, struct diag *d)
 {
-    const struct simulation *const sim = &s->session.simulation;
+    const struct simulation *const sim = &handle->session.simulation;
     for (size_t k = 0; k < COUNT_OF(file_field); k++) {
         const enum data what = file_field[k].what;
         if (strcmp(file_field[k].name, name) != 0 || !has_file_field(sim, kind, what)) continue;
         const int width = file_field[k].width;
-        TRY(compute(s, kind, name, what, width, d));
-        *view = (struct sphfsi_view){s->computed[kind][what], sim->kind[kind].n,
-                                     SPHFSI_DOUBLE,           width,
-                                     unit_of(what),           "as in fields.vtkhdf"};
+        TRY(compute(handle, kind, name, what, width, d));
+        *view = (struct sphfsi_view){
+            handle->computed[kind][what], sim->kind[kind].n, SPHFSI_DOUBLE, width, unit_of(what),
+            "as in fields.vtkhdf"};
         return ERR_OK;
     }
     struct nearest best = {0};
@@ -340,32 +341,32 @@ static enum err view_computed(struct sphfsi_simulation *s, enum kind kind, const
                      best.name ? best.name : "");
 }
 
-static enum err find_field(struct sphfsi_simulation *s, enum sphfsi_kind kind, const char *name,
-                           struct sphfsi_view *view, struct diag *d)
+static enum err find_field(struct sphfsi_simulation *handle, enum sphfsi_kind kind,
+                           const char *name, struct sphfsi_view *view, struct diag *d)
 {
     if (!name || !view)
         return diag_fail(d, ERR_INPUT, "field: the %s is NULL", name ? "view" : "name");
     if ((unsigned)kind >= KIND_COUNT)
         return diag_fail(d, ERR_INPUT, "field: kind = %d is not a kind of particles; use 0 to %d",
                          (int)kind, KIND_COUNT - 1);
-    if (view_array(&s->session.simulation, (enum kind)kind, name, view)) return ERR_OK;
-    return view_computed(s, (enum kind)kind, name, view, d);
+    if (view_array(&handle->session.simulation, (enum kind)kind, name, view)) return ERR_OK;
+    return view_computed(handle, (enum kind)kind, name, view, d);
 }
 
-enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+enum sphfsi_status sphfsi_field(struct sphfsi_simulation *handle, enum sphfsi_kind kind,
                                 const char *name, struct sphfsi_view *view)
 {
     struct diag d;
-    const enum err e = begin(s, "field", &d);
-    return e ? call_result(&d, e) : end(s, &d, find_field(s, kind, name, view, &d));
+    const enum err e = begin(handle, "field", &d);
+    return e ? call_result(&d, e) : end(handle, &d, find_field(handle, kind, name, view, &d));
 }
 
 /* --- probes --- */
 
-static enum err find_probe(struct sphfsi_simulation *s, const char *name, double *values,
+static enum err find_probe(struct sphfsi_simulation *handle, const char *name, double *values,
                            struct diag *d)
 {
-    const struct scene *const scene = &s->session.scene;
+    const struct scene *const scene = &handle->session.scene;
     struct nearest near = {0};
     if (!name || !values)
         return diag_fail(d, ERR_INPUT, "probe: the %s NULL", name ? "values are" : "name is");
@@ -373,64 +374,67 @@ static enum err find_probe(struct sphfsi_simulation *s, const char *name, double
         const char *const candidate = scene->probe[k].common.name;
         nearest_offer(&near, name, candidate);
         if (strcmp(candidate, name) != 0) continue;
-        probes_values(&s->probes, &s->session.simulation, k, values);
+        probes_values(&handle->probes, &handle->session.simulation, k, values);
         return ERR_OK;
     }
     return diag_fail(d, ERR_INPUT, "probe: the case has no [probe %.60s]%s%s", name,
                      near.name ? "; the nearest name is " : "", near.name ? near.name : "");
 }
 
-enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
+enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *handle, const char *name,
                                 double values[SPHFSI_PROBE_COLUMNS])
 {
     struct diag d;
-    const enum err e = begin(s, "probe", &d);
-    return e ? call_result(&d, e) : end(s, &d, find_probe(s, name, values, &d));
+    const enum err e = begin(handle, "probe", &d);
+    return e ? call_result(&d, e) : end(handle, &d, find_probe(handle, name, values, &d));
 }
 
-const char *sphfsi_probe_name(const struct sphfsi_simulation *s, int k)
+const char *sphfsi_probe_name(const struct sphfsi_simulation *handle, int k)
 {
-    if (!s || k < 0 || k >= s->session.scene.n_probe) return NULL;
-    return s->session.scene.probe[k].common.name;
+    if (!handle || k < 0 || k >= handle->session.scene.n_probe) return NULL;
+    return handle->session.scene.probe[k].common.name;
 }
 
-const char *sphfsi_probe_column(struct sphfsi_simulation *s, int k, int c)
+const char *sphfsi_probe_column(struct sphfsi_simulation *handle, int k, int c)
 {
-    if (!sphfsi_probe_name(s, k) || c < 0) return NULL;
-    const struct scene_probe *const sp = &s->session.scene.probe[k];
-    return probe_column(sp, c, s->column, sizeof s->column) ? s->column : NULL;
+    if (!sphfsi_probe_name(handle, k) || c < 0) return NULL;
+    const struct scene_probe *const sp = &handle->session.scene.probe[k];
+    return probe_column(sp, c, handle->column, sizeof handle->column) ? handle->column : NULL;
 }
 
 /* --- forces and motions of the program --- */
 
-static void add_user_force(void *context, double time, const struct particles *p, double *ax,
-                           double *ay)
+static void add_user_force(void *context, double time, const struct particles *particles,
+                           double *ax, double *ay)
 {
     const struct user_function *const user = context;
-    const struct sphfsi_particles view = {time, p->n, p->id, p->body, p->x, p->y, p->vx, p->vy};
+    const struct sphfsi_particles view = {time,          particles->n,
+                                          particles->id, particles->body,
+                                          particles->x,  particles->y,
+                                          particles->vx, particles->vy};
     const struct host mine = host_use(user->of->host);
     user->force(user->context, &view, ax, ay);
     host_use(mine);
 }
 
-static enum err set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind, sphfsi_force *force,
-                          void *context, struct diag *d)
+static enum err set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kind,
+                          sphfsi_force *force, void *context, struct diag *d)
 {
-    struct simulation *const sim = &s->session.simulation;
+    struct simulation *const sim = &handle->session.simulation;
     if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
-    s->force[kind] = (struct user_function){.of = s, .force = force, .context = context};
-    return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind],
-                               d);
+    handle->force[kind] = (struct user_function){.of = handle, .force = force, .context = context};
+    return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL,
+                               &handle->force[kind], d);
 }
 
-enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kind,
                                     sphfsi_force *force, void *context)
 {
     struct diag d;
-    const enum err e = begin(s, "force", &d);
-    return e ? call_result(&d, e) : end(s, &d, set_force(s, kind, force, context, &d));
+    const enum err e = begin(handle, "force", &d);
+    return e ? call_result(&d, e) : end(handle, &d, set_force(handle, kind, force, context, &d));
 }
 
 static void apply_user_motion(void *context, double time, double d[2], double v[2], double a[2])
@@ -441,10 +445,10 @@ static void apply_user_motion(void *context, double time, double d[2], double v[
     host_use(mine);
 }
 
-static enum err set_motion(struct sphfsi_simulation *s, const char *name, sphfsi_motion *motion,
-                           void *context, struct diag *d)
+static enum err set_motion(struct sphfsi_simulation *handle, const char *name,
+                           sphfsi_motion *motion, void *context, struct diag *d)
 {
-    struct scene *const scene = &s->session.scene;
+    struct scene *const scene = &handle->session.scene;
     if (!name) return diag_fail(d, ERR_INPUT, "motion: the name is NULL");
     const int at = scene_find_motion(scene, name);
     struct nearest near = {0};
@@ -455,22 +459,23 @@ static enum err set_motion(struct sphfsi_simulation *s, const char *name, sphfsi
                          near.name ? "; the nearest name is " : "", near.name ? near.name : "");
     const size_t n = (size_t)scene->n_motion;
     struct motion_hook **const hook = &scene->motion_hook;
-    if (!s->motion) s->motion = arena_alloc(&scene->arena, n, sizeof *s->motion, "motions", d);
+    if (!handle->motion)
+        handle->motion = arena_alloc(&scene->arena, n, sizeof *handle->motion, "motions", d);
     if (!*hook) *hook = arena_alloc(&scene->arena, n, sizeof **hook, "motions", d);
-    if (!s->motion || !*hook) return ERR_MEMORY;
-    s->motion[at] = (struct user_function){.of = s, .motion = motion, .context = context};
-    (*hook)[at] = (struct motion_hook){motion ? apply_user_motion : NULL, &s->motion[at]};
-    struct simulation *const sim = &s->session.simulation;
+    if (!handle->motion || !*hook) return ERR_MEMORY;
+    handle->motion[at] = (struct user_function){.of = handle, .motion = motion, .context = context};
+    (*hook)[at] = (struct motion_hook){motion ? apply_user_motion : NULL, &handle->motion[at]};
+    struct simulation *const sim = &handle->session.simulation;
     sim->evaluated = false;
     sim->solid.calls_out = false;
     for (int k = 0; k < scene->n_motion; k++) sim->solid.calls_out |= (*hook)[k].at != NULL;
     return ERR_OK;
 }
 
-enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
+enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *handle, const char *name,
                                      sphfsi_motion *motion, void *context)
 {
     struct diag d;
-    const enum err e = begin(s, "motion", &d);
-    return e ? call_result(&d, e) : end(s, &d, set_motion(s, name, motion, context, &d));
+    const enum err e = begin(handle, "motion", &d);
+    return e ? call_result(&d, e) : end(handle, &d, set_motion(handle, name, motion, context, &d));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Text files that the program carries: cases/templates and src/app/data, put into C by tools/embed.sh. */
+ * Text files that the program carries: cases/templates and src/app/data, put into C by
+ * tools/embed.sh. */
 #ifndef SPHFSI_APP_EMBEDDED_H
 #define SPHFSI_APP_EMBEDDED_H
 

@@ -70,11 +70,11 @@ static struct band band_of(enum scene_kind kind, const char *accuracy, double n)
 }
 
 /* Particles across the thinner side of a body, or over the height of the fluid. */
-static double particles_across(const struct scene *s, enum kind kind, int body)
+static double particles_across(const struct scene *scene, enum kind kind, int body)
 {
-    const struct scene_points *const p = &s->points[kind];
+    const struct scene_points *const p = &scene->points[kind];
     const struct scene_lattice *const l =
-        kind == KIND_SOLID ? &s->solid_lattice[body] : &s->lattice;
+        kind == KIND_SOLID ? &scene->solid_lattice[body] : &scene->lattice;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, at[2], n[2];
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body) continue;
@@ -85,21 +85,21 @@ static double particles_across(const struct scene *s, enum kind kind, int body)
     return kind == KIND_SOLID ? min2(n[0], n[1]) : n[1];
 }
 
-static void say_error(const struct scene *s, enum kind kind, int body, const char *accuracy,
+static void say_error(const struct scene *scene, enum kind kind, int body, const char *accuracy,
                       const struct sphfsi_options *o)
 {
     const enum scene_kind like = kind == KIND_FLUID ? SCENE_FLUID
-                                 : s->n_fluid       ? SCENE_COUPLED
+                                 : scene->n_fluid   ? SCENE_COUPLED
                                                     : SCENE_SOLID;
-    const double n = particles_across(s, kind, body);
+    const double n = particles_across(scene, kind, body);
     const struct band band = band_of(like, accuracy, n);
     const char *const name =
-        kind == KIND_FLUID ? s->fluid[body].common.name : s->solid[body].common.name;
+        kind == KIND_FLUID ? scene->fluid[body].common.name : scene->solid[body].common.name;
     char range[64];
     snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
              band.low, band.high);
     const bool moves =
-        kind == KIND_SOLID && s->solid[body].clamp.n == 0 && !scene_is_bonded(s, body);
+        kind == KIND_SOLID && scene->solid[body].clamp.n == 0 && !scene_is_bonded(scene, body);
     if (moves || !isfinite(band.low))
         session_say(
             o,
@@ -123,23 +123,23 @@ static void say_error(const struct scene *s, enum kind kind, int body, const cha
                     name, n, range);
 }
 
-void evidence_say(const struct scene *s, const struct sphfsi_options *o)
+void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
 {
     /* The study runs the paper's scheme at accuracy = standard only. */
-    const bool paper = s->n_fluid && s->top.scheme == SCHEME_PAPER;
+    const bool paper = scene->n_fluid && scene->top.scheme == SCHEME_PAPER;
     char accuracy[SCENE_NAME] = "paper";
     if (paper) {
         session_say(o, "expected error with scheme = paper, at accuracy = standard");
     } else {
-        param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
+        param_choice_name(param_find(SECTION_top, "accuracy"), scene->top.accuracy, accuracy);
         session_say(o, "expected error at accuracy = %s", accuracy);
     }
-    for (int k = 0; k < s->n_solid; k++) say_error(s, KIND_SOLID, k, accuracy, o);
-    for (int k = 0; k < s->n_fluid && s->n_solid == 0; k++)
-        say_error(s, KIND_FLUID, k, accuracy, o);
+    for (int k = 0; k < scene->n_solid; k++) say_error(scene, KIND_SOLID, k, accuracy, o);
+    for (int k = 0; k < scene->n_fluid && scene->n_solid == 0; k++)
+        say_error(scene, KIND_FLUID, k, accuracy, o);
 }
 
-void evidence_say_preset(const struct scene *s, const struct sphfsi_options *o)
+void evidence_say_preset(const struct scene *scene, const struct sphfsi_options *o)
 {
-    if (scene_given(s, SECTION_top, 0, "accuracy")) evidence_say(s, o);
+    if (scene_given(scene, SECTION_top, 0, "accuracy")) evidence_say(scene, o);
 }

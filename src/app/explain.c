@@ -15,104 +15,107 @@
 
 static void say_scene(const struct session *x, const struct sphfsi_options *o)
 {
-    const struct scene *c = &x->scene;
-    session_say(o, "%s: %s", c->path, c->top.title);
-    session_say(o, "  dp %g m, h %g m, simulated time %g s", c->top.dp, c->h, c->top.end_time);
-    if (c->c0 > 0) session_say(o, "  speed of sound %g m/s, density %g kg/m^3", c->c0, c->rho0);
+    const struct scene *scene = &x->scene;
+    session_say(o, "%s: %s", scene->path, scene->top.title);
+    session_say(o, "  dp %g m, h %g m, simulated time %g s", scene->top.dp, scene->h,
+                scene->top.end_time);
+    if (scene->c0 > 0)
+        session_say(o, "  speed of sound %g m/s, density %g kg/m^3", scene->c0, scene->rho0);
     for (int k = 0; k < KIND_COUNT; k++)
         session_say(o, "  %-6s %10lld particles", kind_names[k],
                     (long long)x->simulation.kind[k].n);
 }
 
 /* Whether a lattice begins between the lines of the common one. */
-static bool is_shifted(const struct scene *s, const struct scene_lattice *l)
+static bool is_shifted(const struct scene *scene, const struct scene_lattice *l)
 {
     bool shifted = false;
     for (int c = 0; c < 2; c++) {
-        const double lines = (l->origin[c] - s->lattice.origin[c]) / l->spacing[c];
+        const double lines = (l->origin[c] - scene->lattice.origin[c]) / l->spacing[c];
         shifted |= fabs(lines - round(lines)) > 1e-6;
     }
     return shifted;
 }
 
 /* How bodies are sampled where the lattice is not simply the common one. */
-static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
+static void say_lattices(const struct scene *scene, const struct sphfsi_options *o)
 {
     const double degrees = 180 / PI;
-    if (s->lattice.angle != 0)
+    if (scene->lattice.angle != 0)
         session_say(o, "  fluid and walls are sampled on a lattice at %.4g degrees",
-                    s->lattice.angle * degrees);
-    for (int k = 0; k < s->n_solid; k++) {
-        const struct scene_lattice *const l = &s->solid_lattice[k];
+                    scene->lattice.angle * degrees);
+    for (int k = 0; k < scene->n_solid; k++) {
+        const struct scene_lattice *const l = &scene->solid_lattice[k];
         const double off = fabs(l->area_error) < 5e-5 ? 0 : l->area_error;
-        if (l->angle == 0 && !l->fitted && is_shifted(s, l))
+        if (l->angle == 0 && !l->fitted && is_shifted(scene, l))
             session_say(o,
                         "  [solid %s] has a lattice of its own, which begins at its corner (%.6g, "
                         "%.6g) m",
-                        s->solid[k].common.name, l->origin[0], l->origin[1]);
+                        scene->solid[k].common.name, l->origin[0], l->origin[1]);
         if (l->angle == 0 && !l->fitted && fabs(off) < 5e-5) continue;
         session_say(o,
                     "  [solid %s] lattice at %.4g degrees, cells of %.5g x %.5g m, area off by "
                     "%.2g %%, bending stiffness of a thin body by about %.2g %%",
-                    s->solid[k].common.name, l->angle * degrees, l->spacing[0], l->spacing[1],
+                    scene->solid[k].common.name, l->angle * degrees, l->spacing[0], l->spacing[1],
                     100 * off, 100 * (square(1 + off) * (1 + off) - 1));
     }
 }
 
 /* What the scheme has set, as far as the case has left it. */
-static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
+static void say_scheme(const struct scene *scene, const struct sphfsi_options *o)
 {
     char name[SCENE_NAME];
-    param_choice_name(param_find(SECTION_top, "scheme"), c->top.scheme, name);
+    param_choice_name(param_find(SECTION_top, "scheme"), scene->top.scheme, name);
     session_say(o,
-                c->top.scheme == SCHEME_PAPER
+                scene->top.scheme == SCHEME_PAPER
                     ? "scheme %s: all keys have their defaults, the method of the article (--cite)"
                     : "scheme %s sets",
                 name);
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const p = &param_table[k];
+        const struct param *const param = &param_table[k];
         double value;
-        if (!scene_scheme_sets(c, p->section, p->key, &value)) continue;
+        if (!scene_scheme_sets(scene, param->section, param->key, &value)) continue;
         char text[SCENE_NAME];
-        if (p->type == PARAM_CHOICE)
-            param_choice_name(p, (int)value, text);
+        if (param->type == PARAM_CHOICE)
+            param_choice_name(param, (int)value, text);
         else
             snprintf(text, sizeof text, "%g", value);
-        const bool given = scene_given(c, p->section, 0, p->key) != NULL;
-        session_say(o, "  %s.%s = %s%s", section_table[p->section].word, p->key, text,
+        const bool given = scene_given(scene, param->section, 0, param->key) != NULL;
+        session_say(o, "  %s.%s = %s%s", section_table[param->section].word, param->key, text,
                     given ? ", but the case sets it" : "");
     }
 }
 
-static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
+static void say_effects(const struct simulation *sim, const struct sphfsi_options *o)
 {
     session_say(o, "enabled effects, and the setting that enables each");
     for (int k = 0; k < EFFECT_COUNT; k++) {
-        if (!(s->effects & EFFECT_BIT(k))) continue;
+        if (!(sim->effects & EFFECT_BIT(k))) continue;
         struct effect_caller by;
         char text[EFFECT_CALLER_TEXT];
         snprintf(text, sizeof text, "%s", effect_table[k].key);
-        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        if (effect_called(sim->scene, (enum effect)k, &by))
+            effect_caller_text(sim->scene, &by, text);
         session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, text, effect_table[k].meaning,
                     effect_table[k].equation[0] ? "; " : "", effect_table[k].equation);
     }
     session_say(o, "disabled effects, and the setting that would enable each");
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (!(s->effects & EFFECT_BIT(k)))
+        if (!(sim->effects & EFFECT_BIT(k)))
             session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
                         effect_table[k].meaning);
 }
 
 /* Bytes of each group of fields that is in use. */
-static void say_groups(const struct simulation *s, const struct sphfsi_options *o)
+static void say_groups(const struct simulation *sim, const struct sphfsi_options *o)
 {
     for (int g = 0; g < GROUP_COUNT; g++) {
         size_t bytes[KIND_COUNT] = {0}, all = 0;
         for (int k = 0; k < KIND_COUNT; k++) {
-            const struct particles *p = &s->kind[k];
+            const struct particles *particles = &sim->kind[k];
             for (int f = 0; f < field_count; f++)
-                if (field_table[f].group == 1u << g && field_array(p, &field_table[f]))
-                    bytes[k] += field_table[f].size * (size_t)p->capacity;
+                if (field_table[f].group == 1u << g && field_array(particles, &field_table[f]))
+                    bytes[k] += field_table[f].size * (size_t)particles->capacity;
             all += bytes[k];
         }
         if (all == 0) continue;
@@ -121,59 +124,59 @@ static void say_groups(const struct simulation *s, const struct sphfsi_options *
     }
 }
 
-static void say_fields(const struct simulation *s, const struct sphfsi_options *o)
+static void say_fields(const struct simulation *sim, const struct sphfsi_options *o)
 {
     session_say(o, "fields");
     for (int k = 0; k < KIND_COUNT; k++) {
-        const struct particles *p = &s->kind[k];
-        if (p->capacity == 0) continue;
+        const struct particles *particles = &sim->kind[k];
+        if (particles->capacity == 0) continue;
         char names[1024] = "";
         size_t at = 0;
         for (int f = 0; f < field_count; f++)
-            if (field_array(p, &field_table[f]) && at < sizeof names - 32)
+            if (field_array(particles, &field_table[f]) && at < sizeof names - 32)
                 at += (size_t)snprintf(names + at, sizeof names - at, " %s", field_table[f].name);
-        const size_t bytes = particles_bytes(p);
+        const size_t bytes = particles_bytes(particles);
         session_say(o, "  %-6s %.3g MB, %zu bytes per particle:%s", kind_names[k],
-                    1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
+                    1e-6 * (double)bytes, bytes / (size_t)particles->capacity, names);
     }
-    say_groups(s, o);
+    say_groups(sim, o);
     session_say(
         o, "  total %.3g MB (fields, cells, packed copies, stencils), and %.3g MB for the case",
-        1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
+        1e-6 * (double)sim->arena.bytes, 1e-6 * (double)sim->scene->arena.bytes);
 }
 
 /* The largest load of single instants falls with dp for as long as an impact lasts a few particles;
  * template `baffle`, docs/fluid_verification.md. */
-static void say_instants(const struct scene *c, const struct sphfsi_options *o)
+static void say_instants(const struct scene *scene, const struct sphfsi_options *o)
 {
-    for (int k = 0; k < c->n_probe; k++) {
-        const struct scene_probe *const p = &c->probe[k];
-        const bool load = p->quantity == PROBE_FORCE || p->quantity == PROBE_PRESSURE ||
-                          p->quantity == PROBE_SURFACE_PRESSURE;
-        if (load && p->average == 0)
+    for (int k = 0; k < scene->n_probe; k++) {
+        const struct scene_probe *const probe = &scene->probe[k];
+        const bool load = probe->quantity == PROBE_FORCE || probe->quantity == PROBE_PRESSURE ||
+                          probe->quantity == PROBE_SURFACE_PRESSURE;
+        if (load && probe->average == 0)
             session_say(o,
                         "  [probe %s]: rows are of single instants, whose largest in an impact "
                         "depends on dp; a mean over time (`average`), an impulse or the reaction "
                         "of a clamp depends less on it",
-                        p->common.name);
+                        probe->common.name);
     }
 }
 
-static void say_output(const struct simulation *s, const struct sphfsi_options *o)
+static void say_output(const struct simulation *sim, const struct sphfsi_options *o)
 {
-    const struct snapshot_layout layout = snapshot_file_layout(s->scene);
-    const double end = s->scene->top.end_time, every = s->scene->output.snapshot_interval;
+    const struct snapshot_layout layout = snapshot_file_layout(sim->scene);
+    const double end = sim->scene->top.end_time, every = sim->scene->output.snapshot_interval;
     const double snapshots = floor(end / every * (1 + 1e-12)) + 1,
                  point = (double)snapshot_file_point_bytes(&layout);
     double points = 0;
-    for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++) points += (double)sim->kind[k].n;
     session_say(o, "output");
     session_say(o,
                 "  fields.vtkhdf: %.0f snapshots of %.0f points of %.0f bytes: %.3g MB %s; needs "
                 "twice that space during the run",
                 snapshots, points, point, 1e-6 * snapshots * points * point,
                 layout.deflate ? "before compression" : "(no compression)");
-    if (s->effects & FX_FLUID) say_instants(s->scene, o);
+    if (sim->effects & FX_FLUID) say_instants(sim->scene, o);
 }
 
 static bool is_known(const struct simulation *sim, int bound)
@@ -192,29 +195,29 @@ static int binding_bound(const struct simulation *sim)
     return binding;
 }
 
-static void say_bounds(const struct simulation *s, const struct sphfsi_options *o)
+static void say_bounds(const struct simulation *sim, const struct sphfsi_options *o)
 {
-    const int binding = binding_bound(s);
-    const struct scene *const c = s->scene;
-    if (!(s->effects & FX_FLUID))
+    const int binding = binding_bound(sim);
+    const struct scene *const scene = sim->scene;
+    if (!(sim->effects & FX_FLUID))
         session_say(o, "bounds of the time step");
     else
-        session_say(o, "bounds of the time step, C_CFL = %g", c->numerics.cfl);
+        session_say(o, "bounds of the time step, C_CFL = %g", scene->numerics.cfl);
     for (int k = 0; k < BOUND_COUNT; k++) {
-        const bool known = is_known(s, k);
+        const bool known = is_known(sim, k);
         char value[32] = "-";
-        if (known) snprintf(value, sizeof value, "%.4g s", s->dt_bound[k]);
+        if (known) snprintf(value, sizeof value, "%.4g s", sim->dt_bound[k]);
         session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
                     k == binding ? "  <- limits the step" : "");
     }
-    if (s->kind[KIND_SOLID].n == 0) return;
-    session_say(o, "  stable step of the solid: %.4g s", s->dt_solid);
-    if (s->effects & FX_COUPLING)
-        session_say(o, "  %d solid sub-step%s in each fluid step", s->substeps,
-                    s->substeps == 1 ? "" : "s");
-    if (s->effects & FX_CONTACT)
+    if (sim->kind[KIND_SOLID].n == 0) return;
+    session_say(o, "  stable step of the solid: %.4g s", sim->dt_solid);
+    if (sim->effects & FX_COUPLING)
+        session_say(o, "  %d solid sub-step%s in each fluid step", sim->substeps,
+                    sim->substeps == 1 ? "" : "s");
+    if (sim->effects & FX_CONTACT)
         session_say(o, "  without contact, the stable step of the solid would be %.4g s",
-                    s->dt_lone_solid);
+                    sim->dt_lone_solid);
 }
 
 static void text_of_seconds(double seconds, char text[32])
@@ -240,10 +243,10 @@ static void text_of_bytes(double bytes, char text[32])
  * dearer as the water spreads. */
 static const double least_of_forecast = 0.9, most_of_forecast = 1.4;
 
-static void say_cost(const struct simulation *s, const struct unit_costs *c,
+static void say_cost(const struct simulation *sim, const struct unit_costs *c,
                      const struct sphfsi_options *o)
 {
-    const struct forecast f = forecast_run(c, s);
+    const struct forecast f = forecast_run(c, sim);
     const int threads = thread_count();
     session_say(o, "cost with %d thread%s, measured in 0.3 s of trial steps", threads,
                 threads == 1 ? "" : "s");
@@ -257,7 +260,7 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c,
     text_of_seconds(f.seconds, time);
     text_of_bytes(f.memory, memory);
     text_of_bytes(f.disk, disk);
-    const bool shared = s->kind[KIND_FLUID].n && s->kind[KIND_SOLID].n && f.substeps <= f.steps;
+    const bool shared = sim->kind[KIND_FLUID].n && sim->kind[KIND_SOLID].n && f.substeps <= f.steps;
     session_say(o, "  about %.3g steps of %.3g s%s", f.steps, f.dt,
                 shared ? ", the same for fluid and solid" : "");
     if (f.substeps > f.steps) session_say(o, "  about %.3g solid sub-steps", f.substeps);
@@ -266,38 +269,40 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c,
     text_of_seconds(least_of_forecast * f.seconds, least);
     text_of_seconds(most_of_forecast * f.seconds, most);
     session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer", least, most);
-    if (s->effects & FX_RELAX)
+    if (sim->effects & FX_RELAX)
         session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
 
-static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
+static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o, struct diag *d)
 {
     struct unit_costs c;
-    const enum err e = forecast_measure(&c, s, d);
-    check_simulation(s, d); /* bounds of the step are known now */
+    const enum err e = forecast_measure(&c, sim, d);
+    check_simulation(sim, d); /* bounds of the step are known now */
     TRY(e);
-    say_bounds(s, o);
-    say_cost(s, &c, o);
-    evidence_say(s->scene, o);
+    say_bounds(sim, o);
+    say_cost(sim, &c, o);
+    evidence_say(sim->scene, o);
     return ERR_OK;
 }
 
 enum err explain_text(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
-    struct simulation *s = &x->simulation;
+    struct simulation *sim = &x->simulation;
     say_scene(x, o);
     say_lattices(&x->scene, o);
     say_scheme(&x->scene, o);
-    say_effects(s, o);
-    say_fields(s, o);
-    say_output(s, o);
+    say_effects(sim, o);
+    say_fields(sim, o);
+    say_output(sim, o);
     char precision[SCENE_NAME], integrator[SCENE_NAME];
-    param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
-    param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
+    param_choice_name(param_find(SECTION_top, "precision"), sim->scene->top.precision, precision);
+    param_choice_name(param_find(SECTION_top, "integrator"), sim->scene->top.integrator,
+                      integrator);
     session_say(o, "integrator %s, precision %s; compiled loops of the fluid: %s, of the solid: %s",
-                integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.kernel->name : "none",
-                s->solid.sweeps ? s->solid.sweeps->name : "none");
-    return say_trial(s, o, d);
+                integrator, precision,
+                sim->kind[KIND_FLUID].n > 0 ? sim->fluid.kernel->name : "none",
+                sim->solid.sweeps ? sim->solid.sweeps->name : "none");
+    return say_trial(sim, o, d);
 }
 
 /* --- the same as JSON --- */
@@ -337,23 +342,24 @@ static void write_warnings(struct json *j, const struct heard *h)
 
 static void write_scene(struct json *j, const struct session *x)
 {
-    const struct scene *const c = &x->scene;
-    json_text(j, "title", c->top.title);
-    json_text(j, "case", c->path);
-    json_number(j, "dp", c->top.dp);
-    json_number(j, "end_time", c->top.end_time);
+    const struct scene *const scene = &x->scene;
+    json_text(j, "title", scene->top.title);
+    json_text(j, "case", scene->path);
+    json_number(j, "dp", scene->top.dp);
+    json_number(j, "end_time", scene->top.end_time);
     json_open(j, "particles", '{');
     for (int k = 0; k < KIND_COUNT; k++) json_integer(j, kind_names[k], x->simulation.kind[k].n);
     json_close(j, '}');
 }
 
-static void write_fields(struct json *j, const struct simulation *s)
+static void write_fields(struct json *j, const struct simulation *sim)
 {
     json_open(j, "fields", '{');
     for (int k = 0; k < KIND_COUNT; k++) {
         json_open(j, kind_names[k], '[');
-        for (int f = 0; f < field_count && s->kind[k].capacity; f++)
-            if (field_array(&s->kind[k], &field_table[f])) json_text(j, NULL, field_table[f].name);
+        for (int f = 0; f < field_count && sim->kind[k].capacity; f++)
+            if (field_array(&sim->kind[k], &field_table[f]))
+                json_text(j, NULL, field_table[f].name);
         json_close(j, ']');
     }
     json_close(j, '}');
@@ -370,9 +376,9 @@ static void write_bounds(struct json *j, const struct simulation *sim)
     if (sim->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);
 }
 
-static void write_cost(struct json *j, const struct simulation *s, const struct unit_costs *c)
+static void write_cost(struct json *j, const struct simulation *sim, const struct unit_costs *c)
 {
-    const struct forecast f = forecast_run(c, s);
+    const struct forecast f = forecast_run(c, sim);
     json_open(j, "cost", '{');
     json_integer(j, "threads", thread_count());
     json_number(j, "time_step", f.dt);
@@ -393,17 +399,17 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
 static enum err write_all(FILE *file, struct session *x, const struct heard *h, struct diag *d)
 {
     struct json j = {.file = file};
-    struct simulation *const s = &x->simulation;
+    struct simulation *const sim = &x->simulation;
     struct unit_costs c;
     json_open(&j, NULL, '{');
     write_scene(&j, x);
-    report_effects(&j, s);
-    write_fields(&j, s);
-    const enum err e = forecast_measure(&c, s, d);
-    check_simulation(s, d);
+    report_effects(&j, sim);
+    write_fields(&j, sim);
+    const enum err e = forecast_measure(&c, sim, d);
+    check_simulation(sim, d);
     TRY(e);
-    write_bounds(&j, s);
-    write_cost(&j, s, &c);
+    write_bounds(&j, sim);
+    write_cost(&j, sim, &c);
     report_derived(&j, &x->scene);
     report_parameters(&j, &x->scene);
     write_warnings(&j, h);

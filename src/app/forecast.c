@@ -134,30 +134,31 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
 
 /* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its
  * mean was 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
-static double expected_step(const struct simulation *s)
+static double expected_step(const struct simulation *sim)
 {
-    const double limit = timestep_fluid_limit(s), fixed = s->scene->numerics.fixed_step;
+    const double limit = timestep_fluid_limit(sim), fixed = sim->scene->numerics.fixed_step;
     if (fixed > 0) return fixed;
     double speed = 0;
-    for (int k = 0; k < s->scene->n_fluid; k++) speed = max2(speed, s->scene->fluid[k].max_speed);
-    const double approach = max2(0.75 * speed, s->fluid.extremes.approach);
-    return limit * s->fluid.k.c0 / (s->fluid.k.c0 + approach);
+    for (int k = 0; k < sim->scene->n_fluid; k++)
+        speed = max2(speed, sim->scene->fluid[k].max_speed);
+    const double approach = max2(0.75 * speed, sim->fluid.extremes.approach);
+    return limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
 }
 
 /* Number of steps, which must end at every output time. Only the shortest interval counts, also of
  * a probe that has its own, or the grid that has all of them (T-34d): the others are usually
  * multiples of it. */
-static double count_steps(const struct simulation *s, double dt)
+static double count_steps(const struct simulation *sim, double dt)
 {
-    const struct scene_output *const out = &s->scene->output;
-    double piece = s->scene->top.end_time;
-    if (s->scene->n_probe > 0) piece = min2(piece, out->probe_interval);
-    for (int k = 0; k < s->scene->n_probe; k++)
-        if (s->scene->probe[k].interval > 0) piece = min2(piece, s->scene->probe[k].interval);
+    const struct scene_output *const out = &sim->scene->output;
+    double piece = sim->scene->top.end_time;
+    if (sim->scene->n_probe > 0) piece = min2(piece, out->probe_interval);
+    for (int k = 0; k < sim->scene->n_probe; k++)
+        if (sim->scene->probe[k].interval > 0) piece = min2(piece, sim->scene->probe[k].interval);
     piece = min2(piece, min2(out->ledger_interval, out->snapshot_interval));
     if (out->checkpoint_interval > 0) piece = min2(piece, out->checkpoint_interval);
-    if (s->output_grid > 0) piece = s->output_grid;
-    return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
+    if (sim->output_grid > 0) piece = sim->output_grid;
+    return sim->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
 }
 
 /* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run.

@@ -32,15 +32,18 @@ static const char *const section_meanings[][2] = {
     {"reference", "A curve that a probe is compared with, in the summary and in plots."},
 };
 
-static bool pure(const struct param *p) { return !p->unit || strcmp(p->unit, "1") == 0; }
+static bool pure(const struct param *param)
+{
+    return !param->unit || strcmp(param->unit, "1") == 0;
+}
 
 /* The default as in a case file; "" if there is none. */
-static void default_of(const struct param *p, char *text, size_t size)
+static void default_of(const struct param *param, char *text, size_t size)
 {
-    const double value = p->number.value;
-    const char *const space = pure(p) ? "" : " ", *const unit = pure(p) ? "" : p->unit;
+    const double value = param->number.value;
+    const char *const space = pure(param) ? "" : " ", *const unit = pure(param) ? "" : param->unit;
     text[0] = '\0';
-    switch (p->type) {
+    switch (param->type) {
     case PARAM_REAL:
         if (!isnan(value))
             snprintf(text, size, "%g%s%s", value, value == 0 ? "" : space, value == 0 ? "" : unit);
@@ -48,15 +51,15 @@ static void default_of(const struct param *p, char *text, size_t size)
     case PARAM_INTEGER: snprintf(text, size, "%d", (int)value); break;
     case PARAM_CHOICE: {
         char name[SCENE_NAME];
-        param_choice_name(p, (int)value, name);
+        param_choice_name(param, (int)value, name);
         snprintf(text, size, "%s", name);
         break;
     }
     case PARAM_VECTOR:
     case PARAM_TIME_VECTOR:
-        snprintf(text, size, "%g, %g", p->vector_default[0], p->vector_default[1]);
+        snprintf(text, size, "%g, %g", param->vector_default[0], param->vector_default[1]);
         break;
-    case PARAM_TEXT: snprintf(text, size, "%s", p->text_default); break;
+    case PARAM_TEXT: snprintf(text, size, "%s", param->text_default); break;
     default: break;
     }
 }
@@ -68,26 +71,26 @@ static bool gives(const char *line, const char *key)
     return strncmp(line, key, length) == 0 && strncmp(line + length, " = ", 3) == 0;
 }
 
-void manual_example(const struct param *p, char *text, size_t size)
+void manual_example(const struct param *param, char *text, size_t size)
 {
-    const char *const word = section_table[p->section].word;
+    const char *const word = section_table[param->section].word;
     const size_t length = strlen(word);
-    bool inside = p->section == SECTION_top;
+    bool inside = param->section == SECTION_top;
     for (const char *line = embedded_text("src/app/data/key_examples.cfg"), *next; line;
          line = next) {
         const int end = (int)strcspn(line, "\n");
         next = line[end] ? line + end + 1 : NULL;
         if (line[0] == '[')
             inside = strncmp(line + 1, word, length) == 0 && line[length + 1] == ']';
-        if (!inside || !gives(line, p->key)) continue;
-        const int value = (int)strlen(p->key) + 3;
+        if (!inside || !gives(line, param->key)) continue;
+        const int value = (int)strlen(param->key) + 3;
         snprintf(text, size, "%.*s", end - value, line + value);
         return;
     }
-    default_of(p, text, size);
+    default_of(param, text, size);
 }
 
-static void type_of(const struct param *p, char *text, size_t size)
+static void type_of(const struct param *param, char *text, size_t size)
 {
     static const char *const names[] = {
         [PARAM_REAL] = "number",
@@ -102,24 +105,24 @@ static void type_of(const struct param *p, char *text, size_t size)
         [PARAM_TIME_EXPR] = "expression in t",
         [PARAM_FLOW_EXPR] = "expression in x, y, t",
     };
-    if (p->type == PARAM_FIELD_EXPR && p->count == 2)
+    if (param->type == PARAM_FIELD_EXPR && param->count == 2)
         snprintf(text, size, "two expressions in x, y");
-    else if (p->type == PARAM_FLOW_EXPR && p->count == 2)
+    else if (param->type == PARAM_FLOW_EXPR && param->count == 2)
         snprintf(text, size, "two expressions in x, y, t");
     else
-        snprintf(text, size, "%s", names[p->type]);
+        snprintf(text, size, "%s", names[param->type]);
 }
 
 /* "> 0, <= 1000", the names of a choice joined by "or", or nothing. */
-static void range_of(const struct param *p, char *text, size_t size)
+static void range_of(const struct param *param, char *text, size_t size)
 {
     text[0] = '\0';
-    if (p->type == PARAM_REAL || p->type == PARAM_INTEGER) {
-        snprintf(text, size, "%s %g, %s %g", p->low.open ? ">" : "≥", p->low.value,
-                 p->high.open ? "<" : "≤", p->high.value);
-    } else if (p->type == PARAM_CHOICE) {
+    if (param->type == PARAM_REAL || param->type == PARAM_INTEGER) {
+        snprintf(text, size, "%s %g, %s %g", param->low.open ? ">" : "≥", param->low.value,
+                 param->high.open ? "<" : "≤", param->high.value);
+    } else if (param->type == PARAM_CHOICE) {
         size_t at = 0;
-        for (const char *c = p->choices; *c && at + 8 < size; c++)
+        for (const char *c = param->choices; *c && at + 8 < size; c++)
             at += (size_t)snprintf(text + at, size - at, *c == '|' ? ", " : "%c", *c);
     }
 }
@@ -136,11 +139,11 @@ static void in_cell(const char *text, char *cell, size_t size)
 }
 
 /* A number or the name of a choice. */
-static void value_of(const struct param *p, double value, char *text, size_t size)
+static void value_of(const struct param *param, double value, char *text, size_t size)
 {
     char name[SCENE_NAME];
-    if (p->type == PARAM_CHOICE) {
-        param_choice_name(p, (int)value, name);
+    if (param->type == PARAM_CHOICE) {
+        param_choice_name(param, (int)value, name);
         snprintf(text, size, "%s", name);
     } else {
         snprintf(text, size, "%g", value);
@@ -149,45 +152,47 @@ static void value_of(const struct param *p, double value, char *text, size_t siz
 
 /* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value.
  */
-static void default_cell(const struct param *p, char *cell, size_t size)
+static void default_cell(const struct param *param, char *cell, size_t size)
 {
     static const char *const kinds[] = {" with only solids", " with only fluid",
                                         " with fluid and solids"};
-    double value[] = {p->number.value, p->number.value, p->number.value};
+    double value[] = {param->number.value, param->number.value, param->number.value};
     bool set = false, equal = true;
-    const int first = p->section == SECTION_fluid ? SCENE_FLUID : SCENE_SOLID,
-              step = p->section == SECTION_solid ? SCENE_COUPLED - SCENE_SOLID : 1;
+    const int first = param->section == SECTION_fluid ? SCENE_FLUID : SCENE_SOLID,
+              step = param->section == SECTION_solid ? SCENE_COUPLED - SCENE_SOLID : 1;
     for (int k = first; k <= SCENE_COUPLED; k += step) {
-        set |= scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, p->section, p->key, &value[k]);
+        set |=
+            scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, param->section, param->key, &value[k]);
         equal &= value[k] == value[first];
     }
     char paper[SCENE_TEXT], text[SCENE_NAME];
-    default_of(p, paper, sizeof paper);
+    default_of(param, paper, sizeof paper);
     const char *const tick = paper[0] ? "`" : "";
     size_t at = 0;
     for (int k = first; set && k <= (equal ? first : SCENE_COUPLED); k += step) {
-        value_of(p, value[k], text, sizeof text);
+        value_of(param, value[k], text, sizeof text);
         at += (size_t)snprintf(cell + at, size - at, "%s`%s`%s", k > first ? ", " : "", text,
                                equal ? "" : kinds[k]);
     }
-    if (p->number.needed)
+    if (param->number.needed)
         snprintf(cell, size, "**needed**");
     else
         snprintf(cell + at, size - at, "%s%s%s%s", set ? "; `scheme = paper`: " : "", tick, paper,
                  tick);
 }
 
-static void say_key(const struct param *p, const struct sphfsi_options *o)
+static void say_key(const struct param *param, const struct sphfsi_options *o)
 {
     char type[64], fallback[3 * SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
-    type_of(p, type, sizeof type);
-    default_cell(p, fallback, sizeof fallback);
-    range_of(p, range, sizeof range);
-    manual_example(p, example, sizeof example);
-    in_cell(p->meaning, meaning, sizeof meaning);
-    session_say(o, "| `%s` | %s | %s | %s | %s | %s | %s%s%s%s%s |", p->key, type,
-                pure(p) ? "" : p->unit, fallback, range, meaning, example[0] ? "`" : "",
-                example[0] ? p->key : "", example[0] ? " = " : "", example, example[0] ? "`" : "");
+    type_of(param, type, sizeof type);
+    default_cell(param, fallback, sizeof fallback);
+    range_of(param, range, sizeof range);
+    manual_example(param, example, sizeof example);
+    in_cell(param->meaning, meaning, sizeof meaning);
+    session_say(o, "| `%s` | %s | %s | %s | %s | %s | %s%s%s%s%s |", param->key, type,
+                pure(param) ? "" : param->unit, fallback, range, meaning, example[0] ? "`" : "",
+                example[0] ? param->key : "", example[0] ? " = " : "", example,
+                example[0] ? "`" : "");
 }
 
 static void say_section(enum section_id id, const struct sphfsi_options *o)

@@ -171,10 +171,10 @@ static enum err write_output(struct run *r, enum output what)
     return what == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r);
 }
 
-static double phases_so_far(const struct simulation *s)
+static double phases_so_far(const struct simulation *sim)
 {
     double sum = 0;
-    for (int k = 0; k < PHASE_COUNT; k++) sum += s->phase_seconds[k];
+    for (int k = 0; k < PHASE_COUNT; k++) sum += sim->phase_seconds[k];
     return sum;
 }
 

@@ -225,8 +225,8 @@ void session_close(struct session *x)
 /* The same limit for steps that the program chooses. */
 static enum err check_steps(const struct session *x, struct diag *d)
 {
-    const struct simulation *const s = &x->simulation;
-    const double step = s->effects & FX_FLUID ? timestep_fluid_limit(s) : s->dt_solid;
+    const struct simulation *const sim = &x->simulation;
+    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
     const double end = x->scene.top.end_time, n = end / step;
     if (n <= most_counts) return ERR_OK;
     char place[LOCATION_TEXT];
@@ -238,11 +238,11 @@ static enum err check_steps(const struct session *x, struct diag *d)
 }
 
 /* A problem that is found where no case file is known, such as in the cells of the domain. */
-static void name_case(const struct scene *s, struct diag *d)
+static void name_case(const struct scene *scene, struct diag *d)
 {
     char place[LOCATION_TEXT], text[sizeof d->text];
     if (!d || d->code != ERR_INPUT) return;
-    scene_location(s, LINE_NONE, place);
+    scene_location(scene, LINE_NONE, place);
     if (strncmp(d->text, place, strlen(place)) == 0 || strncmp(d->text, "--set", 5) == 0) return;
     memcpy(text, d->text, sizeof text);
     snprintf(d->text, sizeof d->text, "%s: %.*s", place, (int)(sizeof text - sizeof place - 8),

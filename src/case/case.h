@@ -134,8 +134,8 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     SPHFSI_CHECKED;
 
 /* case/values.c: an entry's text to its value in a section's struct. */
-enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
-    SPHFSI_CHECKED;
+enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
+                    void *section) SPHFSI_CHECKED;
 
 /* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case
  * wins. */
@@ -169,13 +169,13 @@ struct table_kind {
     const char *what, *columns;
     bool from_rest;
 };
-enum err table_load(struct scene *s, struct scene_table *table, const struct table_kind *kind,
+enum err table_load(struct scene *scene, struct scene_table *table, const struct table_kind *kind,
                     const char *name, int line, const char *key, struct diag *d) SPHFSI_CHECKED;
 /* The row at or before a time, but not before the first nor the last one. */
 int table_row(const struct scene_table *table, double t);
 
 /* case/motion.c, case/gravity.c: their tables. */
-enum err motion_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
-enum err gravity_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+enum err motion_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
+enum err gravity_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
 #endif

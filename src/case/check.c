@@ -38,11 +38,11 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
 static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
                        double its)
 {
-    const struct param *const p = param_find(SECTION_fluid, key);
+    const struct param *const param = param_find(SECTION_fluid, key);
     char mine_text[SCENE_NAME], its_text[SCENE_NAME];
-    if (p->type == PARAM_CHOICE) {
-        param_choice_name(p, (int)mine, mine_text);
-        param_choice_name(p, (int)its, its_text);
+    if (param->type == PARAM_CHOICE) {
+        param_choice_name(param, (int)mine, mine_text);
+        param_choice_name(param, (int)its, its_text);
     } else {
         snprintf(mine_text, sizeof mine_text, "%g", mine);
         snprintf(its_text, sizeof its_text, "%g", its);
@@ -57,35 +57,35 @@ static enum err differ(struct reader *r, const struct scene_fluid *f, const char
 static enum err check_fluid(struct reader *r, const struct scene_fluid *f, double c0)
 {
     static const char own[] = " max_speed max_pressure particle_mass surface ";
-    const struct scene *const s = r->scene;
+    const struct scene *const scene = r->scene;
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const p = &param_table[k];
-        const bool number = p->type == PARAM_REAL || p->type == PARAM_CHOICE;
+        const struct param *const param = &param_table[k];
+        const bool number = param->type == PARAM_REAL || param->type == PARAM_CHOICE;
         char word[SCENE_NAME];
-        snprintf(word, sizeof word, " %s ", p->key);
-        if (p->section != SECTION_fluid || !number || strstr(own, word)) continue;
-        double value[2] = {c0, s->c0}; /* of sound_speed: that of Eq. 3 if it is not given */
-        for (int n = 0; n < 2 && strcmp(p->key, "sound_speed") != 0; n++) {
-            const char *const at = (const char *)(n ? &s->fluid[0] : f) + p->offset;
-            value[n] = p->type == PARAM_REAL ? *(const double *)(const void *)at
-                                             : *(const int *)(const void *)at;
+        snprintf(word, sizeof word, " %s ", param->key);
+        if (param->section != SECTION_fluid || !number || strstr(own, word)) continue;
+        double value[2] = {c0, scene->c0}; /* of sound_speed: that of Eq. 3 if it is not given */
+        for (int n = 0; n < 2 && strcmp(param->key, "sound_speed") != 0; n++) {
+            const char *const at = (const char *)(n ? &scene->fluid[0] : f) + param->offset;
+            value[n] = param->type == PARAM_REAL ? *(const double *)(const void *)at
+                                                 : *(const int *)(const void *)at;
         }
         if (fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))
-            TRY(case_go_on(r, differ(r, f, p->key, value[0], value[1])));
+            TRY(case_go_on(r, differ(r, f, param->key, value[0], value[1])));
     }
     return ERR_OK;
 }
 
 static enum err check_fluids(struct reader *r)
 {
-    struct scene *s = r->scene;
+    struct scene *scene = r->scene;
     double c0;
-    if (s->n_fluid == 0) return ERR_OK;
-    TRY(sound_speed(r, &s->fluid[0], &s->c0));
-    s->rho0 = s->fluid[0].density;
-    for (int k = 1; k < s->n_fluid; k++) {
-        const enum err err = sound_speed(r, &s->fluid[k], &c0);
-        TRY(case_go_on(r, err ? err : check_fluid(r, &s->fluid[k], c0)));
+    if (scene->n_fluid == 0) return ERR_OK;
+    TRY(sound_speed(r, &scene->fluid[0], &scene->c0));
+    scene->rho0 = scene->fluid[0].density;
+    for (int k = 1; k < scene->n_fluid; k++) {
+        const enum err err = sound_speed(r, &scene->fluid[k], &c0);
+        TRY(case_go_on(r, err ? err : check_fluid(r, &scene->fluid[k], c0)));
     }
     return ERR_OK;
 }
@@ -119,17 +119,17 @@ enum err case_no_section(struct reader *r, int line, const char *what, const cha
 /* The sections that name a motion. */
 static enum err check_moved(struct reader *r)
 {
-    const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_wall; k++)
-        if (case_sound(r, SECTION_wall, k) && *s->wall[k].motion &&
-            scene_find_motion(s, s->wall[k].motion) < 0)
+    const struct scene *scene = r->scene;
+    for (int k = 0; k < scene->n_wall; k++)
+        if (case_sound(r, SECTION_wall, k) && *scene->wall[k].motion &&
+            scene_find_motion(scene, scene->wall[k].motion) < 0)
             TRY(case_go_on(r, case_no_section(r, scene_line(r->scene, SECTION_wall, k, "motion"),
-                                              "motion", s->wall[k].motion, SECTION_motion,
+                                              "motion", scene->wall[k].motion, SECTION_motion,
                                               SECTION_motion)));
-    for (int k = 0; k < s->n_solid; k++) {
-        const struct scene_solid *b = &s->solid[k];
+    for (int k = 0; k < scene->n_solid; k++) {
+        const struct scene_solid *b = &scene->solid[k];
         if (!*b->clamp_motion || !case_sound(r, SECTION_solid, k)) continue;
-        if (scene_find_motion(s, b->clamp_motion) < 0)
+        if (scene_find_motion(scene, b->clamp_motion) < 0)
             TRY(case_go_on(r,
                            case_no_section(r,
                                            scene_line(r->scene, SECTION_solid, k, "clamp_motion"),
@@ -168,23 +168,23 @@ static enum err check_joint(struct reader *r, const struct scene_solid *a,
 /* A cell holds a limited number of particles. */
 static enum err check_spacing(struct reader *r, int solid)
 {
-    const struct scene *s = r->scene;
-    const double ratio = s->top.dp / scene_solid_dp(s, solid);
-    if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || s->n_fluid == 0)) return ERR_OK;
+    const struct scene *scene = r->scene;
+    const double ratio = scene->top.dp / scene_solid_dp(scene, solid);
+    if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || scene->n_fluid == 0)) return ERR_OK;
     return bad_line(
-        r, s->solid[solid].common.line,
+        r, scene->solid[solid].common.line,
         "[solid %s] dp = %g m must be between a third of the dp at the top, %g m, and that dp%s",
-        s->solid[solid].common.name, s->solid[solid].dp, s->top.dp,
-        s->n_fluid ? "" : "; without fluid it may be finer");
+        scene->solid[solid].common.name, scene->solid[solid].dp, scene->top.dp,
+        scene->n_fluid ? "" : "; without fluid it may be finer");
 }
 
 static enum err check_joined(struct reader *r, int solid)
 {
-    const struct scene *s = r->scene;
-    const struct scene_solid *const a = &s->solid[solid];
+    const struct scene *scene = r->scene;
+    const struct scene_solid *const a = &scene->solid[solid];
     TRY(check_spacing(r, solid));
     if (!*a->joined) return ERR_OK;
-    const int other = scene_find_solid(s, a->joined);
+    const int other = scene_find_solid(scene, a->joined);
     if (other < 0)
         return case_no_section(r, scene_line(r->scene, SECTION_solid, solid, "joined"), "joined",
                                a->joined, SECTION_solid, SECTION_solid);
@@ -192,7 +192,7 @@ static enum err check_joined(struct reader *r, int solid)
         return bad_line(r, a->common.line,
                         "[solid %s] joined = %s: a body cannot be joined to itself; name another",
                         a->common.name, a->joined);
-    return check_joint(r, a, &s->solid[other]);
+    return check_joint(r, a, &scene->solid[other]);
 }
 
 /* A larger gap contains fluid particles of its own. */
@@ -211,20 +211,20 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
 /* Two bodies, one of them a solid. */
 static enum err check_contact(struct reader *r, const struct scene_contact *c)
 {
-    const struct scene *s = r->scene;
+    const struct scene *scene = r->scene;
     char name[2][SCENE_TEXT];
-    if (s->n_solid == 0)
+    if (scene->n_solid == 0)
         return bad_line(r, c->common.line, "[contact %s] needs a [solid]", c->common.name);
     if (case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_solid)) TRY(check_gap(r, c));
     if (!*c->between) return ERR_OK;
-    const int line = scene_line(r->scene, SECTION_contact, (int)(c - s->contact), "between");
+    const int line = scene_line(r->scene, SECTION_contact, (int)(c - scene->contact), "between");
     if (!scene_pair(c->between, name))
         return bad_line(r, line, "between = %.100s: two names are expected, separated by a comma",
                         c->between);
     bool solid = false;
     for (int j = 0; j < 2; j++) {
-        solid |= scene_find_solid(s, name[j]) >= 0;
-        if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
+        solid |= scene_find_solid(scene, name[j]) >= 0;
+        if (scene_find_solid(scene, name[j]) < 0 && scene_find_wall(scene, name[j]) < 0)
             return case_no_section(r, line, "between", name[j], SECTION_solid, SECTION_wall);
     }
     if (!solid)
@@ -257,10 +257,11 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
 /* A reference is for a column: <probe>_<quantity>_<unit>. */
 static enum err check_reference(struct reader *r, const struct scene_reference *ref)
 {
-    const struct scene *s = r->scene;
+    const struct scene *scene = r->scene;
     const int line = ref->common.line;
     const bool formula = ref->formula.e[0] != NULL;
-    const int column = scene_line(r->scene, SECTION_reference, (int)(ref - s->reference), "probe");
+    const int column =
+        scene_line(r->scene, SECTION_reference, (int)(ref - scene->reference), "probe");
     if (!*ref->probe || (!*ref->file && !formula))
         return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
                         *ref->probe ? "file` or `formula" : "probe");
@@ -270,8 +271,8 @@ static enum err check_reference(struct reader *r, const struct scene_reference *
     if (!(ref->from < ref->until))
         return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
                         ref->common.name, ref->from, ref->until);
-    for (int p = 0; p < s->n_probe; p++) {
-        const char *name = s->probe[p].common.name;
+    for (int p = 0; p < scene->n_probe; p++) {
+        const char *name = scene->probe[p].common.name;
         const size_t length = strlen(name);
         if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
     }
@@ -303,16 +304,16 @@ static enum err check_gravity(struct reader *r)
 /* A [relax] section is enough to seek rest. Motions are at rest before t = 0. */
 static enum err check_relax(struct reader *r)
 {
-    struct scene *const s = r->scene;
-    struct scene_relax *const x = &s->relax;
-    if (x->common.line > 0 && !scene_given(s, SECTION_relax, 0, "tolerance"))
-        x->tolerance = s->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
-    for (int k = 0; x->tolerance > 0 && k < s->n_motion; k++)
-        if (s->motion[k].start < 0)
-            return bad_line(r, s->motion[k].common.line,
+    struct scene *const scene = r->scene;
+    struct scene_relax *const x = &scene->relax;
+    if (x->common.line > 0 && !scene_given(scene, SECTION_relax, 0, "tolerance"))
+        x->tolerance = scene->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
+    for (int k = 0; x->tolerance > 0 && k < scene->n_motion; k++)
+        if (scene->motion[k].start < 0)
+            return bad_line(r, scene->motion[k].common.line,
                             "[motion %s] start = %g s: with [relax] no motion may begin before "
                             "t = 0",
-                            s->motion[k].common.name, s->motion[k].start);
+                            scene->motion[k].common.name, scene->motion[k].start);
     return ERR_OK;
 }
 
@@ -330,36 +331,38 @@ static enum err check_solid_h(struct reader *r)
 /* What sections say of each other, for each that is valid itself. */
 static enum err check_sections(struct reader *r)
 {
-    const struct scene *const s = r->scene;
+    const struct scene *const scene = r->scene;
     const bool top = case_sound(r, SECTION_top, 0);
-    for (int k = 0; k < s->n_solid; k++)
+    for (int k = 0; k < scene->n_solid; k++)
         if (top && case_all_sound(r, SECTION_solid)) TRY(case_go_on(r, check_joined(r, k)));
     TRY(check_moved(r));
-    for (int k = 0; k < s->n_motion; k++)
+    for (int k = 0; k < scene->n_motion; k++)
         if (top && case_sound(r, SECTION_motion, k))
-            TRY(case_go_on(r, case_check_motion(r, &s->motion[k])));
+            TRY(case_go_on(r, case_check_motion(r, &scene->motion[k])));
     if (top && case_all_sound(r, SECTION_inflow) && case_all_sound(r, SECTION_outflow) &&
         case_all_sound(r, SECTION_fluid))
         TRY(case_go_on(r, case_check_open(r)));
     TRY(case_check_probes(r));
     if (case_sound(r, SECTION_output, 0)) TRY(case_go_on(r, case_check_output(r)));
-    for (int k = 0; k < s->n_contact; k++)
-        if (case_sound(r, SECTION_contact, k)) TRY(case_go_on(r, check_contact(r, &s->contact[k])));
-    for (int k = 0; k < s->n_load; k++)
-        if (case_sound(r, SECTION_load, k)) TRY(case_go_on(r, check_load(r, &s->load[k])));
-    for (int k = 0; k < s->n_reference; k++)
+    for (int k = 0; k < scene->n_contact; k++)
+        if (case_sound(r, SECTION_contact, k))
+            TRY(case_go_on(r, check_contact(r, &scene->contact[k])));
+    for (int k = 0; k < scene->n_load; k++)
+        if (case_sound(r, SECTION_load, k)) TRY(case_go_on(r, check_load(r, &scene->load[k])));
+    for (int k = 0; k < scene->n_reference; k++)
         if (case_sound(r, SECTION_reference, k))
-            TRY(case_go_on(r, check_reference(r, &s->reference[k])));
+            TRY(case_go_on(r, check_reference(r, &scene->reference[k])));
     return ERR_OK;
 }
 
 enum err case_check(struct reader *r)
 {
-    struct scene *const s = r->scene;
+    struct scene *const scene = r->scene;
     const bool valid = r->n_problems == 0, numerics = case_sound(r, SECTION_numerics, 0);
-    if (s->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
-        s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
-    if (valid && s->n_fluid == 0 && s->n_solid == 0)
+    if (scene->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
+        scene->numerics.cfl =
+            scene->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
+    if (valid && scene->n_fluid == 0 && scene->n_solid == 0)
         return bad_line(r, 1,
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");

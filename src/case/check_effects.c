@@ -45,18 +45,18 @@ static const struct owned {
 };
 
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
-static int line_of(const struct scene *s, const struct effect_caller *by)
+static int line_of(const struct scene *scene, const struct effect_caller *by)
 {
-    const struct scene_section_common *const section = section_at(s, by->section, by->index);
-    const struct scene_given *const given = scene_given(s, by->section, by->index, by->key);
+    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
+    const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
     return given ? given->line : section->line > 0 ? section->line : 1;
 }
 
 /* "[fluid water] shifting", "integrator". */
-static void name_of(const struct scene *s, const struct effect_caller *by, char name[NAME_TEXT])
+static void name_of(const struct scene *scene, const struct effect_caller *by, char name[NAME_TEXT])
 {
     const struct section_info *const info = &section_table[by->section];
-    const struct scene_section_common *const section = section_at(s, by->section, by->index);
+    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
     if (by->section == SECTION_top)
         snprintf(name, NAME_TEXT, "`%s`", by->key);
     else
@@ -66,47 +66,47 @@ static void name_of(const struct scene *s, const struct effect_caller *by, char 
 
 static enum err check_rule(struct reader *r, const struct rule *rule)
 {
-    const struct scene *const s = r->scene;
+    const struct scene *const scene = r->scene;
     struct effect_caller by, other;
-    if (!effect_called(s, rule->effect, &by)) return ERR_OK;
-    if (effect_called(s, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
+    if (!effect_called(scene, rule->effect, &by)) return ERR_OK;
+    if (effect_called(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
     char text[NAME_TEXT], its[NAME_TEXT];
-    name_of(s, &by, text);
+    name_of(scene, &by, text);
     const char *const name = effect_table[rule->effect].name;
     if (rule->verb == NEEDS)
-        return bad_line(r, line_of(s, &by), "%s enables the effect %s, which needs %s (%s): %s",
+        return bad_line(r, line_of(scene, &by), "%s enables the effect %s, which needs %s (%s): %s",
                         text, name, effect_table[rule->other].name, effect_table[rule->other].key,
                         rule->reason);
-    name_of(s, &other, its);
-    return bad_line(r, line_of(s, &by),
+    name_of(scene, &other, its);
+    return bad_line(r, line_of(scene, &by),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
-                    text, name, effect_table[rule->other].name, its, line_of(s, &other),
+                    text, name, effect_table[rule->other].name, its, line_of(scene, &other),
                     rule->reason);
 }
 
 /* Whether a section has the value that the scheme gives a key. */
-static bool set_by_scheme(const struct scene *s, const struct param *p, const void *section)
+static bool set_by_scheme(const struct scene *scene, const struct param *param, const void *section)
 {
     double value;
-    const void *const at = (const char *)section + p->offset;
-    if (!scene_scheme_sets(s, p->section, p->key, &value)) return false;
-    return p->type == PARAM_CHOICE ? *(const int *)at == (int)value
-                                   : p->type == PARAM_REAL && *(const double *)at == value;
+    const void *const at = (const char *)section + param->offset;
+    if (!scene_scheme_sets(scene, param->section, param->key, &value)) return false;
+    return param->type == PARAM_CHOICE ? *(const int *)at == (int)value
+                                       : param->type == PARAM_REAL && *(const double *)at == value;
 }
 
 static enum err check_owned(struct reader *r, const struct owned *row)
 {
-    const struct scene *const s = r->scene;
-    const struct param *const p = param_find(row->section, row->key);
+    const struct scene *const scene = r->scene;
+    const struct param *const param = param_find(row->section, row->key);
     struct effect_caller by;
-    if (effect_called(s, row->effect, &by)) return ERR_OK;
-    for (int k = 0; k < section_count(s, row->section); k++) {
-        const void *const section = section_at(s, row->section, k);
-        if (param_is_default(p, section) || set_by_scheme(s, p, section)) continue;
+    if (effect_called(scene, row->effect, &by)) return ERR_OK;
+    for (int k = 0; k < section_count(scene, row->section); k++) {
+        const void *const section = section_at(scene, row->section, k);
+        if (param_is_default(param, section) || set_by_scheme(scene, param, section)) continue;
         char text[NAME_TEXT];
         by = (struct effect_caller){row->section, k, row->key};
-        name_of(s, &by, text);
-        TRY(case_go_on(r, bad_line(r, line_of(s, &by),
+        name_of(scene, &by, text);
+        TRY(case_go_on(r, bad_line(r, line_of(scene, &by),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
                                    text, effect_table[row->effect].name,
                                    effect_table[row->effect].name, effect_table[row->effect].key)));

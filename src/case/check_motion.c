@@ -30,8 +30,8 @@ static enum err check_motion_keys(struct reader *r, const struct scene_motion *m
     };
 #undef KIND
     for (size_t k = 0; k < COUNT_OF(owned); k++) {
-        const struct param *const p = param_find(SECTION_motion, owned[k].key);
-        if (owned[k].of & (1u << m->kind) || param_is_default(p, m)) continue;
+        const struct param *const param = param_find(SECTION_motion, owned[k].key);
+        if (owned[k].of & (1u << m->kind) || param_is_default(param, m)) continue;
         char name[SCENE_NAME];
         param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
         const int index = (int)(m - r->scene->motion);

@@ -92,18 +92,18 @@ struct effect_caller {
 };
 
 /* Whether the scene activates an effect, and where it does first. */
-bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by);
+bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *by);
 
 /* "line 12: [wall bed] slip", or "--set: ...". */
 enum { EFFECT_CALLER_TEXT = 300 };
-void effect_caller_text(const struct scene *s, const struct effect_caller *by,
+void effect_caller_text(const struct scene *scene, const struct effect_caller *by,
                         char text[EFFECT_CALLER_TEXT]);
 
 /* The name of an effect that a scene needs and this build excludes, or NULL. */
-const char *effect_left_out(const struct scene *s);
+const char *effect_left_out(const struct scene *scene);
 
 /* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
-effect_set effects_of_scene(const struct scene *s);
+effect_set effects_of_scene(const struct scene *scene);
 
 #define FX_ALWAYS (~(effect_set)0)
 

@@ -44,15 +44,15 @@ static double way_between(const struct scene_motion *m, int c, double from, doub
 
 /* Rows of the way at equal times until the end of the case, so that it is a function of time
  * alone. */
-static enum err load_way(struct scene *s, const struct scene_motion *m, struct scene_table *table,
-                         struct diag *d)
+static enum err load_way(struct scene *scene, const struct scene_motion *m,
+                         struct scene_table *table, struct diag *d)
 {
-    const double until_end = min2(s->top.end_time, m->stop) - m->start;
-    const double length = until_end > 0 ? until_end : s->top.end_time;
+    const double until_end = min2(scene->top.end_time, m->stop) - m->start;
+    const double length = until_end > 0 ? until_end : scene->top.end_time;
     const int n = WAY_PIECES + 1;
-    table->t = arena_alloc(&s->arena, (size_t)n, sizeof *table->t, "motions", d);
-    table->x = arena_alloc(&s->arena, (size_t)n, sizeof *table->x, "motions", d);
-    table->y = arena_alloc(&s->arena, (size_t)n, sizeof *table->y, "motions", d);
+    table->t = arena_alloc(&scene->arena, (size_t)n, sizeof *table->t, "motions", d);
+    table->x = arena_alloc(&scene->arena, (size_t)n, sizeof *table->x, "motions", d);
+    table->y = arena_alloc(&scene->arena, (size_t)n, sizeof *table->y, "motions", d);
     if (!table->t || !table->x || !table->y) return ERR_MEMORY;
     table->n = n;
     for (int k = 1; k < n; k++) {
@@ -88,23 +88,23 @@ static struct motion_state velocity_at(const struct scene_motion *motion,
     return m;
 }
 
-enum err motion_load(struct scene *s, struct diag *d)
+enum err motion_load(struct scene *scene, struct diag *d)
 {
     static const struct table_kind kind = {"a motion", "time (s), dx (m), dy (m)", true};
-    s->motion_data =
-        arena_alloc(&s->arena, (size_t)s->n_motion, sizeof *s->motion_data, "motions", d);
-    if (!s->motion_data) return ERR_MEMORY;
+    scene->motion_data = arena_alloc(&scene->arena, (size_t)scene->n_motion,
+                                     sizeof *scene->motion_data, "motions", d);
+    if (!scene->motion_data) return ERR_MEMORY;
     enum err bad = ERR_OK;
-    for (int k = 0; k < s->n_motion; k++) {
-        const struct scene_motion *m = &s->motion[k];
-        struct scene_table *const table = &s->motion_data[k];
+    for (int k = 0; k < scene->n_motion; k++) {
+        const struct scene_motion *m = &scene->motion[k];
+        struct scene_table *const table = &scene->motion_data[k];
         const struct scene_expr *const v = &m->velocity_in_time;
-        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_way(s, m, table, d));
+        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_way(scene, m, table, d));
         const bool tabled = m->kind == MOTION_TABLE || (m->kind == MOTION_ROTATION && *m->file);
         if (!tabled) continue;
         char name[2 * SCENE_NAME];
         snprintf(name, sizeof name, "[motion %s] file", m->common.name);
-        const enum err e = table_load(s, table, &kind, m->file, m->common.line, name, d);
+        const enum err e = table_load(scene, table, &kind, m->file, m->common.line, name, d);
         if (e != ERR_OK && e != ERR_INPUT) return e;
         if (e) bad = e;
         if (e) continue;
@@ -238,21 +238,22 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
     return p;
 }
 
-static struct motion_state prescribed_at(const struct scene *s, int motion_index, double time)
+static struct motion_state prescribed_at(const struct scene *scene, int motion_index, double time)
 {
     struct motion_state m = {0};
-    if (motion_index < 0 || motion_index >= s->n_motion) return m;
-    const struct motion_hook *const hook = s->motion_hook ? &s->motion_hook[motion_index] : NULL;
+    if (motion_index < 0 || motion_index >= scene->n_motion) return m;
+    const struct motion_hook *const hook =
+        scene->motion_hook ? &scene->motion_hook[motion_index] : NULL;
     if (hook && hook->at) {
         if (time < 0) return m; /* while rest is sought (T-78) */
         hook->at(hook->context, time, m.d, m.v, m.a);
         return m;
     }
-    const struct scene_motion *motion = &s->motion[motion_index];
+    const struct scene_motion *motion = &scene->motion[motion_index];
     if (time < motion->start) return m;
     const bool over = time >= motion->stop;
     const double end = over ? motion->stop : time;
-    m = moving_at(motion, &s->motion_data[motion_index], end - motion->start);
+    m = moving_at(motion, &scene->motion_data[motion_index], end - motion->start);
     if (!over) return m;
     memset(m.v, 0, sizeof m.v);
     memset(m.a, 0, sizeof m.a);
@@ -260,9 +261,9 @@ static struct motion_state prescribed_at(const struct scene *s, int motion_index
     return m;
 }
 
-struct motion_state motion_at(const struct scene *s, int motion_index, double time)
+struct motion_state motion_at(const struct scene *scene, int motion_index, double time)
 {
-    struct motion_state m = prescribed_at(s, motion_index, time);
+    struct motion_state m = prescribed_at(scene, motion_index, time);
     m.turn[0] = elementary_cos(m.angle);
     m.turn[1] = elementary_sin(m.angle);
     return m;

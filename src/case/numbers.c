@@ -94,8 +94,8 @@ enum err case_collect_constants(struct reader *r)
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *e = &r->entries[k];
         if (r->sections[e->section].id != SECTION_top) continue;
-        const struct param *p = param_find(SECTION_top, e->key);
-        bool known = !p || p->type != PARAM_REAL;
+        const struct param *param = param_find(SECTION_top, e->key);
+        bool known = !param || param->type != PARAM_REAL;
         for (int c = 0; c < r->n_constants; c++)
             known |= strcmp(r->constants[c].entry->key, e->key) == 0;
         if (!known) r->constants[r->n_constants++] = (struct constant){.entry = e};
@@ -126,10 +126,10 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
     r->depth--;
     c->state = good ? CONSTANT_DONE : CONSTANT_TEXT;
     if (good) {
-        const struct param *p = param_find(SECTION_top, name);
-        if (p && c->q.dim.kind == DIM_PLAIN && dim_fits(&c->q.dim, p->unit)) {
+        const struct param *param = param_find(SECTION_top, name);
+        if (param && c->q.dim.kind == DIM_PLAIN && dim_fits(&c->q.dim, param->unit)) {
             /* `dp = 0.001` is a length in all uses of dp. */
-            struct slice unit = slice_of(p->unit);
+            struct slice unit = slice_of(param->unit);
             struct quantity one = {1, {DIM_KNOWN, 0, 0, 0}};
             if (unit_read(&unit, &one, inner)) c->q.dim = one.dim;
         }
@@ -227,10 +227,10 @@ enum err case_bad_expression(struct reader *r, const struct entry *e, const char
 
 enum err case_all_constants(struct reader *r)
 {
-    struct scene *s = r->scene;
-    s->constant =
-        arena_alloc(&s->arena, (size_t)r->n_constants, sizeof *s->constant, "constants", r->diag);
-    if (!s->constant) return ERR_MEMORY;
+    struct scene *scene = r->scene;
+    scene->constant = arena_alloc(&scene->arena, (size_t)r->n_constants, sizeof *scene->constant,
+                                  "constants", r->diag);
+    if (!scene->constant) return ERR_MEMORY;
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *e = r->constants[k].entry;
         const struct expr_names names = {r, case_name, EXPR_FIXED};
@@ -243,7 +243,7 @@ enum err case_all_constants(struct reader *r)
             continue;
         }
         if (r->sections[e->section].id != SECTION_constants) continue;
-        struct scene_constant *c = &s->constant[s->n_constants++];
+        struct scene_constant *c = &scene->constant[scene->n_constants++];
         snprintf(c->name, sizeof c->name, "%s", e->key);
         c->value = q.value;
         c->plain = q.dim.kind == DIM_PLAIN;

@@ -5,15 +5,15 @@
 
 #include <math.h>
 
-int scene_open_count(const struct scene *s) { return s->n_inflow + s->n_outflow; }
+int scene_open_count(const struct scene *scene) { return scene->n_inflow + scene->n_outflow; }
 
-struct scene_open scene_open_at(const struct scene *s, int k)
+struct scene_open scene_open_at(const struct scene *scene, int k)
 {
-    const bool inflow = k < s->n_inflow;
+    const bool inflow = k < scene->n_inflow;
     const enum section_id id = inflow ? SECTION_inflow : SECTION_outflow;
-    const int index = inflow ? k : k - s->n_inflow;
+    const int index = inflow ? k : k - scene->n_inflow;
     _Static_assert(sizeof(struct scene_outflow) == sizeof(struct scene_inflow), "the same keys");
-    const struct scene_inflow *const from = section_at(s, id, index);
+    const struct scene_inflow *const from = section_at(scene, id, index);
     const double sense = from->side ? -1 : 1; /* of the fluid, to the left of the line */
     struct scene_open o = {
         .kind = from->speed.e[0] || from->velocity.e[0] ? OPEN_VELOCITY : OPEN_PRESSURE,
@@ -34,7 +34,7 @@ struct scene_open scene_open_at(const struct scene *s, int k)
     o.length = elementary_hypot(o.along[0], o.along[1]);
     /* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
      * buffer, and one of the buffer that has entered and is not yet relabelled. */
-    o.depth = ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
+    o.depth = ceil((2 * scene->numerics.h_over_dp + 1) * (1 - 1e-9)) * scene->top.dp;
     o.along[0] /= o.length;
     o.along[1] /= o.length;
     o.inward[0] = -sense * o.along[1];
@@ -184,9 +184,9 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
 
 enum err case_check_open(struct reader *r)
 {
-    const struct scene *const s = r->scene;
-    for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
-        const struct scene_open o = scene_open_at(s, k);
+    const struct scene *const scene = r->scene;
+    for (int k = 0; k < scene_open_count(scene) && scene->n_fluid > 0; k++) {
+        const struct scene_open o = scene_open_at(scene, k);
         TRY(check_given(r, &o));
         TRY(check_profile(r, &o));
     }

@@ -33,35 +33,35 @@ const struct param param_table[PARAM_COUNT] = {
 #include "case/params.def"
 };
 
-int section_count(const struct scene *s, enum section_id id)
+int section_count(const struct scene *scene, enum section_id id)
 {
     const struct section_info *info = &section_table[id];
     if (!info->named) return 1;
-    return *(const int *)(const void *)((const char *)s + info->count_offset);
+    return *(const int *)(const void *)((const char *)scene + info->count_offset);
 }
 
-const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+const struct scene_given *scene_given(const struct scene *scene, enum section_id section, int index,
                                       const char *key)
 {
-    for (int k = 0; k < s->n_given; k++)
-        if (s->given[k].section == (int)section && s->given[k].index == index &&
-            strcmp(s->given[k].key, key) == 0)
-            return &s->given[k];
+    for (int k = 0; k < scene->n_given; k++)
+        if (scene->given[k].section == (int)section && scene->given[k].index == index &&
+            strcmp(scene->given[k].key, key) == 0)
+            return &scene->given[k];
     return NULL;
 }
 
-int scene_line(const struct scene *s, enum section_id section, int index, const char *key)
+int scene_line(const struct scene *scene, enum section_id section, int index, const char *key)
 {
-    const struct scene_given *const given = scene_given(s, section, index, key);
-    const struct scene_section_common *const common = section_at(s, section, index);
+    const struct scene_given *const given = scene_given(scene, section, index, key);
+    const struct scene_section_common *const common = section_at(scene, section, index);
     if (given) return given->line;
     return common->line > 0 ? common->line : LINE_NONE;
 }
 
-void *section_at(const struct scene *s, enum section_id id, int index)
+void *section_at(const struct scene *scene, enum section_id id, int index)
 {
     const struct section_info *info = &section_table[id];
-    char *const place = (char *)(uintptr_t)s + info->offset;
+    char *const place = (char *)(uintptr_t)scene + info->offset;
     if (!info->named) return place;
     char *array;
     memcpy(&array, place, sizeof array);
@@ -71,8 +71,8 @@ void *section_at(const struct scene *s, enum section_id id, int index)
 const struct param *param_find(enum section_id section, const char *key)
 {
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *p = &param_table[k];
-        if (p->section == section && strcmp(p->key, key) == 0) return p;
+        const struct param *param = &param_table[k];
+        if (param->section == section && strcmp(param->key, key) == 0) return param;
     }
     return NULL;
 }
@@ -128,9 +128,9 @@ static bool is_called(const char *key, const char *word)
     return false;
 }
 
-bool param_may_be(const struct param *p, const char *word)
+bool param_may_be(const struct param *param, const char *word)
 {
-    return has_word(p->key, word) || is_called(p->key, word);
+    return has_word(param->key, word) || is_called(param->key, word);
 }
 
 bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT])
@@ -138,10 +138,10 @@ bool param_meant(enum section_id section, const char *word, char text[PARAM_MEAN
     text[0] = '\0';
     if (strlen(word) > SCENE_NAME) return false;
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const p = &param_table[k];
-        if (p->section != section || !param_may_be(p, word)) continue;
+        const struct param *const param = &param_table[k];
+        if (param->section != section || !param_may_be(param, word)) continue;
         const size_t used = strlen(text);
-        snprintf(text + used, PARAM_MEANT - used, "%s`%s`", used ? " or " : "", p->key);
+        snprintf(text + used, PARAM_MEANT - used, "%s`%s`", used ? " or " : "", param->key);
     }
     return text[0] != '\0';
 }
@@ -153,9 +153,9 @@ const struct param *param_called(const char *word)
     return NULL;
 }
 
-void param_choice_name(const struct param *p, int value, char name[SCENE_NAME])
+void param_choice_name(const struct param *param, int value, char name[SCENE_NAME])
 {
-    const char *start = p->choices;
+    const char *start = param->choices;
     for (int k = 0; k < value; k++) start = strchr(start, '|') + 1;
     const size_t length = strcspn(start, "|");
     memcpy(name, start, length);
@@ -191,30 +191,31 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
     *best = (struct nearest){candidate, distance};
 }
 
-const struct expr *param_in_time(const struct param *p, const void *section, int component)
+const struct expr *param_in_time(const struct param *param, const void *section, int component)
 {
-    if (p->type != PARAM_TIME_VECTOR) return NULL;
-    const struct scene_expr *const in_time = (const void *)((const char *)section + p->expr_offset);
+    if (param->type != PARAM_TIME_VECTOR) return NULL;
+    const struct scene_expr *const in_time =
+        (const void *)((const char *)section + param->expr_offset);
     return in_time->e[component];
 }
 
-bool param_is_default(const struct param *p, const void *section)
+bool param_is_default(const struct param *param, const void *section)
 {
-    const char *const value = (const char *)section + p->offset;
+    const char *const value = (const char *)section + param->offset;
     double number[2];
     int choice;
-    switch (p->type) {
+    switch (param->type) {
     case PARAM_REAL:
         memcpy(number, value, sizeof *number);
-        return number[0] == p->number.value || isnan(number[0]);
+        return number[0] == param->number.value || isnan(number[0]);
     case PARAM_VECTOR:
     case PARAM_TIME_VECTOR:
         memcpy(number, value, sizeof number);
-        return !param_in_time(p, section, 0) && !param_in_time(p, section, 1) &&
-               number[0] == p->vector_default[0] && number[1] == p->vector_default[1];
+        return !param_in_time(param, section, 0) && !param_in_time(param, section, 1) &&
+               number[0] == param->vector_default[0] && number[1] == param->vector_default[1];
     case PARAM_INTEGER:
-    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number.value;
-    case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
+    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == param->number.value;
+    case PARAM_TEXT: return strcmp(value, param->text_default) == 0;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];

@@ -23,10 +23,10 @@ struct section_info {
 extern const struct section_info section_table[SECTION_COUNT];
 
 /* Line of a key given in a section, or NULL. */
-const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+const struct scene_given *scene_given(const struct scene *scene, enum section_id section, int index,
                                       const char *key);
 /* The line of a key; without it, that of its section; LINE_NONE: neither is given. 0: by --set. */
-int scene_line(const struct scene *s, enum section_id section, int index, const char *key);
+int scene_line(const struct scene *scene, enum section_id section, int index, const char *key);
 
 enum param_type {
     PARAM_REAL,
@@ -75,8 +75,8 @@ enum {
 extern const struct param param_table[PARAM_COUNT];
 
 /* Number of sections of a kind in the scene; the index-th struct of them. */
-int section_count(const struct scene *s, enum section_id id);
-void *section_at(const struct scene *s, enum section_id id, int index);
+int section_count(const struct scene *scene, enum section_id id);
+void *section_at(const struct scene *scene, enum section_id id, int index);
 
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
@@ -88,24 +88,24 @@ bool param_meant(enum section_id section, const char *word, char text[PARAM_MEAN
 /* The first parameter of any section that other programs call by this word, or NULL. */
 const struct param *param_called(const char *word);
 /* Whether `word` is a part of a key or its usual name. */
-bool param_may_be(const struct param *p, const char *word);
+bool param_may_be(const struct param *param, const char *word);
 
 /* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
-const struct expr *param_in_time(const struct param *p, const void *section, int component);
+const struct expr *param_in_time(const struct param *param, const void *section, int component);
 
 /* Whether a section has the default value of a key. */
-bool param_is_default(const struct param *p, const void *section);
+bool param_is_default(const struct param *param, const void *section);
 
 /* Whether a scheme sets a key in a kind of scene, and its value. */
 bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
                  double *value);
 
 /* Whether the scene's `scheme` sets a key, and its value. */
-bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
+bool scene_scheme_sets(const struct scene *scene, enum section_id section, const char *key,
                        double *value);
 
 /* The name of a CHOICE's value, copied into `name`. */
-void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
+void param_choice_name(const struct param *param, int value, char name[SCENE_NAME]);
 
 /* The candidate nearest to a misspelt word, or NULL if none is near. To be called for each
  * candidate with the same `best`, which starts as {0}. */

@@ -6,9 +6,11 @@
 
 enum { ANY = -1 };
 
-static enum scene_kind kind_of_scene(const struct scene *s)
+static enum scene_kind kind_of_scene(const struct scene *scene)
 {
-    return s->n_fluid && s->n_solid ? SCENE_COUPLED : s->n_fluid ? SCENE_FLUID : SCENE_SOLID;
+    return scene->n_fluid && scene->n_solid ? SCENE_COUPLED
+           : scene->n_fluid                 ? SCENE_FLUID
+                                            : SCENE_SOLID;
 }
 
 /* A value that replaces a default. A key that the case gives itself wins; where both set a key,
@@ -36,9 +38,10 @@ static const struct preset {
     {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "wall_damping", 1},
     {true, SCENE_SOLID, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
     {true, SCENE_COUPLED, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
-    /* accuracy: `standard` has no rows. With fluid no setting of the study was reliably more accurate:
-     * there `fine` means a smaller dp. What each row buys: src/app/data/evidence.csv, measured by the study of
-     * tools/report/accuracy.toml, where [preset] names the points that stand for these rows. */
+    /* accuracy: `standard` has no rows. With fluid no setting of the study was reliably more
+     * accurate: there `fine` means a smaller dp. What each row buys: src/app/data/evidence.csv,
+     * measured by the study of tools/report/accuracy.toml, where [preset] names the points that
+     * stand for these rows. */
     {false, SCENE_FLUID, ACCURACY_DRAFT, INTEGRATOR_LEAPFROG, SECTION_numerics, "cfl", 0.5},
     {false, SCENE_COUPLED, ACCURACY_DRAFT, ANY, SECTION_numerics, "sound_factor", 5},
     {false, SCENE_SOLID, ACCURACY_FINE, ANY, SECTION_numerics, "h_over_dp", 1.8},
@@ -62,26 +65,26 @@ bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id secti
     return false;
 }
 
-bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
+bool scene_scheme_sets(const struct scene *scene, enum section_id section, const char *key,
                        double *value)
 {
-    return scheme_sets((enum scheme)s->top.scheme, kind_of_scene(s), section, key, value);
+    return scheme_sets((enum scheme)scene->top.scheme, kind_of_scene(scene), section, key, value);
 }
 
 /* The value of a choice at the top of the file, before it is read; the reader reports an invalid
  * word. */
 static int top_choice(const struct reader *r, const char *key)
 {
-    const struct param *const p = param_find(SECTION_top, key);
-    int found = (int)p->number.value;
+    const struct param *const param = param_find(SECTION_top, key);
+    int found = (int)param->number.value;
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = &r->entries[k];
         char name[SCENE_NAME];
         if (r->sections[e->section].id != SECTION_top || strcmp(e->key, key) != 0) continue;
         int last = 0;
-        for (const char *at = p->choices; (at = strchr(at, '|')) != NULL; at++) last++;
+        for (const char *at = param->choices; (at = strchr(at, '|')) != NULL; at++) last++;
         for (int c = 0; c <= last; c++) {
-            param_choice_name(p, c, name);
+            param_choice_name(param, c, name);
             if (strcmp(e->value, name) == 0) found = c;
         }
     }
@@ -98,10 +101,10 @@ void case_apply_presets(struct reader *r)
         if (!preset_is_for(row, kind_of_scene(r->scene))) continue;
         if (row->choice != (row->of_scheme ? scheme : accuracy)) continue;
         if (row->integrator != ANY && row->integrator != integrator) continue;
-        const struct param *const p = param_find(row->section, row->key);
+        const struct param *const param = param_find(row->section, row->key);
         for (int i = 0; i < section_count(r->scene, row->section); i++) {
-            char *const place = (char *)section_at(r->scene, row->section, i) + p->offset;
-            if (p->type == PARAM_REAL)
+            char *const place = (char *)section_at(r->scene, row->section, i) + param->offset;
+            if (param->type == PARAM_REAL)
                 memcpy(place, &row->value, sizeof row->value);
             else
                 *(int *)(void *)place = (int)row->value;

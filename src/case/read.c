@@ -15,16 +15,16 @@
 static void set_defaults(void *section, enum section_id id)
 {
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *p = &param_table[k];
-        if (p->section != id) continue;
-        char *const place = (char *)section + p->offset;
-        switch (p->type) {
-        case PARAM_REAL: memcpy(place, &p->number.value, sizeof(double)); break;
+        const struct param *param = &param_table[k];
+        if (param->section != id) continue;
+        char *const place = (char *)section + param->offset;
+        switch (param->type) {
+        case PARAM_REAL: memcpy(place, &param->number.value, sizeof(double)); break;
         case PARAM_VECTOR:
-        case PARAM_TIME_VECTOR: memcpy(place, p->vector_default, 2 * sizeof(double)); break;
+        case PARAM_TIME_VECTOR: memcpy(place, param->vector_default, 2 * sizeof(double)); break;
         case PARAM_INTEGER:
-        case PARAM_CHOICE: *(int *)(void *)place = (int)p->number.value; break;
-        case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
+        case PARAM_CHOICE: *(int *)(void *)place = (int)param->number.value; break;
+        case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", param->text_default); break;
         case PARAM_FIELD_EXPR:
         case PARAM_TIME_EXPR:
         case PARAM_FLOW_EXPR:
@@ -36,7 +36,7 @@ static void set_defaults(void *section, enum section_id id)
 
 static enum err allocate_sections(struct reader *r)
 {
-    struct scene *s = r->scene;
+    struct scene *scene = r->scene;
     int count[SECTION_COUNT] = {0};
     for (int k = 0; k < r->n_sections; k++)
         if (r->sections[k].id < SECTION_COUNT) count[r->sections[k].id]++;
@@ -44,19 +44,20 @@ static enum err allocate_sections(struct reader *r)
         const struct section_info *info = &section_table[id];
         if (info->named) {
             void *array =
-                arena_alloc(&s->arena, (size_t)count[id], info->size, "sections", r->diag);
+                arena_alloc(&scene->arena, (size_t)count[id], info->size, "sections", r->diag);
             if (!array) return ERR_MEMORY;
-            memcpy((char *)s + info->offset, &array, sizeof array);
-            memcpy((char *)s + info->count_offset, &count[id], sizeof count[id]);
+            memcpy((char *)scene + info->offset, &array, sizeof array);
+            memcpy((char *)scene + info->count_offset, &count[id], sizeof count[id]);
         }
-        for (int k = 0; k < section_count(s, (enum section_id)id); k++)
-            set_defaults(section_at(s, (enum section_id)id, k), (enum section_id)id);
+        for (int k = 0; k < section_count(scene, (enum section_id)id); k++)
+            set_defaults(section_at(scene, (enum section_id)id, k), (enum section_id)id);
     }
-    set_defaults(&s->contact_default, SECTION_contact);
+    set_defaults(&scene->contact_default, SECTION_contact);
     for (int k = 0; k < r->n_sections; k++) {
         const struct case_section *from = &r->sections[k];
         if (from->id == SECTION_constants) continue;
-        struct scene_section_common *common = section_at(s, (enum section_id)from->id, from->index);
+        struct scene_section_common *common =
+            section_at(scene, (enum section_id)from->id, from->index);
         snprintf(common->name, sizeof common->name, "%s", from->name);
         common->line = from->line;
     }
@@ -174,14 +175,14 @@ static enum err read_section(struct reader *r, int section)
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *e = &r->entries[k];
         if (e->section != section) continue;
-        const struct param *p = param_find((enum section_id)cs->id, e->key);
-        if (!p) {
+        const struct param *param = param_find((enum section_id)cs->id, e->key);
+        if (!param) {
             r->sections[section].incomplete = r->sections[section].invalid = true;
             TRY(case_go_on(r, unknown_key(r, e, cs->id)));
             continue;
         }
-        const struct entry **before = &given[p - param_table];
-        if (*before && p->type != PARAM_SHAPES) {
+        const struct entry **before = &given[param - param_table];
+        if (*before && param->type != PARAM_SHAPES) {
             r->sections[section].invalid = true;
             TRY(case_go_on(r,
                            bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
@@ -190,9 +191,9 @@ static enum err read_section(struct reader *r, int section)
         }
         *before = e;
         r->scene->given[r->scene->n_given++] =
-            (struct scene_given){cs->id, cs->index, p->key, e->line};
+            (struct scene_given){cs->id, cs->index, param->key, e->line};
         if (inherited && strcmp(e->key, "like") == 0) continue;
-        const enum err read = case_value(r, e, p, target);
+        const enum err read = case_value(r, e, param, target);
         if (read) r->sections[section].invalid = true;
         TRY(case_go_on(r, read));
     }
@@ -201,15 +202,15 @@ static enum err read_section(struct reader *r, int section)
     return ERR_OK;
 }
 
-static enum err lacks(struct reader *r, const struct case_section *cs, const struct param *p)
+static enum err lacks(struct reader *r, const struct case_section *cs, const struct param *param)
 {
     char unit[40] = "";
-    if (strcmp(p->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", p->unit);
+    if (strcmp(param->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", param->unit);
     if (cs->id == SECTION_top)
-        return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", p->key, p->meaning,
-                        unit);
+        return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", param->key,
+                        param->meaning, unit);
     return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word, cs->name,
-                    p->key, p->meaning, unit);
+                    param->key, param->meaning, unit);
 }
 
 /* Required values that were not given are still NaN. */
@@ -220,16 +221,16 @@ static enum err check_needed(struct reader *r)
         if (cs->id == SECTION_constants) continue;
         const char *section = section_at(r->scene, (enum section_id)cs->id, cs->index);
         for (int j = 0; j < PARAM_COUNT; j++) {
-            const struct param *p = &param_table[j];
-            if ((int)p->section != cs->id || !p->number.needed) continue;
+            const struct param *param = &param_table[j];
+            if ((int)param->section != cs->id || !param->number.needed) continue;
             double value;
-            memcpy(&value, section + p->offset, sizeof value);
+            memcpy(&value, section + param->offset, sizeof value);
             /* A key with an invalid value, or an unknown name that may mean it, is not missing. */
             if (!isnan(value) || cs->incomplete ||
-                scene_given(r->scene, (enum section_id)cs->id, cs->index, p->key))
+                scene_given(r->scene, (enum section_id)cs->id, cs->index, param->key))
                 continue;
             r->sections[k].invalid = true;
-            TRY(case_go_on(r, lacks(r, cs, p)));
+            TRY(case_go_on(r, lacks(r, cs, param)));
         }
     }
     return ERR_OK;
@@ -265,23 +266,23 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
 
 /* --- from text, from a file --- */
 
-enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
+enum err scene_parse(struct scene *scene, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d)
 {
-    memset(s, 0, sizeof *s);
-    if (strlen(path) >= sizeof s->path)
+    memset(scene, 0, sizeof *scene);
+    if (strlen(path) >= sizeof scene->path)
         return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
-                         sizeof s->path - 1);
-    memcpy(s->path, path, strlen(path) + 1);
-    struct reader r = {.scene = s, .diag = d};
+                         sizeof scene->path - 1);
+    memcpy(scene->path, path, strlen(path) + 1);
+    struct reader r = {.scene = scene, .diag = d};
     enum err err = read_all(&r, text, n_sets, sets);
     if (err == ERR_INPUT) case_report(&r);
     arena_free(&r.temp);
-    if (err) scene_free(s);
+    if (err) scene_free(scene);
     return err;
 }
 
-enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
+enum err scene_read(struct scene *scene, const char *path, int n_sets, const char *const *sets,
                     struct diag *d)
 {
     struct stat info;
@@ -295,7 +296,7 @@ enum err scene_read(struct scene *s, const char *path, int n_sets, const char *c
                          CASE_MAX_BYTES);
     char *text;
     TRY(text_read(path, path, "a case file", &text, d));
-    const enum err err = scene_parse(s, text, path, n_sets, sets, d);
+    const enum err err = scene_parse(scene, text, path, n_sets, sets, d);
     free(text);
     return err;
 }

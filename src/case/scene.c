@@ -7,10 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
-void scene_free(struct scene *s)
+void scene_free(struct scene *scene)
 {
-    arena_free(&s->arena);
-    memset(s, 0, sizeof *s);
+    arena_free(&scene->arena);
+    memset(scene, 0, sizeof *scene);
 }
 
 /* The index of a named section, or -1. */
@@ -38,58 +38,59 @@ int scene_find_wall(const struct scene *scene, const char *name)
     return find_section(scene, SECTION_wall, name);
 }
 
-double scene_solid_h(const struct scene *s, int solid)
+double scene_solid_h(const struct scene *scene, int solid)
 {
-    const double own = s->numerics.solid_h_over_dp;
-    return (own > 0 ? own : s->numerics.h_over_dp) * scene_solid_dp(s, solid);
+    const double own = scene->numerics.solid_h_over_dp;
+    return (own > 0 ? own : scene->numerics.h_over_dp) * scene_solid_dp(scene, solid);
 }
 
-double scene_solid_dp(const struct scene *s, int solid)
+double scene_solid_dp(const struct scene *scene, int solid)
 {
-    if (s->solid_lattice) return s->solid_lattice[solid].dp;
-    return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
+    if (scene->solid_lattice) return scene->solid_lattice[solid].dp;
+    return scene->solid[solid].dp > 0 ? scene->solid[solid].dp : scene->top.dp;
 }
 
-bool scene_is_bonded(const struct scene *s, int solid)
+bool scene_is_bonded(const struct scene *scene, int solid)
 {
-    for (int k = 0; k < s->n_solid; k++) {
-        const char *const to = s->solid[k].joined;
-        if (to[0] && (k == solid || scene_find_solid(s, to) == solid)) return true;
+    for (int k = 0; k < scene->n_solid; k++) {
+        const char *const to = scene->solid[k].joined;
+        if (to[0] && (k == solid || scene_find_solid(scene, to) == solid)) return true;
     }
     return false;
 }
 
 /* Whether a section applies to two bodies, walls after solids; one without names applies to all. */
-static bool is_between(const struct scene *s, const struct scene_contact *c, int a, int b)
+static bool is_between(const struct scene *scene, const struct scene_contact *c, int a, int b)
 {
     char name[2][SCENE_TEXT];
     int number[2];
     if (!scene_pair(c->between, name)) return c->between[0] == '\0';
     for (int k = 0; k < 2; k++) {
-        const int solid = scene_find_solid(s, name[k]);
-        number[k] = solid >= 0 ? solid : s->n_solid + scene_find_wall(s, name[k]);
+        const int solid = scene_find_solid(scene, name[k]);
+        number[k] = solid >= 0 ? solid : scene->n_solid + scene_find_wall(scene, name[k]);
     }
     return (number[0] == a && number[1] == b) || (number[0] == b && number[1] == a);
 }
 
 /* Sections without names come first: named ones override them. */
-const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b)
+const struct scene_contact *scene_contact_of(const struct scene *scene, int a, int b)
 {
-    if (s->n_contact == 0 && s->domain.periodic != PERIODIC_NONE) return NULL;
-    const struct scene_contact *found = &s->contact_default;
+    if (scene->n_contact == 0 && scene->domain.periodic != PERIODIC_NONE) return NULL;
+    const struct scene_contact *found = &scene->contact_default;
     for (int named = 0; named < 2; named++)
-        for (int k = 0; k < s->n_contact; k++)
-            if ((s->contact[k].between[0] != '\0') == named && is_between(s, &s->contact[k], a, b))
-                found = &s->contact[k];
+        for (int k = 0; k < scene->n_contact; k++)
+            if ((scene->contact[k].between[0] != '\0') == named &&
+                is_between(scene, &scene->contact[k], a, b))
+                found = &scene->contact[k];
     return found->enabled ? found : NULL;
 }
 
-double scene_contact_gap(const struct scene *s, const struct scene_contact *c)
+double scene_contact_gap(const struct scene *scene, const struct scene_contact *c)
 {
-    const bool given =
-        c != &s->contact_default && scene_given(s, SECTION_contact, (int)(c - s->contact), "gap");
-    const bool layer = s->n_fluid > 0 && s->top.scheme == SCHEME_STANDARD;
-    return given || c->gap > 0 || !layer ? c->gap : s->top.dp;
+    const bool given = c != &scene->contact_default &&
+                       scene_given(scene, SECTION_contact, (int)(c - scene->contact), "gap");
+    const bool layer = scene->n_fluid > 0 && scene->top.scheme == SCHEME_STANDARD;
+    return given || c->gap > 0 || !layer ? c->gap : scene->top.dp;
 }
 
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
@@ -165,10 +166,10 @@ enum probe_target scene_probe_target(const struct scene_probe *probe)
     return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
 }
 
-bool scene_snapshot_has(const struct scene *s, const char *field)
+bool scene_snapshot_has(const struct scene *scene, const char *field)
 {
     const size_t length = strlen(field);
-    const char *word = s->output.snapshot_fields;
+    const char *word = scene->output.snapshot_fields;
     if (strcmp(word, "all") == 0) return true;
     for (size_t n; *(word += strspn(word, " \t,")); word += n) {
         n = strcspn(word, " \t,");
@@ -179,16 +180,16 @@ bool scene_snapshot_has(const struct scene *s, const char *field)
 
 /* --- places and files --- */
 
-void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT])
+void scene_location(const struct scene *scene, int line, char place[LOCATION_TEXT])
 {
     if (line == 0) {
         snprintf(place, LOCATION_TEXT, "--set");
         return;
     }
-    const size_t length = strlen(s->path), most = 270;
+    const size_t length = strlen(scene->path), most = 270;
     const bool cut = length > most;
     const int n = snprintf(place, LOCATION_TEXT, "%s%.270s", cut ? "..." : "",
-                           s->path + (cut ? length - most : 0));
+                           scene->path + (cut ? length - most : 0));
     if (line != LINE_NONE) snprintf(place + n, LOCATION_TEXT - (size_t)n, ":%d", line);
 }
 
@@ -214,10 +215,10 @@ enum err fail_at(struct diag *d, const struct scene *scene, int line, const char
     return diag_add(d, ERR_INPUT, "%s: %s", place, text);
 }
 
-bool scene_file(const struct scene *s, const char *name, char *path, size_t size)
+bool scene_file(const struct scene *scene, const char *name, char *path, size_t size)
 {
-    const char *slash = strrchr(s->path, '/');
-    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - s->path) + 1;
-    const int n = snprintf(path, size, "%.*s%s", folder, s->path, name);
+    const char *slash = strrchr(scene->path, '/');
+    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - scene->path) + 1;
+    const int n = snprintf(path, size, "%.*s%s", folder, scene->path, name);
     return n >= 0 && (size_t)n < size;
 }

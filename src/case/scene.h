@@ -246,17 +246,17 @@ struct scene {
  * arguments ("key=value" or "section.key=value"; a named section is section NAME: "solid
  * gate.young=1e6" or "gate.young=1e6"). After success the caller frees with scene_free; after a
  * failure there is nothing to free. */
-enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
+enum err scene_read(struct scene *scene, const char *path, int n_sets, const char *const *sets,
                     struct diag *d) SPHFSI_CHECKED;
 /* The same from text in memory; messages use `path`, and file names are relative to it. */
-enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
+enum err scene_parse(struct scene *scene, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d) SPHFSI_CHECKED;
-void scene_free(struct scene *s);
+void scene_free(struct scene *scene);
 
 /* Whether opposite sides of the domain along an axis are joined. */
-SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
+SPHFSI_INLINE bool scene_periodic(const struct scene *scene, int axis)
 {
-    return s->domain.periodic >> axis & 1;
+    return scene->domain.periodic >> axis & 1;
 }
 
 /* An [inflow] or [outflow]: the buffer lies behind the line, its rows a spacing apart. */
@@ -275,8 +275,8 @@ struct scene_open {
     double sense; /* 1 for an [inflow], -1 for an [outflow] */
 };
 /* The section number k, those of [inflow] first. */
-struct scene_open scene_open_at(const struct scene *s, int k);
-int scene_open_count(const struct scene *s);
+struct scene_open scene_open_at(const struct scene *scene, int k);
+int scene_open_count(const struct scene *scene);
 /* Distance of a point from the line on the side of the fluid, and its coordinate along the line,
  * m. */
 SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2], double *in,
@@ -299,7 +299,7 @@ double scene_expr_at_time(const struct expr *e, double x, double y, double t);
 
 /* Writes the effective case, with all values and defaults in SI units; parsing it again gives an
  * equal scene. */
-enum err scene_write(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
+enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
 /* Prescribed motion: displacement from the initial position, velocity and acceleration at a time;
  * and the angle about a centre with its first two derivatives. */
@@ -314,10 +314,10 @@ struct motion_hook { /* a function of a program with the library, used instead *
 };
 /* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given, plus the table of
  * top.gravity_file. top.gravity itself is the value at t = 0 without the table. */
-void scene_gravity_at(const struct scene *s, double t, double g[2]);
-bool scene_gravity_varies(const struct scene *s);
+void scene_gravity_at(const struct scene *scene, double t, double g[2]);
+bool scene_gravity_varies(const struct scene *scene);
 
-struct motion_state motion_at(const struct scene *s, int motion_index, double time);
+struct motion_state motion_at(const struct scene *scene, int motion_index, double time);
 
 /* Position, velocity and acceleration (x, v and a) of a point with a motion, initially at (X, Y).
  * Used for all prescribed motion: walls for the fluid and for contact, and clamps. */
@@ -332,29 +332,29 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
 #define CFL_LEAPFROG 0.4
 
 /* Index of a named section, or -1. */
-int scene_find_motion(const struct scene *s, const char *name);
-int scene_find_solid(const struct scene *s, const char *name);
+int scene_find_motion(const struct scene *scene, const char *name);
+int scene_find_solid(const struct scene *scene, const char *name);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
-double scene_solid_dp(const struct scene *s, int solid);
+double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */
-double scene_solid_h(const struct scene *s, int solid);
+double scene_solid_h(const struct scene *scene, int solid);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
-bool scene_is_bonded(const struct scene *s, int solid);
-int scene_find_wall(const struct scene *s, const char *name);
+bool scene_is_bonded(const struct scene *scene, int solid);
+int scene_find_wall(const struct scene *scene, const char *name);
 
 /* Whether the snapshots of a scene have a field of case/pointdata.def. */
-bool scene_snapshot_has(const struct scene *s, const char *field);
+bool scene_snapshot_has(const struct scene *scene, const char *field);
 
 /* Target of a probe; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 
 /* The contact section for two bodies, walls after solids, or for a body with itself; NULL: they do
  * not touch. */
-const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b);
+const struct scene_contact *scene_contact_of(const struct scene *scene, int a, int b);
 
 /* The gap that it keeps, m: unless given, one layer of fluid in a scene with fluid and the standard
  * scheme. */
-double scene_contact_gap(const struct scene *s, const struct scene_contact *c);
+double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 
 /* The k-th name of a list with commas between them, without blanks around it; false: there are
  * fewer. */
@@ -365,7 +365,7 @@ bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
 /* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. */
 enum { LOCATION_TEXT = 300, LINE_NONE = -1 };
-void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
+void scene_location(const struct scene *scene, int line, char place[LOCATION_TEXT]);
 /* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. For that of a key
  * see scene_line in case/params.h. */
 void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
@@ -373,6 +373,6 @@ void warn_at(struct diag *d, const struct scene *scene, int line, const char *fo
 enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
     SPHFSI_PRINTF(4, 5);
 /* A file name of the case file, relative to the working directory; false: too long. */
-bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
+bool scene_file(const struct scene *scene, const char *name, char *path, size_t size);
 
 #endif

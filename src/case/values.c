@@ -6,24 +6,25 @@
 #include <stdio.h>
 #include <string.h>
 
-static enum err check_range(struct reader *r, const struct entry *e, const struct param *p,
+static enum err check_range(struct reader *r, const struct entry *e, const struct param *param,
                             double value)
 {
-    const bool low = p->low.open ? value > p->low.value : value >= p->low.value;
-    const bool high = p->high.open ? value < p->high.value : value <= p->high.value;
+    const bool low = param->low.open ? value > param->low.value : value >= param->low.value;
+    const bool high = param->high.open ? value < param->high.value : value <= param->high.value;
     if (low && high) return ERR_OK;
-    const char *unit = p->unit && strcmp(p->unit, "1") != 0 ? p->unit : "";
+    const char *unit = param->unit && strcmp(param->unit, "1") != 0 ? param->unit : "";
     return bad_value(r, e, "out of range: it must be %s %g%s%s and %s %g%s%s",
-                     p->low.open ? "above" : "at least", p->low.value, *unit ? " " : "", unit,
-                     p->high.open ? "below" : "at most", p->high.value, *unit ? " " : "", unit);
+                     param->low.open ? "above" : "at least", param->low.value, *unit ? " " : "",
+                     unit, param->high.open ? "below" : "at most", param->high.value,
+                     *unit ? " " : "", unit);
 }
 
-static enum err read_integer(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_integer(struct reader *r, const struct entry *e, const struct param *param,
                              int *value)
 {
     double number = 0;
     TRY(case_number(r, e, slice_of(e->value), "1", &number));
-    TRY(check_range(r, e, p, number));
+    TRY(check_range(r, e, param, number));
     if (number != floor(number)) return bad_value(r, e, "a whole number is expected");
     *value = (int)number;
     return ERR_OK;
@@ -31,10 +32,10 @@ static enum err read_integer(struct reader *r, const struct entry *e, const stru
 
 enum { CHOICES_MOST = 32 };
 
-static enum err read_choice(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_choice(struct reader *r, const struct entry *e, const struct param *param,
                             int *value)
 {
-    struct slice rest = slice_of(p->choices), name;
+    struct slice rest = slice_of(param->choices), name;
     struct nearest near = {0};
     char names[CHOICES_MOST][SCENE_NAME];
     for (int k = 0; k < CHOICES_MOST && slice_next(&rest, '|', &name); k++) {
@@ -45,8 +46,9 @@ static enum err read_choice(struct reader *r, const struct entry *e, const struc
         }
         nearest_offer(&near, e->value, names[k]);
     }
-    if (near.name) return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, p->choices);
-    return bad_value(r, e, "unknown choice; known: %s", p->choices);
+    if (near.name)
+        return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, param->choices);
+    return bad_value(r, e, "unknown choice; known: %s", param->choices);
 }
 
 /* Texts are written to JSON, HDF5 and plots, which all need UTF-8. */
@@ -85,28 +87,29 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
     return ERR_OK;
 }
 
-static enum err check_pair(struct reader *r, const struct entry *e, const struct param *p, int n)
+static enum err check_pair(struct reader *r, const struct entry *e, const struct param *param,
+                           int n)
 {
     if (n == 2) return ERR_OK;
-    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s", p->key,
+    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s", param->key,
                      n == 1 ? "is" : "are", n, case_comma_hint(e->value));
 }
 
-static enum err read_vector(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_vector(struct reader *r, const struct entry *e, const struct param *param,
                             double value[2])
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
-    TRY(check_pair(r, e, p, n));
+    TRY(check_pair(r, e, param, n));
     for (int k = 0; k < 2 && slice_next(&rest, ',', &piece); k++) {
-        TRY(case_number(r, e, piece, p->unit, &value[k]));
+        TRY(case_number(r, e, piece, param->unit, &value[k]));
         if (!(fabs(value[k]) <= 1e15))
             return bad_value(r, e, "out of range: the magnitude must be 1e15 or less");
     }
     return ERR_OK;
 }
 
-static enum err read_numbers(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_numbers(struct reader *r, const struct entry *e, const struct param *param,
                              struct number_list *list)
 {
     struct slice rest = slice_of(e->value), piece = rest;
@@ -116,23 +119,23 @@ static enum err read_numbers(struct reader *r, const struct entry *e, const stru
     list->value = arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
     if (!list->value) return ERR_MEMORY;
     for (list->n = 0; slice_next(&rest, ',', &piece); list->n++)
-        TRY(case_number(r, e, piece, p->unit, &list->value[list->n]));
+        TRY(case_number(r, e, piece, param->unit, &list->value[list->n]));
     return ERR_OK;
 }
 
-static enum err read_field(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_field(struct reader *r, const struct entry *e, const struct param *param,
                            struct scene_expr *field)
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
-    if (p->type == PARAM_TIME_VECTOR) TRY(check_pair(r, e, p, n));
-    if (n != p->count)
+    if (param->type == PARAM_TIME_VECTOR) TRY(check_pair(r, e, param, n));
+    if (n != param->count)
         return bad_value(r, e, "%s expected, with commas between them; there %s %d",
-                         p->count == 1 ? "one expression is" : "two expressions are",
+                         param->count == 1 ? "one expression is" : "two expressions are",
                          n == 1 ? "is" : "are", n);
-    const enum expr_scope scope = p->type == PARAM_FIELD_EXPR  ? EXPR_IN_SPACE
-                                  : p->type == PARAM_FLOW_EXPR ? EXPR_IN_BOTH
-                                                               : EXPR_IN_TIME;
+    const enum expr_scope scope = param->type == PARAM_FIELD_EXPR  ? EXPR_IN_SPACE
+                                  : param->type == PARAM_FLOW_EXPR ? EXPR_IN_BOTH
+                                                                   : EXPR_IN_TIME;
     const struct expr_names names = {r, case_name, scope};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
@@ -142,18 +145,18 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
             expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
         if (err == ERR_INPUT) return case_bad_expression(r, e, why);
         if (err) return err;
-        TRY(case_check_dim(r, e, &dim, p->unit));
+        TRY(case_check_dim(r, e, &dim, param->unit));
     }
     return ERR_OK;
 }
 
 /* Numbers, or expressions if they depend on t. */
-static enum err read_time_vector(struct reader *r, const struct entry *e, const struct param *p,
+static enum err read_time_vector(struct reader *r, const struct entry *e, const struct param *param,
                                  void *section)
 {
-    double *const value = (double *)(void *)((char *)section + p->offset);
-    struct scene_expr *const in_time = (void *)((char *)section + p->expr_offset);
-    TRY(read_field(r, e, p, in_time));
+    double *const value = (double *)(void *)((char *)section + param->offset);
+    struct scene_expr *const in_time = (void *)((char *)section + param->expr_offset);
+    TRY(read_field(r, e, param, in_time));
     for (int k = 0; k < 2; k++) {
         value[k] = scene_expr_at(in_time->e[k], 0, 0);
         if (!(fabs(value[k]) <= 1e15))
@@ -165,23 +168,24 @@ static enum err read_time_vector(struct reader *r, const struct entry *e, const 
     return ERR_OK;
 }
 
-enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
+enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
+                    void *section)
 {
-    void *const place = (char *)section + p->offset;
-    switch (p->type) {
+    void *const place = (char *)section + param->offset;
+    switch (param->type) {
     case PARAM_REAL:
-        TRY(case_number(r, e, slice_of(e->value), p->unit, place));
-        return check_range(r, e, p, *(double *)place);
-    case PARAM_INTEGER: return read_integer(r, e, p, place);
-    case PARAM_CHOICE: return read_choice(r, e, p, place);
+        TRY(case_number(r, e, slice_of(e->value), param->unit, place));
+        return check_range(r, e, param, *(double *)place);
+    case PARAM_INTEGER: return read_integer(r, e, param, place);
+    case PARAM_CHOICE: return read_choice(r, e, param, place);
     case PARAM_TEXT: return read_text(r, e, place);
-    case PARAM_VECTOR: return read_vector(r, e, p, place);
-    case PARAM_TIME_VECTOR: return read_time_vector(r, e, p, section);
+    case PARAM_VECTOR: return read_vector(r, e, param, place);
+    case PARAM_TIME_VECTOR: return read_time_vector(r, e, param, section);
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: return read_field(r, e, p, place);
+    case PARAM_FLOW_EXPR: return read_field(r, e, param, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
     case PARAM_NUMBERS: break;
     }
-    return read_numbers(r, e, p, place);
+    return read_numbers(r, e, param, place);
 }

@@ -95,13 +95,13 @@ static bool real_directory(const char *path, char *folder, size_t size)
 }
 
 /* A file given relative to the case, as a path relative to the folder of the effective case. */
-static void relocate(const struct scene *s, const char *name, const char *path,
+static void relocate(const struct scene *scene, const char *name, const char *path,
                      char text[SCENE_TEXT])
 {
     char file[4096 + SCENE_TEXT], there[4096], here[4096], seen[SCENE_TEXT];
     const char *slash = strrchr(name, '/');
     snprintf(text, SCENE_TEXT, "%s", name);
-    if (!*name || name[0] == '/' || !scene_file(s, name, file, sizeof file)) return;
+    if (!*name || name[0] == '/' || !scene_file(scene, name, file, sizeof file)) return;
     if (!real_directory(file, there, sizeof there) || !real_directory(path, here, sizeof here))
         return;
     size_t common = 0;
@@ -117,35 +117,35 @@ static void relocate(const struct scene *s, const char *name, const char *path,
     if (end >= 0 && n + (size_t)end < sizeof seen) snprintf(text, SCENE_TEXT, "%s", seen);
 }
 
-static void write_param(FILE *out, const struct scene *s, const struct param *p,
+static void write_param(FILE *out, const struct scene *scene, const struct param *param,
                         const char *section, const char *path)
 {
-    const void *const value = section + p->offset;
+    const void *const value = section + param->offset;
     const double *const number = value;
     const struct number_list *const list = value;
     const struct scene_expr *const field = value;
     const struct shape_list *const shapes = value;
     char name[SCENE_NAME], text[SCENE_TEXT];
-    if (p->type == PARAM_REAL && isnan(*number)) return;
-    if (p->type == PARAM_NUMBERS && !list->n) return;
-    const bool expression =
-        p->type == PARAM_FIELD_EXPR || p->type == PARAM_TIME_EXPR || p->type == PARAM_FLOW_EXPR;
+    if (param->type == PARAM_REAL && isnan(*number)) return;
+    if (param->type == PARAM_NUMBERS && !list->n) return;
+    const bool expression = param->type == PARAM_FIELD_EXPR || param->type == PARAM_TIME_EXPR ||
+                            param->type == PARAM_FLOW_EXPR;
     if (expression && !field->e[0]) return;
-    if (p->type == PARAM_SHAPES) {
-        for (int k = 0; k < shapes->n; k++) write_shape(out, p->key, &shapes->item[k]);
+    if (param->type == PARAM_SHAPES) {
+        for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
         return;
     }
-    fprintf(out, "%s = ", p->key);
-    switch (p->type) {
-    case PARAM_REAL: write_number(out, *number, p->unit); break;
+    fprintf(out, "%s = ", param->key);
+    switch (param->type) {
+    case PARAM_REAL: write_number(out, *number, param->unit); break;
     case PARAM_INTEGER: fprintf(out, "%d", *(const int *)value); break;
     case PARAM_CHOICE:
-        param_choice_name(p, *(const int *)value, name);
+        param_choice_name(param, *(const int *)value, name);
         fprintf(out, "%s", name);
         break;
     case PARAM_TEXT:
-        if (strcmp(p->key, "file") == 0 || strcmp(p->key, "gravity_file") == 0)
-            relocate(s, value, path, text);
+        if (strcmp(param->key, "file") == 0 || strcmp(param->key, "gravity_file") == 0)
+            relocate(scene, value, path, text);
         else
             snprintf(text, sizeof text, "%s", (const char *)value);
         write_text(out, text);
@@ -153,19 +153,19 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
     case PARAM_VECTOR:
     case PARAM_TIME_VECTOR:
         for (int k = 0; k < 2; k++) {
-            const struct expr *const e = param_in_time(p, section, k);
+            const struct expr *const e = param_in_time(param, section, k);
             if (k) fprintf(out, ", ");
             if (e)
                 fputs(expr_source(e), out);
             else
-                write_number(out, number[k], p->unit);
+                write_number(out, number[k], param->unit);
         }
         break;
     case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR:
-        for (int k = 0; k < p->count; k++)
+        for (int k = 0; k < param->count; k++)
             fprintf(out, "%s%s", k ? ", " : "", expr_source(field->e[k]));
         break;
     case PARAM_SHAPES: break;
@@ -173,27 +173,27 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
     fprintf(out, "\n");
 }
 
-static void write_section(FILE *out, const struct scene *s, enum section_id id, int index,
+static void write_section(FILE *out, const struct scene *scene, enum section_id id, int index,
                           const char *path)
 {
-    const char *const section = section_at(s, id, index);
+    const char *const section = section_at(scene, id, index);
     const struct scene_section_common *common = (const void *)section;
     if (id != SECTION_top)
         fprintf(out, "\n[%s%s%s]\n", section_table[id].word, section_table[id].named ? " " : "",
                 common->name);
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *p = &param_table[k];
-        if (p->section != id || strcmp(p->key, "like") == 0) continue;
-        write_param(out, s, p, section, path);
+        const struct param *param = &param_table[k];
+        if (param->section != id || strcmp(param->key, "like") == 0) continue;
+        write_param(out, scene, param, section, path);
     }
 }
 
 /* Expressions in x and y keep their text, so their constants are written too. */
-static void write_constants(FILE *out, const struct scene *s)
+static void write_constants(FILE *out, const struct scene *scene)
 {
-    if (s->n_constants) fprintf(out, "\n[constants]\n");
-    for (int k = 0; k < s->n_constants; k++) {
-        const struct scene_constant *c = &s->constant[k];
+    if (scene->n_constants) fprintf(out, "\n[constants]\n");
+    for (int k = 0; k < scene->n_constants; k++) {
+        const struct scene_constant *c = &scene->constant[k];
         fprintf(out, "%s = ", c->name);
         write_real(out, c->value);
         const char *const symbol[] = {"kg", "m", "s"};
@@ -209,19 +209,20 @@ static void write_constants(FILE *out, const struct scene *s)
     }
 }
 
-enum err scene_write(const struct scene *s, const char *path, struct diag *d)
+enum err scene_write(const struct scene *scene, const char *path, struct diag *d)
 {
     FILE *out = fopen(path, "w");
     if (!out) return diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
     fprintf(out, "# The case in effect, every default written out, in SI units; sphfsi %s.\n%s\n",
             SPHFSI_VERSION,
-            s->off_lattice ? "# Bodies are off the lattice, so their sampled sizes depend on dp.\n"
-                           : "");
-    write_section(out, s, SECTION_top, 0, path);
-    write_constants(out, s);
+            scene->off_lattice
+                ? "# Bodies are off the lattice, so their sampled sizes depend on dp.\n"
+                : "");
+    write_section(out, scene, SECTION_top, 0, path);
+    write_constants(out, scene);
     for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
-        for (int k = 0; k < section_count(s, (enum section_id)id); k++)
-            write_section(out, s, (enum section_id)id, k, path);
+        for (int k = 0; k < section_count(scene, (enum section_id)id); k++)
+            write_section(out, scene, (enum section_id)id, k, path);
     const bool failed = ferror(out) != 0;
     if (fclose(out) != 0 || failed)
         return diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));

@@ -3,13 +3,13 @@
 
 enum err check_scene(struct scene *scene, struct diag *d)
 {
-    struct check c = {.scene = scene, .diag = d, .shapes = {.scene = scene, .diag = d}};
-    warn_of_values(&c);
-    enum err e = geometry_draw(&c.shapes);
-    if (!e) e = list_points(&c);
-    if (!e) e = warn_of_shapes(&c);
-    if (!e) e = warn_of_fluid(&c);
-    if (!e) e = warn_of_solids(&c);
-    arena_free(&c.shapes.temp);
+    struct check check = {.scene = scene, .diag = d, .shapes = {.scene = scene, .diag = d}};
+    warn_of_values(&check);
+    enum err e = geometry_draw(&check.shapes);
+    if (!e) e = list_points(&check);
+    if (!e) e = warn_of_shapes(&check);
+    if (!e) e = warn_of_fluid(&check);
+    if (!e) e = warn_of_solids(&check);
+    arena_free(&check.shapes.temp);
     return e;
 }

@@ -38,14 +38,14 @@ struct check {
     struct points points;
 };
 
-enum err list_points(struct check *c) SPHFSI_CHECKED;
+enum err list_points(struct check *check) SPHFSI_CHECKED;
 /* Whether a region of walls or solids covers a place as drawn. */
-bool is_drawn(const struct check *c, double x, double y);
+bool is_drawn(const struct check *check, double x, double y);
 /* The first point of these kinds within a distance of a place, through periodic sides too; -1:
  * none. */
-int64_t point_at(const struct check *c, const double at[2], double within, int kinds);
+int64_t point_at(const struct check *check, const double at[2], double within, int kinds);
 /* The point of these kinds that is next to point k in a direction, or -1. */
-int64_t point_beside(const struct check *c, int64_t k, const double toward[2], double within,
+int64_t point_beside(const struct check *check, int64_t k, const double toward[2], double within,
                      int kinds);
 /* Extent of a section's points along a vector times its length, without those of buffers; 0:
  * none. */
@@ -54,9 +54,9 @@ double extent_along(const struct scene *scene, enum kind kind, int section, cons
 double start_speed(const struct scene *scene, enum kind kind, int section,
                    const struct scene_expr *velocity);
 
-void warn_of_values(struct check *c);
-enum err warn_of_shapes(struct check *c) SPHFSI_CHECKED;
-enum err warn_of_fluid(struct check *c) SPHFSI_CHECKED;
-enum err warn_of_solids(struct check *c) SPHFSI_CHECKED;
+void warn_of_values(struct check *check);
+enum err warn_of_shapes(struct check *check) SPHFSI_CHECKED;
+enum err warn_of_fluid(struct check *check) SPHFSI_CHECKED;
+enum err warn_of_solids(struct check *check) SPHFSI_CHECKED;
 
 #endif

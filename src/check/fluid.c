@@ -15,10 +15,10 @@ static double dot(const double a[2], double x, double y) { return a[0] * x + a[1
 
 /* Fluid without a wall or body between it and the edge of the domain below falls out of the scene.
  * For each strip of width dp along gravity, `last` is how far down its walls and bodies reach. */
-static enum err warn_of_missing_floor(struct check *c)
+static enum err warn_of_missing_floor(struct check *check)
 {
-    const struct scene *const scene = c->scene;
-    const struct points *const p = &c->points;
+    const struct scene *const scene = check->scene;
+    const struct points *const p = &check->points;
     const double *const gravity = scene->top.gravity, dp = scene->top.dp;
     const double size = elementary_hypot(gravity[0], gravity[1]);
     if (size == 0 || scene->domain.periodic != PERIODIC_NONE)
@@ -32,7 +32,8 @@ static enum err warn_of_missing_floor(struct check *c)
     }
     low -= 1.5 * dp; /* one strip more on each side */
     const int64_t n = (int64_t)((high - low) / dp) + 3;
-    double *const last = arena_alloc(&c->shapes.temp, (size_t)n, sizeof *last, "check", c->diag);
+    double *const last =
+        arena_alloc(&check->shapes.temp, (size_t)n, sizeof *last, "check", check->diag);
     if (!last) return ERR_MEMORY;
     for (int64_t k = 0; k < n; k++) last[k] = -HUGE_VAL;
     long long falling = 0, all = 0;
@@ -48,7 +49,7 @@ static enum err warn_of_missing_floor(struct check *c)
             all += fluid;
         }
     if (falling > 0)
-        warn_at(c->diag, scene, scene->fluid[p->section[first]].common.line,
+        warn_at(check->diag, scene, scene->fluid[p->section[first]].common.line,
                 "%lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall or body "
                 "below them and will fall out of the domain; add a [wall] below them",
                 falling, all, p->x[first], p->y[first]);
@@ -59,10 +60,10 @@ static enum err warn_of_missing_floor(struct check *c)
 
 /* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank
  * may be shaken. The mean over the run is by the midpoint rule. */
-static void warn_of_upward_gravity(struct check *c, const struct scene_fluid *fluid)
+static void warn_of_upward_gravity(struct check *check, const struct scene_fluid *fluid)
 {
     enum { TIMES = 1000 };
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     double mean = scene->top.gravity[1], sum = 0, gravity[2];
     for (int n = 0; n < TIMES && scene_gravity_varies(scene); n++) {
         scene_gravity_at(scene, scene->top.end_time * (n + 0.5) / TIMES, gravity);
@@ -70,31 +71,31 @@ static void warn_of_upward_gravity(struct check *c, const struct scene_fluid *fl
         mean = sum / TIMES;
     }
     if (scene->top.gravity[1] > 0)
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "`surface` with upward gravity: the initial pressure decreases with depth, and "
                 "the water will be torn apart; for gravity that points down, use gravity = 0, "
                 "-9.81");
     else if (mean > 0)
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "`surface`, but gravity points upwards on average, by %.3g m/s^2 over the run: "
                 "the water will rise from its tank; gravity that points down has a negative "
                 "second component",
                 mean);
 }
 
-static void warn_of_low_surface(struct check *c, int f)
+static void warn_of_low_surface(struct check *check, int f)
 {
-    const struct scene_points *const p = &c->scene->points[KIND_FLUID];
-    const struct scene_fluid *const fluid = &c->scene->fluid[f];
+    const struct scene_points *const p = &check->scene->points[KIND_FLUID];
+    const struct scene_fluid *const fluid = &check->scene->fluid[f];
     int64_t above = 0;
     double top = -HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++) {
         if (p->body[k] != f || (p->open && p->open[k] > 0)) continue;
         above += p->y[k] > fluid->surface;
-        top = max2(top, p->y[k] + 0.5 * c->scene->top.dp);
+        top = max2(top, p->y[k] + 0.5 * check->scene->top.dp);
     }
     if (above > 0)
-        warn_at(c->diag, c->scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] reaches up to y = %.4g m, above its `surface = %.4g m`: %lld "
                 "particles begin with a pressure below zero; `surface` is the height of the free "
                 "surface",
@@ -103,9 +104,9 @@ static void warn_of_low_surface(struct check *c, int f)
 
 /* Fluid whose column of width dp ends more than one spacing below its `surface`, with nothing
  * above it. */
-static enum err warn_of_high_surface(struct check *c, int f)
+static enum err warn_of_high_surface(struct check *check, int f)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_points *const p = &scene->points[KIND_FLUID];
     const struct scene_fluid *const fluid = &scene->fluid[f];
     const double dp = scene->top.dp;
@@ -114,15 +115,16 @@ static enum err warn_of_high_surface(struct check *c, int f)
         if (p->body[k] == f) low = min2(low, p->x[k]), high = max2(high, p->x[k]);
     if (low > high || !(scene->top.gravity[1] < 0)) return ERR_OK;
     const int64_t n = (int64_t)((high - low) / dp) + 2;
-    double *const top = arena_alloc(&c->shapes.temp, (size_t)n, sizeof *top, "check", c->diag);
+    double *const top =
+        arena_alloc(&check->shapes.temp, (size_t)n, sizeof *top, "check", check->diag);
     if (!top) return ERR_MEMORY;
     for (int64_t m = 0; m < n; m++) top[m] = -HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++) {
         const int64_t m = (int64_t)((p->x[k] - low) / dp + 0.5);
         if (p->body[k] == f) top[m] = max2(top[m], p->y[k]);
     }
-    for (int64_t k = 0; k < c->points.n; k++) {
-        const double over = c->points.y[k], at = (c->points.x[k] - low) / dp + 0.5;
+    for (int64_t k = 0; k < check->points.n; k++) {
+        const double over = check->points.y[k], at = (check->points.x[k] - low) / dp + 0.5;
         if (at < -1 || at > (double)n) continue;
         for (int64_t m = (int64_t)floor(at - 0.25); m <= (int64_t)floor(at + 0.25); m++)
             if (m >= 0 && m < n && over > top[m] && over < top[m] + 1.6 * dp)
@@ -132,7 +134,7 @@ static enum err warn_of_high_surface(struct check *c, int f)
         if (top[m] > -HUGE_VAL && top[m] + 1.5 * dp < fluid->surface)
             lowest = min2(lowest, top[m] + 0.5 * dp);
     if (isfinite(lowest))
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "[fluid %s] has a free surface at y = %.4g m, below its `surface = %.4g m`: it "
                 "begins there with a pressure of %.3g Pa and will spout; `surface` is the height "
                 "of the free surface, and a [fluid] for each height has its own",
@@ -147,15 +149,15 @@ static enum err warn_of_high_surface(struct check *c, int f)
  * weakly compressible fluid stays within 1 % of its density (Monaghan 1994); its own weight
  * compresses it by g H/c0^2, unless gravity is along a periodic side, where it carries no
  * weight. */
-static void warn_of_density(struct check *c, int f)
+static void warn_of_density(struct check *check, int f)
 {
     enum {
         LIGHTEST_LIQUID = 100
     }; /* kg/m^3; liquid hydrogen has 71, all other liquids have more */
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_fluid *const fluid = &scene->fluid[f];
     if (fluid->density < LIGHTEST_LIQUID)
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "[fluid %s] has a density of %.4g kg/m^3, less than any liquid, so its "
                 "forces will be small; water has 1000 kg/m^3",
                 fluid->common.name, fluid->density);
@@ -163,19 +165,19 @@ static void warn_of_density(struct check *c, int f)
         if (scene_periodic(scene, axis) && scene->top.gravity[axis] != 0) return;
     const double fall = extent_along(scene, KIND_FLUID, f, scene->top.gravity);
     if (fall > 0.01 * square(scene->c0))
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "[fluid %s] is compressed by %.2g %% under its own weight, because its speed "
                 "of sound is only %.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
                 fluid->common.name, 100 * fall / square(scene->c0), scene->c0, sqrt(fall));
 }
 
 /* Whether a fluid stands on something: a wall, a body, other fluid or a buffer. */
-static bool stands(const struct check *c, int fluid, const double down[2])
+static bool stands(const struct check *check, int fluid, const double down[2])
 {
-    const struct points *const p = &c->points;
+    const struct points *const p = &check->points;
     for (int64_t k = 0; k < p->n; k++) {
         if (p->bit[k] != POINT_FLUID || p->section[k] != fluid) continue;
-        const int64_t below = point_beside(c, k, down, 0.7, POINT_ANY);
+        const int64_t below = point_beside(check, k, down, 0.7, POINT_ANY);
         if (below >= 0 && (p->bit[below] != POINT_FLUID || p->section[below] != fluid)) return true;
     }
     return false;
@@ -183,9 +185,9 @@ static bool stands(const struct check *c, int fluid, const double down[2])
 
 /* Water that begins without the pressure of its weight, or with that of a floor that it does not
  * have. */
-static void warn_of_weight(struct check *c, int fluid)
+static void warn_of_weight(struct check *check, int fluid)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_fluid *const f = &scene->fluid[fluid];
     double down[2]; /* without the part along periodic sides, in which gravity drives a flow */
     for (int axis = 0; axis < 2; axis++)
@@ -193,11 +195,11 @@ static void warn_of_weight(struct check *c, int fluid)
     const double size = elementary_hypot(down[0], down[1]);
     if (size == 0 || f->pressure.e[0]) return;
     for (int axis = 0; axis < 2; axis++) down[axis] /= size;
-    const bool held = stands(c, fluid, down);
+    const bool held = stands(check, fluid, down);
     const double depth = extent_along(scene, KIND_FLUID, fluid, down) + scene->top.dp;
     const double pressure = f->density * size * depth;
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
-        warn_at(c->diag, scene, f->common.line,
+        warn_at(check->diag, scene, f->common.line,
                 "[fluid %s] has a `surface`, but stands on nothing: it begins with up to "
                 "%.3g Pa at its lower end and will spout there; move it to the floor, or leave "
                 "out `surface`",
@@ -205,28 +207,28 @@ static void warn_of_weight(struct check *c, int fluid)
     const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
-        warn_at(c->diag, scene, f->common.line,
+        warn_at(check->diag, scene, f->common.line,
                 "[fluid %s] begins without the pressure of its weight, so it collapses onto "
                 "its floor and its pressure swings between 0 and twice its %.3g Pa; give it its %s",
                 f->common.name, pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
 }
 
 /* Fluid that faces a wall or body across a gap of one particle, not upwards. */
-static void warn_of_start_gap(struct check *c, int fluid)
+static void warn_of_start_gap(struct check *check, int fluid)
 {
     enum { FEW = 3 }; /* particles at a corner or a curved face */
     static const double sides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    const struct points *const p = &c->points;
-    const double dp = c->scene->top.dp;
+    const struct points *const p = &check->points;
+    const double dp = check->scene->top.dp;
     int64_t n = 0, first = -1, body = -1;
     for (int64_t k = 0; k < p->n; k++) {
         if (p->bit[k] != POINT_FLUID || p->section[k] != fluid) continue;
         for (int side = 0; side < 4; side++) {
             const double *const to = sides[side];
-            if (dot(to, c->scene->top.gravity[0], c->scene->top.gravity[1]) < 0) continue;
-            if (point_beside(c, k, to, 0.9, POINT_ANY) >= 0) continue;
+            if (dot(to, check->scene->top.gravity[0], check->scene->top.gravity[1]) < 0) continue;
+            if (point_beside(check, k, to, 0.9, POINT_ANY) >= 0) continue;
             const double after[2] = {p->x[k] + 2 * dp * to[0], p->y[k] + 2 * dp * to[1]};
-            const int64_t found = point_at(c, after, 0.7 * dp, POINT_ANY);
+            const int64_t found = point_at(check, after, 0.7 * dp, POINT_ANY);
             if (found < 0 || p->bit[found] != POINT_BODY) continue;
             if (n++ == 0) first = k, body = found;
         }
@@ -234,23 +236,24 @@ static void warn_of_start_gap(struct check *c, int fluid)
     if (n <= FEW) return;
     const int section = p->section[body];
     const bool wall = p->kind[body] == KIND_WALL;
-    warn_at(c->diag, c->scene, c->scene->fluid[fluid].common.line,
+    warn_at(check->diag, check->scene, check->scene->fluid[fluid].common.line,
             "[fluid %s] begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run "
             "against it; let their shapes touch, or leave a gap of 2 dp or more",
-            c->scene->fluid[fluid].common.name, dp, kind_names[p->kind[body]],
-            wall ? c->scene->wall[section].common.name : c->scene->solid[section].common.name,
+            check->scene->fluid[fluid].common.name, dp, kind_names[p->kind[body]],
+            wall ? check->scene->wall[section].common.name
+                 : check->scene->solid[section].common.name,
             p->x[first], p->y[first]);
 }
 
 /* --- speeds near that of sound --- */
 
-static void warn_of_start(struct check *c, int f)
+static void warn_of_start(struct check *check, int f)
 {
-    struct scene *const scene = c->scene;
+    struct scene *const scene = check->scene;
     const double speed = start_speed(scene, KIND_FLUID, f, &scene->fluid[f].velocity);
     scene->given_speed = max2(scene->given_speed, speed);
     if (speed > SPEED_WARNING * scene->c0)
-        warn_at(c->diag, scene, scene_line(scene, SECTION_fluid, f, "velocity"),
+        warn_at(check->diag, scene, scene_line(scene, SECTION_fluid, f, "velocity"),
                 "[fluid %s] begins with up to %.4g m/s, above %g of the speed of sound, %.4g "
                 "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
                 "= %.3g or more",
@@ -258,11 +261,11 @@ static void warn_of_start(struct check *c, int f)
 }
 
 /* The largest speed of the corners of the box around a wall or a body's clamps. */
-static void warn_of_motion(struct check *c, enum kind kind, int section,
+static void warn_of_motion(struct check *check, enum kind kind, int section,
                            const struct scene_section_common *common, const char *name)
 {
     enum { TIMES = 256 };
-    struct scene *const scene = c->scene;
+    struct scene *const scene = check->scene;
     const struct scene_points *const p = &scene->points[kind];
     const int motion = *name ? scene_find_motion(scene, name) : -1;
     struct box2 box = box2_empty();
@@ -284,7 +287,7 @@ static void warn_of_motion(struct check *c, enum kind kind, int section,
     }
     scene->given_speed = max2(scene->given_speed, largest);
     if (largest > SPEED_WARNING * scene->c0)
-        warn_at(c->diag, scene, scene->motion[motion].common.line,
+        warn_at(check->diag, scene, scene->motion[motion].common.line,
                 "[motion %s] moves [%s %s] at up to %.3g m/s at t = %.3g s, above %g of the "
                 "fluid's speed of sound, %.3g m/s: fluid in its way is compressed, and a guard may "
                 "stop the run; check the unit (angles are in radians), or use sound_speed = %.3g "
@@ -298,19 +301,19 @@ static void warn_of_motion(struct check *c, enum kind kind, int section,
 static const char *kind_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
 
 /* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there. */
-static void warn_of_end(struct check *c, const struct scene_open *o, bool last)
+static void warn_of_end(struct check *check, const struct scene_open *o, bool last)
 {
-    const double dp = c->scene->top.dp, along = last ? o->length + 0.5 * dp : -0.5 * dp;
+    const double dp = check->scene->top.dp, along = last ? o->length + 0.5 * dp : -0.5 * dp;
     double front[2], behind[2];
     for (int axis = 0; axis < 2; axis++) {
         const double at = o->from[axis] + along * o->along[axis];
         front[axis] = at + 0.5 * dp * o->inward[axis];
         behind[axis] = at - 0.5 * dp * o->inward[axis];
     }
-    if (point_at(c, front, 0.75 * dp, POINT_FLUID) < 0 ||
-        point_at(c, behind, 0.8 * dp, POINT_ANY) >= 0)
+    if (point_at(check, front, 0.75 * dp, POINT_FLUID) < 0 ||
+        point_at(check, behind, 0.8 * dp, POINT_ANY) >= 0)
         return;
-    warn_at(c->diag, c->scene, o->common->line,
+    warn_at(check->diag, check->scene, o->common->line,
             "[%s %s] ends inside the fluid at (%.4g, %.4g) m, and no wall holds the fluid "
             "beyond it: it flows past the line and is lost; add a [wall], or let the line end at "
             "a wall or at the surface",
@@ -320,10 +323,10 @@ static void warn_of_end(struct check *c, const struct scene_open *o, bool last)
 
 /* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of
  * it. */
-static void warn_of_level(struct check *c, const struct scene_open *o)
+static void warn_of_level(struct check *check, const struct scene_open *o)
 {
-    const struct points *const p = &c->points;
-    const double dp = c->scene->top.dp;
+    const struct points *const p = &check->points;
+    const double dp = check->scene->top.dp;
     double buffer = -HUGE_VAL, fluid = -HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++) {
         double in, along;
@@ -333,8 +336,9 @@ static void warn_of_level(struct check *c, const struct scene_open *o)
         double *const top = p->bit[k] == POINT_BUFFER ? &buffer : &fluid;
         *top = max2(*top, p->y[k] + 0.5 * dp);
     }
-    if (!(c->scene->top.gravity[1] < 0) || !isnan(o->level) || !(buffer > fluid + 1.5 * dp)) return;
-    warn_at(c->diag, c->scene, o->common->line,
+    if (!(check->scene->top.gravity[1] < 0) || !isnan(o->level) || !(buffer > fluid + 1.5 * dp))
+        return;
+    warn_at(check->diag, check->scene, o->common->line,
             "the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
             "before it is at y = %.4g m. Above it fluid %s; `level = %.4g m` prevents this",
             kind_of(o), o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
@@ -342,18 +346,18 @@ static void warn_of_level(struct check *c, const struct scene_open *o)
 
 /* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:
  * within a hundredth of the fluid's volume, at all times. */
-static void warn_of_balance(struct check *c)
+static void warn_of_balance(struct check *check)
 {
     enum { TIMES = 256 };
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const int n_open = scene_open_count(scene);
     const double step = scene->top.end_time / TIMES;
     double volume = 0, more = 0;
     if (!scene->full) return;
     for (int k = 0; k < n_open; k++)
         if (scene_open_at(scene, k).kind != OPEN_VELOCITY) return;
-    for (int64_t k = 0; k < c->points.n; k++)
-        volume += c->points.bit[k] == POINT_FLUID ? square(scene->top.dp) : 0;
+    for (int64_t k = 0; k < check->points.n; k++)
+        volume += check->points.bit[k] == POINT_FLUID ? square(scene->top.dp) : 0;
     int n = 0;
     for (; n < TIMES && fabs(more) <= 0.01 * volume; n++)
         for (int k = 0; k < n_open; k++) {
@@ -362,7 +366,7 @@ static void warn_of_balance(struct check *c)
         }
     if (fabs(more) <= 0.01 * volume) return;
     const struct scene_open o = scene_open_at(scene, n_open - 1);
-    warn_at(c->diag, scene, o.common->line,
+    warn_at(check->diag, scene, o.common->line,
             "[%s %s]: the open boundaries give velocities only, which let %.3g m^2 more %s "
             "than %s by t = %.3g s, %.2g %% of the fluid. It has no free surface, so %s; give one "
             "of them a `pressure` instead of its velocity",
@@ -372,33 +376,33 @@ static void warn_of_balance(struct check *c)
 }
 
 /* Whether fluid somewhere has nothing beside it. */
-static bool has_surface(const struct check *c)
+static bool has_surface(const struct check *check)
 {
     static const double sides[4][2] = {{-1.2, 0}, {1.2, 0}, {0, -1.2}, {0, 1.2}};
-    for (int64_t k = 0; k < c->points.n; k++)
-        for (int side = 0; side < 4 && c->points.bit[k] == POINT_FLUID; side++)
-            if (point_beside(c, k, sides[side], 1, POINT_ANY) < 0) return true;
+    for (int64_t k = 0; k < check->points.n; k++)
+        for (int side = 0; side < 4 && check->points.bit[k] == POINT_FLUID; side++)
+            if (point_beside(check, k, sides[side], 1, POINT_ANY) < 0) return true;
     return false;
 }
 
 /* --- probes --- */
 
 /* The corners of the square of side dp around a point. */
-static void corner_around(const struct check *c, const double at[2], int corner, double to[2])
+static void corner_around(const struct check *check, const double at[2], int corner, double to[2])
 {
-    const double side = 0.5 * c->scene->top.dp;
+    const double side = 0.5 * check->scene->top.dp;
     to[0] = at[0] + (corner & 1 ? side : -side);
     to[1] = at[1] + (corner & 2 ? side : -side);
 }
 
 /* Whether the point is in walls or solids, more than half a spacing from their faces, i.e. deeper
  * than the outermost particle reaches. */
-static bool is_buried(const struct check *c, const double at[2])
+static bool is_buried(const struct check *check, const double at[2])
 {
     for (int corner = 0; corner < 4; corner++) {
         double to[2];
-        corner_around(c, at, corner, to);
-        if (!is_drawn(c, to[0], to[1])) return false;
+        corner_around(check, at, corner, to);
+        if (!is_drawn(check, to[0], to[1])) return false;
     }
     return true;
 }
@@ -418,36 +422,36 @@ static bool is_in_air(const struct scene *scene, const double at[2])
 }
 
 /* A value at a point is a mean over the fluid within 2 h. */
-static void warn_of_dry_probe(struct check *c, const struct scene_probe *probe)
+static void warn_of_dry_probe(struct check *check, const struct scene_probe *probe)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const double *const at = probe->point;
     if (scene_probe_target(probe) != TARGET_FLUID_POINT) return;
-    if (is_buried(c, at)) {
+    if (is_buried(check, at)) {
         char quantity[SCENE_NAME], value[SCENE_NAME + 80] = "its level is that of the point";
         param_choice_name(param_find(SECTION_probe, "quantity"), probe->quantity, quantity);
         if (probe->quantity != PROBE_LEVEL)
             snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
                      quantity, 2 * scene->h);
-        warn_at(c->diag, scene, probe->common.line,
+        warn_at(check->diag, scene, probe->common.line,
                 "[probe %s] point = %g, %g lies inside a wall or solid, where there is no "
                 "fluid, so %s; move it to the face",
                 probe->common.name, at[0], at[1], value);
     } else if (probe->quantity == PROBE_PRESSURE && is_in_air(scene, at))
-        warn_at(c->diag, scene, probe->common.line,
+        warn_at(check->diag, scene, probe->common.line,
                 "[probe %s] point = %g, %g lies in the air, above all fluid, so its "
                 "pressure is 0 unless a splash reaches it; move it into the fluid",
                 probe->common.name, at[0], at[1]);
 }
 
 /* Whether a wall has a part within half a spacing of a point along each axis. */
-static bool wall_is_at(const struct check *c, int wall, const double at[2])
+static bool wall_is_at(const struct check *check, int wall, const double at[2])
 {
-    const struct region *const region = &c->shapes.regions[c->scene->n_solid + wall];
+    const struct region *const region = &check->shapes.regions[check->scene->n_solid + wall];
     for (int corner = 0; corner < 4; corner++) {
         double to[2];
-        corner_around(c, at, corner, to);
-        if (geometry_covers(&c->shapes, region, to[0], to[1])) return true;
+        corner_around(check, at, corner, to);
+        if (geometry_covers(&check->shapes, region, to[0], to[1])) return true;
     }
     return false;
 }
@@ -463,9 +467,9 @@ static double time_in_run(const struct scene *scene, int k)
 
 /* Whether a wall at a point is elsewhere at one of these times. A lid that slides along itself, or
  * a drum that turns about its axis, is not. */
-static bool wall_leaves(const struct check *c, int wall, const double at[2])
+static bool wall_leaves(const struct check *check, int wall, const double at[2])
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const int motion = scene_find_motion(scene, scene->wall[wall].motion);
     for (int k = 1; k <= TIMES_IN_RUN && motion >= 0; k++) {
         const struct motion_state m = motion_at(scene, motion, time_in_run(scene, k));
@@ -473,18 +477,18 @@ static bool wall_leaves(const struct check *c, int wall, const double at[2])
         const double cosine = m.angle == 0 ? 1 : m.turn[0], sine = m.angle == 0 ? 0 : m.turn[1];
         const double before[2] = {m.centre[0] + cosine * x + sine * y,
                                   m.centre[1] - sine * x + cosine * y};
-        if (!wall_is_at(c, wall, before)) return true;
+        if (!wall_is_at(check, wall, before)) return true;
     }
     return false;
 }
 
 /* The wall that is at a point now and leaves it, unless one that stays is there too; -1: none. */
-static int leaving_wall(const struct check *c, const double at[2])
+static int leaving_wall(const struct check *check, const double at[2])
 {
     int found = -1;
-    for (int k = 0; k < c->scene->n_wall; k++) {
-        if (!wall_is_at(c, k, at)) continue;
-        if (!wall_leaves(c, k, at)) return -1;
+    for (int k = 0; k < check->scene->n_wall; k++) {
+        if (!wall_is_at(check, k, at)) continue;
+        if (!wall_leaves(check, k, at)) return -1;
         found = k;
     }
     return found;
@@ -492,7 +496,7 @@ static int leaving_wall(const struct check *c, const double at[2])
 
 /* The pressure at a wall that moves away is hardly meant to be that of the place where it once
  * was. */
-static void warn_of_fixed_probe(struct check *c, const struct scene_probe *probe)
+static void warn_of_fixed_probe(struct check *check, const struct scene_probe *probe)
 {
     const bool face = probe->quantity == PROBE_SURFACE_PRESSURE;
     if ((probe->quantity != PROBE_PRESSURE && !face) || *probe->on) return;
@@ -500,11 +504,11 @@ static void warn_of_fixed_probe(struct check *c, const struct scene_probe *probe
     for (int k = face ? 1 : 0; k < (face ? 4 : 1) && wall < 0; k++) {
         const double at[2] = {probe->point[0] + 0.25 * k * (probe->to[0] - probe->point[0]),
                               probe->point[1] + 0.25 * k * (probe->to[1] - probe->point[1])};
-        if (!is_buried(c, at)) wall = leaving_wall(c, at);
+        if (!is_buried(check, at)) wall = leaving_wall(check, at);
     }
     if (wall < 0) return;
-    const char *const name = c->scene->wall[wall].common.name;
-    warn_at(c->diag, c->scene, probe->common.line,
+    const char *const name = check->scene->wall[wall].common.name;
+    warn_at(check->diag, check->scene, probe->common.line,
             "[probe %s] begins at [wall %s], which moves away, but stays where it is; "
             "`on = %s` moves it along",
             probe->common.name, name, name);
@@ -512,9 +516,9 @@ static void warn_of_fixed_probe(struct check *c, const struct scene_probe *probe
 
 /* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and
  * sticks. */
-static void warn_of_moment(struct check *c, const struct scene_probe *probe)
+static void warn_of_moment(struct check *check, const struct scene_probe *probe)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     char name[SCENE_TEXT];
     double nu = 0;
     for (int k = 0; k < scene->n_fluid; k++) nu = max2(nu, scene->fluid[k].laminar_viscosity);
@@ -526,7 +530,7 @@ static void warn_of_moment(struct check *c, const struct scene_probe *probe)
         for (int n = 1; n <= TIMES_IN_RUN && motion >= 0; n++)
             turns |= motion_at(scene, motion, time_in_run(scene, n)).angle != 0;
         if (!turns || scene->wall[wall].slip != SLIP_NONE) continue;
-        warn_at(c->diag, scene, probe->common.line,
+        warn_at(check->diag, scene, probe->common.line,
                 "[probe %s] the moment on [wall %s], which turns with slip = none, is off by "
                 "2 mu A times its rate of turning: mu = %.3g Pa s, A = the area that it "
                 "encloses. The moment needs this correction; forces are right",
@@ -539,51 +543,51 @@ static void warn_of_moment(struct check *c, const struct scene_probe *probe)
 /* Without a free surface the volume is given, and nothing takes back the pressure that a shift
  * makes. In a channel, periodic in x, it rose by 0.4, 0.75 and 1.1 % of rho c0^2 with `shifting`
  * 0.5, 2 and 8; without walls, where L-9 holds for all particles, it did not. */
-static void warn_of_drift(struct check *c)
+static void warn_of_drift(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const int periodic = scene->domain.periodic;
-    if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || has_surface(c)) return;
+    if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || has_surface(check)) return;
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting > 0)
-            warn_at(c->diag, scene, scene->fluid[k].common.line,
+            warn_at(check->diag, scene, scene->fluid[k].common.line,
                     "[fluid %s] fills its periodic domain, so its mean pressure drifts with "
                     "`shifting`, by about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, "
                     "or a smaller `shifting`",
                     scene->fluid[k].common.name, scene->rho0 * square(scene->c0));
 }
 
-enum err warn_of_fluid(struct check *c)
+enum err warn_of_fluid(struct check *check)
 {
-    struct scene *const scene = c->scene;
+    struct scene *const scene = check->scene;
     if (scene->n_fluid == 0) return ERR_OK;
     for (int f = 0; f < scene->n_fluid; f++) {
         if (!isnan(scene->fluid[f].surface)) {
-            warn_of_upward_gravity(c, &scene->fluid[f]);
-            warn_of_low_surface(c, f);
-            TRY(warn_of_high_surface(c, f));
+            warn_of_upward_gravity(check, &scene->fluid[f]);
+            warn_of_low_surface(check, f);
+            TRY(warn_of_high_surface(check, f));
         }
-        warn_of_density(c, f);
-        warn_of_start_gap(c, f);
-        warn_of_weight(c, f);
-        warn_of_start(c, f);
+        warn_of_density(check, f);
+        warn_of_start_gap(check, f);
+        warn_of_weight(check, f);
+        warn_of_start(check, f);
     }
     for (int k = 0; k < scene->n_wall; k++)
-        warn_of_motion(c, KIND_WALL, k, &scene->wall[k].common, scene->wall[k].motion);
+        warn_of_motion(check, KIND_WALL, k, &scene->wall[k].common, scene->wall[k].motion);
     for (int k = 0; k < scene->n_solid; k++)
-        warn_of_motion(c, KIND_SOLID, k, &scene->solid[k].common, scene->solid[k].clamp_motion);
-    scene->full = scene_open_count(scene) > 0 && !has_surface(c);
+        warn_of_motion(check, KIND_SOLID, k, &scene->solid[k].common, scene->solid[k].clamp_motion);
+    scene->full = scene_open_count(scene) > 0 && !has_surface(check);
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open o = scene_open_at(scene, k);
-        for (int last = 0; last < 2; last++) warn_of_end(c, &o, last);
-        warn_of_level(c, &o);
+        for (int last = 0; last < 2; last++) warn_of_end(check, &o, last);
+        warn_of_level(check, &o);
     }
-    if (scene->full) warn_of_balance(c);
+    if (scene->full) warn_of_balance(check);
     for (int k = 0; k < scene->n_probe; k++) {
-        warn_of_fixed_probe(c, &scene->probe[k]);
-        warn_of_moment(c, &scene->probe[k]);
-        warn_of_dry_probe(c, &scene->probe[k]);
+        warn_of_fixed_probe(check, &scene->probe[k]);
+        warn_of_moment(check, &scene->probe[k]);
+        warn_of_dry_probe(check, &scene->probe[k]);
     }
-    warn_of_drift(c);
-    return warn_of_missing_floor(c);
+    warn_of_drift(check);
+    return warn_of_missing_floor(check);
 }

@@ -10,25 +10,26 @@
 
 /* --- places --- */
 
-bool is_drawn(const struct check *c, double x, double y)
+bool is_drawn(const struct check *check, double x, double y)
 {
-    for (int r = 0; r < c->shapes.n_regions; r++)
-        if (c->shapes.regions[r].kind != KIND_FLUID &&
-            geometry_covers(&c->shapes, &c->shapes.regions[r], x, y))
+    for (int r = 0; r < check->shapes.n_regions; r++)
+        if (check->shapes.regions[r].kind != KIND_FLUID &&
+            geometry_covers(&check->shapes, &check->shapes.regions[r], x, y))
             return true;
     return false;
 }
 
-#define ALLOCATE(field)                                                                         \
-    do {                                                                                        \
-        p->field = arena_alloc(&c->shapes.temp, (size_t)n, sizeof *p->field, "check", c->diag); \
-        if (!p->field) return ERR_MEMORY;                                                       \
+#define ALLOCATE(field)                                                                          \
+    do {                                                                                         \
+        p->field =                                                                               \
+            arena_alloc(&check->shapes.temp, (size_t)n, sizeof *p->field, "check", check->diag); \
+        if (!p->field) return ERR_MEMORY;                                                        \
     } while (0)
 
-enum err list_points(struct check *c)
+enum err list_points(struct check *check)
 {
-    const struct scene *const scene = c->scene;
-    struct points *const p = &c->points;
+    const struct scene *const scene = check->scene;
+    struct points *const p = &check->points;
     int64_t n = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += scene->points[kind].n;
     ALLOCATE(x);
@@ -36,7 +37,8 @@ enum err list_points(struct check *c)
     ALLOCATE(section);
     ALLOCATE(kind);
     ALLOCATE(bit);
-    TRY(point_grid_create(&p->grid, 2.1 * scene->top.dp, n, p->x, p->y, &c->shapes.temp, c->diag));
+    TRY(point_grid_create(&p->grid, 2.1 * scene->top.dp, n, p->x, p->y, &check->shapes.temp,
+                          check->diag));
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int64_t k = 0; k < scene->points[kind].n; k++) {
             const struct scene_points *const from = &scene->points[kind];
@@ -52,28 +54,28 @@ enum err list_points(struct check *c)
     return ERR_OK;
 }
 
-int64_t point_at(const struct check *c, const double at[2], double within, int kinds)
+int64_t point_at(const struct check *check, const double at[2], double within, int kinds)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const int nx = scene_periodic(scene, 0), ny = scene_periodic(scene, 1);
     const double width = scene->domain_upper[0] - scene->domain_lower[0],
                  height = scene->domain_upper[1] - scene->domain_lower[1];
     for (int i = -nx; i <= nx; i++)
         for (int j = -ny; j <= ny; j++) {
-            struct point_visit v =
-                point_grid_visit(&c->points.grid, at[0] + i * width, at[1] + j * height, within);
-            while (point_grid_next(&c->points.grid, &v))
-                if (c->points.bit[v.k] & kinds) return v.k;
+            struct point_visit v = point_grid_visit(&check->points.grid, at[0] + i * width,
+                                                    at[1] + j * height, within);
+            while (point_grid_next(&check->points.grid, &v))
+                if (check->points.bit[v.k] & kinds) return v.k;
         }
     return -1;
 }
 
-int64_t point_beside(const struct check *c, int64_t k, const double toward[2], double within,
+int64_t point_beside(const struct check *check, int64_t k, const double toward[2], double within,
                      int kinds)
 {
-    const double dp = c->scene->top.dp;
-    const double at[2] = {c->points.x[k] + dp * toward[0], c->points.y[k] + dp * toward[1]};
-    return point_at(c, at, within * dp, kinds);
+    const double dp = check->scene->top.dp;
+    const double at[2] = {check->points.x[k] + dp * toward[0], check->points.y[k] + dp * toward[1]};
+    return point_at(check, at, within * dp, kinds);
 }
 
 double extent_along(const struct scene *scene, enum kind kind, int section, const double along[2])
@@ -171,14 +173,14 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
 
 /* The bending stiffness of a thin body is proportional to the third power of its thickness, hence
  * of its area. What a clamp holds does not bend. */
-static void warn_of_area(struct check *c, const struct region *region)
+static void warn_of_area(struct check *check, const struct region *region)
 {
-    const struct scene_lattice *const l = &c->scene->solid_lattice[region->body];
+    const struct scene_lattice *const l = &check->scene->solid_lattice[region->body];
     const double ratio = 1 + l->area_error, stiff = ratio * square(ratio);
     if (fabs(l->area_error) <= 0.005) return;
     const bool part = l->area_free;
-    c->scene->off_lattice = true;
-    warn_at(c->diag, c->scene, region->line,
+    check->scene->off_lattice = true;
+    warn_at(check->diag, check->scene, region->line,
             "the %.0f particles of [solid %s]%s cover %.2g %% %s than its area of %.4g m^2%s, so a "
             "thin body is about %.2g %% too %s in bending; a finer dp or another lattice_angle "
             "helps",
@@ -205,35 +207,35 @@ static double thickness(const struct shape *shape)
  * interact through the pressure of the body's particles, unless each fluid particle uses its own
  * pressure there. They interact directly if the nearest fluid on both sides, thickness plus one
  * spacing apart, is within reach. */
-static void warn_of_thin(struct check *c, const struct region *region, int line, double thick)
+static void warn_of_thin(struct check *check, const struct region *region, int line, double thick)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const double reach = 2 * scene->h * (1 - 1e-9);
     const bool directly = thick + scene->top.dp < reach;
     if (scene->n_fluid == 0 || thick >= reach) return;
     if (scene->numerics.sides == SIDES_ONE && !directly) return;
-    warn_at(c->diag, scene, line,
+    warn_at(check->diag, scene, line,
             "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts "
             "with the fluid behind it; %s prevents that",
             kind_names[region->kind], region->name, thick, 2 * scene->h,
             directly ? "a finer dp" : "numerics.sides = one");
 }
 
-static void warn_of_thin_solid(struct check *c, const struct region *region)
+static void warn_of_thin_solid(struct check *check, const struct region *region)
 {
     const double across = geometry_rows_across(region), dp = region->lattice.dp;
     if (across < 4)
-        warn_at(c->diag, c->scene, region->line,
+        warn_at(check->diag, check->scene, region->line,
                 "[solid %s] is only %.0f particles thick at dp = %g m, so its bending will "
                 "be inaccurate; use a finer dp, for 4 particles or more",
                 region->name, across, dp);
-    if (scene_is_bonded(c->scene, region->body)) return;
+    if (scene_is_bonded(check->scene, region->body)) return;
     /* At the default h/dp a warning here would repeat the one on two particles across. */
-    if (across > 2 || (across + 1) * dp < 2 * c->scene->h)
-        warn_of_thin(c, region, region->line, across * dp);
+    if (across > 2 || (across + 1) * dp < 2 * check->scene->h)
+        warn_of_thin(check, region, region->line, across * dp);
 }
 
-static void warn_of_region(struct check *c, const struct region *region)
+static void warn_of_region(struct check *check, const struct region *region)
 {
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
@@ -242,14 +244,14 @@ static void warn_of_region(struct check *c, const struct region *region)
             layered |= region->add.shape[j] == k && region->layered[j];
         if (region->lattice.fitted || layered) continue;
         if (shape->kind == SHAPE_BOX && region->lattice.angle == 0)
-            warn_of_box(c, region, shape);
+            warn_of_box(check, region, shape);
         else
-            warn_of_edges(c, region, k);
-        if (region->kind == KIND_WALL) warn_of_thin(c, region, shape->line, thickness(shape));
+            warn_of_edges(check, region, k);
+        if (region->kind == KIND_WALL) warn_of_thin(check, region, shape->line, thickness(shape));
     }
     if (region->kind != KIND_SOLID) return;
-    warn_of_thin_solid(c, region);
-    warn_of_area(c, region);
+    warn_of_thin_solid(check, region);
+    warn_of_area(check, region);
 }
 
 /* --- openings cut out by `minus` --- */
@@ -276,15 +278,15 @@ static bool removes_any(const struct check *check, const struct region *region,
     return false;
 }
 
-static void warn_of_cuts(struct check *c, const struct region *region)
+static void warn_of_cuts(struct check *check, const struct region *region)
 {
     for (int shape = 0; shape < region->minus_list->n; shape++) {
         bool removes = false;
         for (int k = 0; k < region->minus.n && !removes; k++)
-            removes =
-                region->minus.shape[k] == shape && removes_any(c, region, &region->minus.item[k]);
+            removes = region->minus.shape[k] == shape &&
+                      removes_any(check, region, &region->minus.item[k]);
         if (removes) continue;
-        warn_at(c->diag, c->scene, region->minus_list->item[shape].line,
+        warn_at(check->diag, check->scene, region->minus_list->item[shape].line,
                 "`minus` removes no particle of [%s %s], because it is narrower than dp = %g "
                 "m or lies outside, so the opening is closed; enlarge or move it, or use a "
                 "smaller dp",
@@ -318,17 +320,17 @@ static void warn_of_slit(struct check *check, const struct region *a, const stru
     }
 }
 
-static void warn_of_slits(struct check *c)
+static void warn_of_slits(struct check *check)
 {
     enum { MAX_PAIRS = 1000000 }; /* not done for scenes of thousands of boxes */
     long pairs = 0;
-    for (int i = 0; i < c->shapes.n_regions; i++) {
-        for (int j = i; j < c->shapes.n_regions; j++) {
-            const struct region *a = &c->shapes.regions[i], *b = &c->shapes.regions[j];
+    for (int i = 0; i < check->shapes.n_regions; i++) {
+        for (int j = i; j < check->shapes.n_regions; j++) {
+            const struct region *a = &check->shapes.regions[i], *b = &check->shapes.regions[j];
             if (b->kind == KIND_FLUID) break;
             for (int k = 0; k < a->list->n; k++)
                 for (int l = i == j ? k + 1 : 0; l < b->list->n && pairs++ < MAX_PAIRS; l++)
-                    warn_of_slit(c, a, &a->list->item[k], b, &b->list->item[l]);
+                    warn_of_slit(check, a, &a->list->item[k], b, &b->list->item[l]);
         }
     }
 }
@@ -344,45 +346,47 @@ struct gaps {
 };
 
 /* Regions are solids, then walls. */
-static int region_index(const struct check *c, int64_t k)
+static int region_index(const struct check *check, int64_t k)
 {
-    return c->points.section[k] + (c->points.kind[k] == KIND_WALL ? c->scene->n_solid : 0);
+    return check->points.section[k] +
+           (check->points.kind[k] == KIND_WALL ? check->scene->n_solid : 0);
 }
 
-static const struct region *region_of(const struct check *c, int64_t k)
+static const struct region *region_of(const struct check *check, int64_t k)
 {
-    return &c->shapes.regions[region_index(c, k)];
+    return &check->shapes.regions[region_index(check, k)];
 }
 
-static int shape_of(const struct check *c, int64_t k)
+static int shape_of(const struct check *check, int64_t k)
 {
-    return geometry_shape_at(&c->shapes, region_of(c, k), c->points.x[k], c->points.y[k]);
+    return geometry_shape_at(&check->shapes, region_of(check, k), check->points.x[k],
+                             check->points.y[k]);
 }
 
 /* Shapes are told apart unless there are too many to mark each with each. */
-static enum err create_gaps(struct gaps *g, struct check *c)
+static enum err create_gaps(struct gaps *g, struct check *check)
 {
     enum { MAX_PARTS = 2000 };
-    struct arena *const a = &c->shapes.temp;
-    *g = (struct gaps){.c = c, .n_regions = c->scene->n_solid + c->scene->n_wall};
+    struct arena *const a = &check->shapes.temp;
+    *g = (struct gaps){.c = check, .n_regions = check->scene->n_solid + check->scene->n_wall};
     const size_t regions = (size_t)g->n_regions;
-    int *const first = arena_alloc(a, regions, sizeof *first, "gaps", c->diag);
-    g->part = arena_alloc(a, (size_t)c->points.n, sizeof *g->part, "gaps", c->diag);
+    int *const first = arena_alloc(a, regions, sizeof *first, "gaps", check->diag);
+    g->part = arena_alloc(a, (size_t)check->points.n, sizeof *g->part, "gaps", check->diag);
     if (!first || !g->part) return ERR_MEMORY;
     for (int k = 0; k < g->n_regions; k++) {
         first[k] = g->n_parts;
-        g->n_parts += c->shapes.regions[k].list->n;
+        g->n_parts += check->shapes.regions[k].list->n;
     }
     const bool shapes = g->n_parts <= MAX_PARTS;
     if (!shapes) g->n_parts = g->n_regions;
-    for (int64_t k = 0; k < c->points.n; k++) {
-        if (c->points.bit[k] != POINT_BODY) continue;
-        const int region = region_index(c, k), shape = shapes ? shape_of(c, k) : 0;
+    for (int64_t k = 0; k < check->points.n; k++) {
+        if (check->points.bit[k] != POINT_BODY) continue;
+        const int region = region_index(check, k), shape = shapes ? shape_of(check, k) : 0;
         g->part[k] = shape < 0 ? -1 : shapes ? first[region] + shape : region;
     }
     const size_t parts = (size_t)g->n_parts;
-    g->narrow = arena_alloc(a, regions * regions, sizeof *g->narrow, "gaps", c->diag);
-    g->closed = arena_alloc(a, parts * parts, sizeof *g->closed, "gaps", c->diag);
+    g->narrow = arena_alloc(a, regions * regions, sizeof *g->narrow, "gaps", check->diag);
+    g->closed = arena_alloc(a, parts * parts, sizeof *g->closed, "gaps", check->diag);
     return g->narrow && g->closed ? ERR_OK : ERR_MEMORY;
 }
 
@@ -392,21 +396,21 @@ static bool *mark_of(bool *settled, int n, int a, int b)
 }
 
 /* Whether a particle of a wall or solid lies nearer to the point than `reach`. */
-static bool is_covered(const struct check *c, double x, double y, double reach)
+static bool is_covered(const struct check *check, double x, double y, double reach)
 {
-    struct point_visit v = point_grid_visit(&c->points.grid, x, y, reach);
-    while (point_grid_next(&c->points.grid, &v))
-        if (c->points.bit[v.k] == POINT_BODY) return true;
+    struct point_visit v = point_grid_visit(&check->points.grid, x, y, reach);
+    while (point_grid_next(&check->points.grid, &v))
+        if (check->points.bit[v.k] == POINT_BODY) return true;
     return false;
 }
 
 /* A gap between boxes that are not cut: warn_of_slits judges its drawn width. */
-static bool is_slit(const struct check *c, int64_t k, int64_t m)
+static bool is_slit(const struct check *check, int64_t k, int64_t m)
 {
     const int64_t at[2] = {k, m};
     for (int n = 0; n < 2; n++) {
-        const struct region *const region = region_of(c, at[n]);
-        const int shape = shape_of(c, at[n]);
+        const struct region *const region = region_of(check, at[n]);
+        const int shape = shape_of(check, at[n]);
         if (region->minus.n > 0 || shape < 0 || region->list->item[shape].kind != SHAPE_BOX)
             return false;
     }
@@ -415,15 +419,15 @@ static bool is_slit(const struct check *c, int64_t k, int64_t m)
 
 /* Whether fluid could pass between two faces in both directions along the unit vector: the gap
  * ends where a face does, before another face closes it. */
-static bool is_passage(const struct check *c, const double at[2], const double along[2])
+static bool is_passage(const struct check *check, const double at[2], const double along[2])
 {
-    const double dp = c->scene->top.dp, reach = 0.75 * dp;
+    const double dp = check->scene->top.dp, reach = 0.75 * dp;
     for (int way = -1; way <= 1; way += 2)
         for (double path = 0.5 * dp;; path += 0.5 * dp) {
             const double x = at[0] + way * path * along[0], y = at[1] + way * path * along[1];
-            if (is_covered(c, x, y, reach)) return false;
-            if (!is_covered(c, x - dp * along[1], y + dp * along[0], reach) ||
-                !is_covered(c, x + dp * along[1], y - dp * along[0], reach))
+            if (is_covered(check, x, y, reach)) return false;
+            if (!is_covered(check, x - dp * along[1], y + dp * along[0], reach) ||
+                !is_covered(check, x + dp * along[1], y - dp * along[0], reach))
                 break;
         }
     return true;
@@ -432,10 +436,10 @@ static bool is_passage(const struct check *c, const double at[2], const double a
 enum { BETWEEN_TEXT = 2 * SCENE_NAME + 32 };
 
 /* The line of the case, of a shape if it is known, and the sections between which a gap is. */
-static int name_gap(const struct check *c, int64_t k, int64_t m, char between[BETWEEN_TEXT])
+static int name_gap(const struct check *check, int64_t k, int64_t m, char between[BETWEEN_TEXT])
 {
-    const struct region *const a = region_of(c, k), *const b = region_of(c, m);
-    const int shape = shape_of(c, m);
+    const struct region *const a = region_of(check, k), *const b = region_of(check, m);
+    const int shape = shape_of(check, m);
     if (a == b)
         snprintf(between, BETWEEN_TEXT, "in [%s %s]", kind_names[b->kind], b->name);
     else
@@ -450,18 +454,19 @@ static int name_gap(const struct check *c, int64_t k, int64_t m, char between[BE
  * angle, the gap is no passage. */
 static void warn_of_narrow_gap(struct gaps *g, int64_t k, int64_t m)
 {
-    const struct check *const c = g->c;
-    const double *const x = c->points.x, *const y = c->points.y;
-    const double dp = c->scene->top.dp, dx = x[m] - x[k], dy = y[m] - y[k];
+    const struct check *const check = g->c;
+    const double *const x = check->points.x, *const y = check->points.y;
+    const double dp = check->scene->top.dp, dx = x[m] - x[k], dy = y[m] - y[k];
     const double r = elementary_hypot(dx, dy), at[2] = {x[k] + 0.5 * dx, y[k] + 0.5 * dy};
     const double along[2] = {-dy / r, dx / r};
-    bool *const mark = mark_of(g->narrow, g->n_regions, region_index(c, k), region_index(c, m));
-    if (r < 1.5 * dp || *mark || is_covered(c, at[0], at[1], 0.75 * dp)) return;
-    if (is_slit(c, k, m) || !is_passage(c, at, along)) return;
+    bool *const mark =
+        mark_of(g->narrow, g->n_regions, region_index(check, k), region_index(check, m));
+    if (r < 1.5 * dp || *mark || is_covered(check, at[0], at[1], 0.75 * dp)) return;
+    if (is_slit(check, k, m) || !is_passage(check, at, along)) return;
     *mark = true;
     char between[BETWEEN_TEXT];
-    const int line = name_gap(c, k, m, between);
-    warn_at(c->diag, c->scene, line,
+    const int line = name_gap(check, k, m, between);
+    warn_at(check->diag, check->scene, line,
             "the gap %s at (%.4g, %.4g) m is no wider than dp = %g m, so hardly any fluid "
             "passes; use dp = %.2g m or less, or close the gap",
             between, at[0], at[1], dp, 0.5 * (r - dp));
@@ -469,15 +474,16 @@ static void warn_of_narrow_gap(struct gaps *g, int64_t k, int64_t m)
 
 /* How wide the drawn shapes leave a line through the point open, up to 2 `most`; moves the point
  * to the middle. */
-static double open_width(const struct check *c, double at[2], const double across[2], double most)
+static double open_width(const struct check *check, double at[2], const double across[2],
+                         double most)
 {
-    const double step = 0.02 * c->scene->top.dp;
+    const double step = 0.02 * check->scene->top.dp;
     double end[2];
-    if (is_drawn(c, at[0], at[1])) return 0;
+    if (is_drawn(check, at[0], at[1])) return 0;
     for (int way = 0; way < 2; way++) {
         const double sign = way ? 1 : -1;
         end[way] = 0.5 * step;
-        while (end[way] < most && !is_drawn(c, at[0] + sign * end[way] * across[0],
+        while (end[way] < most && !is_drawn(check, at[0] + sign * end[way] * across[0],
                                             at[1] + sign * end[way] * across[1]))
             end[way] += step;
     }
@@ -486,7 +492,7 @@ static double open_width(const struct check *c, double at[2], const double acros
 }
 
 /* The narrowest width of an opening around the point, and the direction across. */
-static double narrowest(const struct check *c, double at[2], double across[2])
+static double narrowest(const struct check *check, double at[2], double across[2])
 {
     enum { DIRECTIONS = 24 };
     const double from[2] = {at[0], at[1]};
@@ -495,7 +501,7 @@ static double narrowest(const struct check *c, double at[2], double across[2])
         const double way[2] = {elementary_cos(k * PI / DIRECTIONS),
                                elementary_sin(k * PI / DIRECTIONS)};
         double middle[2] = {from[0], from[1]};
-        const double width = open_width(c, middle, way, c->scene->top.dp);
+        const double width = open_width(check, middle, way, check->scene->top.dp);
         if (width >= least) continue;
         least = width;
         for (int axis = 0; axis < 2; axis++) at[axis] = middle[axis], across[axis] = way[axis];
@@ -505,16 +511,17 @@ static double narrowest(const struct check *c, double at[2], double across[2])
 
 /* Whether a gap goes on as drawn, both ways from the point, to where it is wider than dp. A wedge
  * between a circle and the floor that it touches does not. */
-static bool is_drawn_passage(const struct check *c, const double from[2], const double across[2])
+static bool is_drawn_passage(const struct check *check, const double from[2],
+                             const double across[2])
 {
-    const double dp = c->scene->top.dp, step = 0.1 * dp;
+    const double dp = check->scene->top.dp, step = 0.1 * dp;
     for (int way = -1; way <= 1; way += 2) {
         double at[2] = {from[0], from[1]}, width = 0;
-        int64_t steps = 20 * c->points.n; /* a ring has no end */
+        int64_t steps = 20 * check->points.n; /* a ring has no end */
         for (; width <= dp * one_wide && steps > 0; steps--) {
             at[0] -= way * step * across[1];
             at[1] += way * step * across[0];
-            width = open_width(c, at, across, dp);
+            width = open_width(check, at, across, dp);
             if (width == 0) return false;
         }
         if (steps == 0) return false;
@@ -524,16 +531,16 @@ static bool is_drawn_passage(const struct check *c, const double from[2], const 
 
 /* The middle of the longest stretch between two particles that their own shapes leave open. A slit
  * of less than a fortieth of their distance is meant as a joint. */
-static bool find_opening(const struct check *c, int64_t k, int64_t m, double at[2])
+static bool find_opening(const struct check *check, int64_t k, int64_t m, double at[2])
 {
     enum { POINTS = 80 };
-    const double *const px = c->points.x, *const py = c->points.y;
-    const struct region *const a = region_of(c, k), *const b = region_of(c, m);
+    const double *const px = check->points.x, *const py = check->points.y;
+    const struct region *const a = region_of(check, k), *const b = region_of(check, m);
     int longest = 0, now = 0;
     for (int n = 0; n < POINTS; n++) {
         const double t = (n + 0.5) / POINTS;
         const double x = px[k] + t * (px[m] - px[k]), y = py[k] + t * (py[m] - py[k]);
-        now = geometry_covers(&c->shapes, a, x, y) || geometry_covers(&c->shapes, b, x, y)
+        now = geometry_covers(&check->shapes, a, x, y) || geometry_covers(&check->shapes, b, x, y)
                   ? 0
                   : now + 1;
         if (now <= longest) continue;
@@ -548,29 +555,29 @@ static bool find_opening(const struct check *c, int64_t k, int64_t m, double at[
 /* Warns of particles that leave no space for one between them, and whose shapes do as drawn. */
 static void warn_of_closed_gap(struct gaps *g, int64_t k, int64_t m)
 {
-    const struct check *const c = g->c;
+    const struct check *const check = g->c;
     const int a = g->part[k], b = g->part[m];
     double at[2] = {0}, across[2];
     if (a < 0 || b < 0 || a == b) return;
     bool *const mark = mark_of(g->closed, g->n_parts, a, b);
-    if (*mark || is_slit(c, k, m) || !find_opening(c, k, m, at)) return;
-    const double width = narrowest(c, at, across);
-    if (width == 0 || !is_drawn_passage(c, at, across)) return;
+    if (*mark || is_slit(check, k, m) || !find_opening(check, k, m, at)) return;
+    const double width = narrowest(check, at, across);
+    if (width == 0 || !is_drawn_passage(check, at, across)) return;
     *mark = true;
     char between[BETWEEN_TEXT];
-    const int line = name_gap(c, k, m, between);
-    warn_at(c->diag, c->scene, line,
+    const int line = name_gap(check, k, m, between);
+    warn_at(check->diag, check->scene, line,
             "the gap %s at (%.4g, %.4g) m is about %.2g m wide, narrower than dp = %g m, and "
             "closed by sampling, so no fluid passes; use dp = %.1g m or less, or close the gap",
-            between, at[0], at[1], width, c->scene->top.dp, 0.5 * width);
+            between, at[0], at[1], width, check->scene->top.dp, 0.5 * width);
 }
 
-static enum err warn_of_gaps(struct check *c)
+static enum err warn_of_gaps(struct check *check)
 {
-    const struct points *const p = &c->points;
-    const double dp = c->scene->top.dp, reach[2] = {(1 + one_wide) * dp, (1.5 + 1e-9) * dp};
+    const struct points *const p = &check->points;
+    const double dp = check->scene->top.dp, reach[2] = {(1 + one_wide) * dp, (1.5 + 1e-9) * dp};
     struct gaps g;
-    TRY(create_gaps(&g, c));
+    TRY(create_gaps(&g, check));
     for (int closed = 0; closed < 2; closed++)
         for (int64_t k = 0; k < p->n; k++) {
             if (p->bit[k] != POINT_BODY) continue;
@@ -586,11 +593,13 @@ static enum err warn_of_gaps(struct check *c)
     return ERR_OK;
 }
 
-enum err warn_of_shapes(struct check *c)
+enum err warn_of_shapes(struct check *check)
 {
-    for (int k = 0; k < c->shapes.n_regions; k++) warn_of_region(c, &c->shapes.regions[k]);
-    for (int k = 0; k < c->shapes.n_regions; k++) warn_of_cuts(c, &c->shapes.regions[k]);
-    if (c->scene->n_fluid == 0) return ERR_OK;
-    warn_of_slits(c);
-    return warn_of_gaps(c);
+    for (int k = 0; k < check->shapes.n_regions; k++)
+        warn_of_region(check, &check->shapes.regions[k]);
+    for (int k = 0; k < check->shapes.n_regions; k++)
+        warn_of_cuts(check, &check->shapes.regions[k]);
+    if (check->scene->n_fluid == 0) return ERR_OK;
+    warn_of_slits(check);
+    return warn_of_gaps(check);
 }

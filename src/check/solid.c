@@ -14,15 +14,15 @@
 enum hold { LOOSE, STANDS, HELD };
 
 /* Whether a particle of a body has a wall, or a body that does not fall itself, next below it. */
-static bool stands_on(const struct check *c, const char *hold, int body)
+static bool stands_on(const struct check *check, const char *hold, int body)
 {
-    const struct points *const p = &c->points;
-    const double *const gravity = c->scene->top.gravity;
+    const struct points *const p = &check->points;
+    const double *const gravity = check->scene->top.gravity;
     const double size = elementary_hypot(gravity[0], gravity[1]);
     const double down[2] = {gravity[0] / size, gravity[1] / size};
     for (int64_t k = 0; k < p->n && size > 0; k++) {
         if (p->kind[k] != KIND_SOLID || p->section[k] != body) continue;
-        const int64_t below = point_beside(c, k, down, 0.9, POINT_BODY);
+        const int64_t below = point_beside(check, k, down, 0.9, POINT_BODY);
         if (below < 0) continue;
         if (p->kind[below] == KIND_WALL) return true;
         if (p->section[below] != body && hold[p->section[below]] != LOOSE) return true;
@@ -33,17 +33,18 @@ static bool stands_on(const struct check *c, const char *hold, int body)
 /* A body without a clamp moves away, which is seldom intended in a case with gravity or a load,
  * unless it begins with a velocity. Clamps hold bodies, and bonds those that are joined to them.
  * Others stand on walls and on bodies that do not fall. */
-static enum err warn_of_loose_bodies(struct check *c)
+static enum err warn_of_loose_bodies(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const effect_set effects = effects_of_scene(scene);
-    char *const hold =
-        arena_alloc(&c->shapes.temp, (size_t)scene->n_solid, sizeof *hold, "check", c->diag);
+    char *const hold = arena_alloc(&check->shapes.temp, (size_t)scene->n_solid, sizeof *hold,
+                                   "check", check->diag);
     if (!hold) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++) hold[k] = scene->solid[k].clamp.n ? HELD : LOOSE;
     for (int round = 0; round < scene->n_solid; round++)
         for (int k = 0; k < scene->n_solid; k++) {
-            if (hold[k] == LOOSE && effects & FX_CONTACT && stands_on(c, hold, k)) hold[k] = STANDS;
+            if (hold[k] == LOOSE && effects & FX_CONTACT && stands_on(check, hold, k))
+                hold[k] = STANDS;
             if (!scene->solid[k].joined[0]) continue;
             const int to = scene_find_solid(scene, scene->solid[k].joined);
             hold[k] = hold[to] = hold[k] > hold[to] ? hold[k] : hold[to];
@@ -56,17 +57,17 @@ static enum err warn_of_loose_bodies(struct check *c)
         for (int m = 0; m < scene->n_load; m++)
             loaded |= scene_find_solid(scene, scene->load[m].body) == k;
         if (falls && hold[k] == LOOSE)
-            warn_at(c->diag, scene, b->common.line,
+            warn_at(check->diag, scene, b->common.line,
                     "[solid %s] has no clamp, and gravity acts on it, so it falls unless fluid "
                     "carries it; give it a `clamp`, or gravity = off",
                     b->common.name);
         else if (falls && scene->n_fluid > 0)
-            warn_at(c->diag, scene, b->common.line,
+            warn_at(check->diag, scene, b->common.line,
                     "[solid %s] has no clamp and only stands on what is below it, so fluid may "
                     "move it; give it a `clamp` if it is fixed",
                     b->common.name);
         else if (loaded && hold[k] == LOOSE)
-            warn_at(c->diag, scene, b->common.line,
+            warn_at(check->diag, scene, b->common.line,
                     "[solid %s] has no clamp, and a [load] acts on it, so it is driven away unless "
                     "something stops it; give it a `clamp`",
                     b->common.name);
@@ -96,13 +97,13 @@ static int free_rows(const struct scene *scene, const struct point_grid *clamped
     return rows;
 }
 
-static enum err warn_of_full_clamps(struct check *c)
+static enum err warn_of_full_clamps(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_points *const p = &scene->points[KIND_SOLID];
     struct point_grid clamped;
     TRY(point_grid_create(&clamped, (RESOLVED_ROWS + 0.5) * scene->top.dp, p->n, p->x, p->y,
-                          &c->shapes.temp, c->diag));
+                          &check->shapes.temp, check->diag));
     for (int64_t k = 0; k < p->n; k++)
         if (p->clamped[k]) point_grid_insert(&clamped, k);
     for (int body = 0; body < scene->n_solid; body++) {
@@ -117,18 +118,18 @@ static enum err warn_of_full_clamps(struct check *c)
         const int rows = free_rows(scene, &clamped, body);
         if (rows >= RESOLVED_ROWS || (rows > 0 && scene_is_bonded(scene, body))) continue;
         if (rows == 0)
-            warn_at(c->diag, scene, line,
+            warn_at(check->diag, scene, line,
                     "`clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
                     "the clamp smaller, or use a [wall], which is faster",
                     all, name);
         else if (rows == 1)
-            warn_at(c->diag, scene, line,
+            warn_at(check->diag, scene, line,
                     "`clamp` leaves only %lld of %lld particles of [solid %s] free, all of them "
                     "beside clamped ones: they move, but the body can neither bend nor stretch as "
                     "drawn; make the clamp smaller, or use a finer dp",
                     all - held, all, name);
         else
-            warn_at(c->diag, scene, line,
+            warn_at(check->diag, scene, line,
                     "`clamp` leaves only %d rows of particles of [solid %s] free, so what bends "
                     "or stretches there is inaccurate; make the clamp smaller, or use a finer dp, "
                     "for %d rows or more",
@@ -138,9 +139,9 @@ static enum err warn_of_full_clamps(struct check *c)
 }
 
 /* A small circle is meant as a hinge, but two particles that are held also hold the angle. */
-static void warn_of_hinge(struct check *c, int body)
+static void warn_of_hinge(struct check *check, int body)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_points *const p = &scene->points[KIND_SOLID];
     const struct shape *const clamp = scene->solid[body].clamp.item;
     long long held = 0;
@@ -155,34 +156,35 @@ static void warn_of_hinge(struct check *c, int body)
         if (r < best) best = r, nearest = k;
     }
     if (held >= 2)
-        warn_at(c->diag, scene, clamp->line,
+        warn_at(check->diag, scene, clamp->line,
                 "this small clamp holds %lld particles of [solid %s], so the body cannot turn "
                 "about it; a hinge holds one: clamp = circle %.6g, %.6g, 0.6*dp",
                 held, scene->solid[body].common.name, p->x[nearest], p->y[nearest]);
 }
 
 /* Whether a clamped particle of the body touches a particle of the wall. */
-static bool is_clamped_to(const struct check *c, int body, int wall)
+static bool is_clamped_to(const struct check *check, int body, int wall)
 {
-    const struct scene_points *const p = &c->scene->points[KIND_SOLID];
+    const struct scene_points *const p = &check->scene->points[KIND_SOLID];
     for (int64_t k = 0; k < p->n; k++) {
         if (p->body[k] != body || !p->clamped[k]) continue;
         struct point_visit v =
-            point_grid_visit(&c->points.grid, p->x[k], p->y[k], 1.5 * c->scene->top.dp);
-        while (point_grid_next(&c->points.grid, &v))
-            if (c->points.kind[v.k] == KIND_WALL && c->points.section[v.k] == wall) return true;
+            point_grid_visit(&check->points.grid, p->x[k], p->y[k], 1.5 * check->scene->top.dp);
+        while (point_grid_next(&check->points.grid, &v))
+            if (check->points.kind[v.k] == KIND_WALL && check->points.section[v.k] == wall)
+                return true;
     }
     return false;
 }
 
 /* A tank that moves and the clamp of a body in it that does not, or not in the same way. */
-static void warn_of_other_motions(struct check *c, int body)
+static void warn_of_other_motions(struct check *check, int body)
 {
-    const struct scene_solid *const b = &c->scene->solid[body];
-    for (int wall = 0; wall < c->scene->n_wall; wall++) {
-        const struct scene_wall *const w = &c->scene->wall[wall];
-        if (strcmp(b->clamp_motion, w->motion) == 0 || !is_clamped_to(c, body, wall)) continue;
-        warn_at(c->diag, c->scene, b->common.line,
+    const struct scene_solid *const b = &check->scene->solid[body];
+    for (int wall = 0; wall < check->scene->n_wall; wall++) {
+        const struct scene_wall *const w = &check->scene->wall[wall];
+        if (strcmp(b->clamp_motion, w->motion) == 0 || !is_clamped_to(check, body, wall)) continue;
+        warn_at(check->diag, check->scene, b->common.line,
                 "the clamp of [solid %s] %s%s but touches [wall %s], which %s%s, so "
                 "the two will overlap or part; `%s = %s` moves both",
                 b->common.name, b->clamp_motion[0] ? "has the motion " : "is at rest",
@@ -196,13 +198,13 @@ static void warn_of_other_motions(struct check *c, int body)
 /* --- material --- */
 
 /* Mostly units are wrong: a density in g/cm^3, a modulus in MPa without its unit. */
-static void warn_of_material(struct check *c, int body)
+static void warn_of_material(struct check *check, int body)
 {
     enum { LIGHTEST_FOAM = 5 }; /* kg/m^3; polymer foams have 10 and more */
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_solid *const b = &scene->solid[body];
     if (b->density < LIGHTEST_FOAM)
-        warn_at(c->diag, scene, b->common.line,
+        warn_at(check->diag, scene, b->common.line,
                 "[solid %s] has a density of %.4g kg/m^3, less than any foam, so it has "
                 "hardly any inertia; rubber has about 1100 kg/m^3",
                 b->common.name, b->density);
@@ -215,7 +217,7 @@ static void warn_of_material(struct check *c, int body)
     const double weight = extent_along(scene, KIND_SOLID, body, scene->top.gravity);
     const double own = b->gravity ? b->density * weight : 0, pressure = max2(own, water);
     if (pressure > 0.1 * b->young)
-        warn_at(c->diag, scene, b->common.line,
+        warn_at(check->diag, scene, b->common.line,
                 "[solid %s] is too soft for %s of %.3g Pa, which is %.2g times its `young` = "
                 "%.3g Pa: it may collapse and a guard stop the run; check the unit, such as MPa",
                 b->common.name, own > water ? "its own weight" : "the pressure of the water",
@@ -224,7 +226,7 @@ static void warn_of_material(struct check *c, int body)
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_at(c->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
+        warn_at(check->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
                 "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
                 "sqrt(young/density) = %.3g m/s: an impact crushes it and a guard stops the run; "
                 "check the units of `velocity`, `young` and `density`",
@@ -233,50 +235,52 @@ static void warn_of_material(struct check *c, int body)
 
 /* By L-1 the moment on a body that turns and sticks is too large by 2 mu A times its rate of
  * turning. At low Reynolds numbers it turns twice as fast in a shear as it should. */
-static void warn_of_turning(struct check *c, int body)
+static void warn_of_turning(struct check *check, int body)
 {
-    const struct scene_solid *const b = &c->scene->solid[body];
+    const struct scene_solid *const b = &check->scene->solid[body];
     double nu = 0;
-    for (int k = 0; k < c->scene->n_fluid; k++) nu = max2(nu, c->scene->fluid[k].laminar_viscosity);
+    for (int k = 0; k < check->scene->n_fluid; k++)
+        nu = max2(nu, check->scene->fluid[k].laminar_viscosity);
     if (nu > 0 && b->slip == SLIP_NONE && b->clamp.n == 0)
-        warn_at(c->diag, c->scene, b->common.line,
+        warn_at(check->diag, check->scene, b->common.line,
                 "[solid %s] is free to turn and has slip = none: the viscous moment on it is "
                 "too large by 2 mu A times its rate of turning (mu = %.3g Pa s, A: its area). At "
                 "low Reynolds numbers it turns too fast, by up to two times; forces are right",
-                b->common.name, nu * c->scene->rho0);
+                b->common.name, nu * check->scene->rho0);
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
  * not depend on the step (tests/stability/test_step_bound.c). */
-static void warn_of_flutter(const struct check *c, int body)
+static void warn_of_flutter(const struct check *check, int body)
 {
-    const struct scene_solid *const b = &c->scene->solid[body];
+    const struct scene_solid *const b = &check->scene->solid[body];
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
     if (b->hourglass_form == HOURGLASS_VARIATIONAL || !(b->hourglass > (quadratic ? 0 : 10)))
         return;
-    warn_at(c->diag, c->scene, b->common.line,
+    warn_at(check->diag, check->scene, b->common.line,
             "[solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
             "hourglass_form = variational%s",
             b->common.name, quadratic ? "gradient = quadratic" : "hourglass above 10",
             quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
-enum err warn_of_solids(struct check *c)
+enum err warn_of_solids(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     if (scene->n_solid == 0) return ERR_OK;
     if (!(effects_of_scene(scene) & FX_CONTACT) && scene->domain.periodic != PERIODIC_NONE)
-        diag_warn(c->diag, "contact is not computed in a domain with periodic sides, so solids may "
-                           "pass through each other and through walls; periodic = none enables "
-                           "contact");
-    TRY(warn_of_loose_bodies(c));
-    TRY(warn_of_full_clamps(c));
+        diag_warn(check->diag,
+                  "contact is not computed in a domain with periodic sides, so solids may "
+                  "pass through each other and through walls; periodic = none enables "
+                  "contact");
+    TRY(warn_of_loose_bodies(check));
+    TRY(warn_of_full_clamps(check));
     for (int k = 0; k < scene->n_solid; k++) {
-        warn_of_hinge(c, k);
-        warn_of_other_motions(c, k);
-        warn_of_material(c, k);
-        warn_of_turning(c, k);
-        warn_of_flutter(c, k);
+        warn_of_hinge(check, k);
+        warn_of_other_motions(check, k);
+        warn_of_material(check, k);
+        warn_of_turning(check, k);
+        warn_of_flutter(check, k);
     }
     return ERR_OK;
 }

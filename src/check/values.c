@@ -11,49 +11,49 @@
 /* A table this many times as long as the run has mostly another unit of time. */
 enum { LONG_TABLE = 100 };
 
-static void warn_of_sound_speed(struct check *c, const struct scene_fluid *fluid)
+static void warn_of_sound_speed(struct check *check, const struct scene_fluid *fluid)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const double least = 10 * max2(fluid->max_speed, sqrt(fluid->max_pressure / fluid->density));
     if (scene->c0 < least * (1 - 1e-9))
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will "
                 "vary by more than 1 %%",
                 fluid->common.name, scene->c0, least);
     if (!isnan(fluid->surface) && scene->top.gravity[1] == 0)
-        warn_at(c->diag, scene, fluid->common.line,
+        warn_at(check->diag, scene, fluid->common.line,
                 "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so "
                 "the initial pressure is zero",
                 fluid->common.name);
 }
 
-static void warn_of_shift(struct check *c, const struct scene_fluid *fluid)
+static void warn_of_shift(struct check *check, const struct scene_fluid *fluid)
 {
-    const double *const gravity = c->scene->top.gravity, cfl = c->scene->numerics.cfl;
+    const double *const gravity = check->scene->top.gravity, cfl = check->scene->numerics.cfl;
     if (fluid->shifting_speed != SHIFTING_LARGEST) return;
     if (gravity[0] != 0 || gravity[1] != 0)
-        warn_at(c->diag, c->scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
                 "energy, in proportion to `shifting`; if the fluid has a free surface, use "
                 "shifting_speed = own",
                 fluid->common.name);
     if (fluid->shifting * cfl > 5 * (1 + 1e-9))
-        warn_at(c->diag, c->scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit "
                 "of shifting_speed = largest; reduce one of them",
                 fluid->common.name, fluid->shifting, cfl);
 }
 
 /* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
-static void warn_of_sliding(struct check *c)
+static void warn_of_sliding(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     if (scene->numerics.sides != SIDES_ONE || scene->n_fluid == 0) return;
     for (int k = 0; k < scene->n_solid + scene->n_wall; k++) {
         const struct scene_solid *const solid = k < scene->n_solid ? &scene->solid[k] : NULL;
         const struct scene_wall *const wall = solid ? NULL : &scene->wall[k - scene->n_solid];
         if ((solid ? solid->slip : wall->slip) != SLIP_FREE || !(solid || *wall->motion)) continue;
-        warn_at(c->diag, scene, scene_line(scene, SECTION_numerics, 0, "sides"),
+        warn_at(check->diag, scene, scene_line(scene, SECTION_numerics, 0, "sides"),
                 "sides = one drags the fluid that slides along [%s %s], as if the body were larger "
                 "by a spacing all round: the added mass of a cylinder of 10 spacings is 40 %% too "
                 "large; use sides = both, or slip = none",
@@ -62,44 +62,44 @@ static void warn_of_sliding(struct check *c)
 }
 
 /* Its time, where a table is much longer than the run. */
-static void warn_of_long_table(struct check *c, const struct scene_table *table, int line,
+static void warn_of_long_table(struct check *check, const struct scene_table *table, int line,
                                const char *key, const char *name)
 {
-    const double last = table->t[table->n - 1], end = c->scene->top.end_time;
+    const double last = table->t[table->n - 1], end = check->scene->top.end_time;
     if (last > LONG_TABLE * end)
-        warn_at(c->diag, c->scene, line,
+        warn_at(check->diag, check->scene, line,
                 "%s = %.200s lasts until t = %g s, of which the run uses the first %g s "
                 "(end_time): its times are in seconds, not in milliseconds",
                 key, name, last, end);
 }
 
-static void warn_of_motion_of_nothing(struct check *c, const struct scene_motion *motion)
+static void warn_of_motion_of_nothing(struct check *check, const struct scene_motion *motion)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     for (int k = 0; k < scene->n_wall; k++)
         if (strcmp(scene->wall[k].motion, motion->common.name) == 0) return;
     for (int k = 0; k < scene->n_solid; k++)
         if (strcmp(scene->solid[k].clamp_motion, motion->common.name) == 0) return;
-    warn_at(c->diag, scene, motion->common.line,
+    warn_at(check->diag, scene, motion->common.line,
             "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
             "[solid]",
             motion->common.name);
 }
 
 /* A table that ends in motion, while the run goes on: the wall stops within a step. */
-static void warn_of_motion_table(struct check *c, int k)
+static void warn_of_motion_table(struct check *check, int k)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_motion *const motion = &scene->motion[k];
     const struct scene_table *const table = &scene->motion_data[k];
     const int n = table->n, line = scene_line(scene, SECTION_motion, k, "file");
     char key[2 * SCENE_NAME];
     snprintf(key, sizeof key, "[motion %s] file", motion->common.name);
-    warn_of_long_table(c, table, line, key, motion->file);
+    warn_of_long_table(check, table, line, key, motion->file);
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_at(c->diag, scene, line,
+    warn_at(check->diag, scene, line,
             "%s = %.200s ends at t = %.6g s, before end_time = %.6g s, and still moves in its last "
             "row: what it moves stops there within a step and then rests; continue the table, end "
             "it at rest, or use end_time = %.6g s",
@@ -108,17 +108,17 @@ static void warn_of_motion_table(struct check *c, int k)
 
 /* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. An
  * accelerometer at rest shows gravity, which the table would add a second time. */
-static void warn_of_gravity_table(struct check *c)
+static void warn_of_gravity_table(struct check *check)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const struct scene_table *const table = &scene->gravity_data;
     const double *const g = scene->top.gravity, size2 = square(g[0]) + square(g[1]);
     const char *const name = scene->top.gravity_file;
     const int line = scene_line(scene, SECTION_top, 0, "gravity_file"), last = table->n - 1;
-    warn_of_long_table(c, table, line, "gravity_file", name);
+    warn_of_long_table(check, table, line, "gravity_file", name);
     const bool acts = table->x[last] != 0 || table->y[last] != 0;
     if (acts && table->t[last] < scene->top.end_time * (1 - 1e-9))
-        warn_at(c->diag, scene, line,
+        warn_at(check->diag, scene, line,
                 "gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
                 "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add "
                 "a row of zeros, or use end_time = %.6g s",
@@ -131,7 +131,7 @@ static void warn_of_gravity_table(struct check *c)
         sum[1] += half * (table->y[k] + table->y[k + 1]);
     }
     if (size2 > 0 && fabs(sum[0] * g[0] + sum[1] * g[1]) > 0.9 * size2)
-        warn_at(c->diag, scene, line,
+        warn_at(check->diag, scene, line,
                 "gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
                 "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
                 "out of one of them",
@@ -140,20 +140,20 @@ static void warn_of_gravity_table(struct check *c)
 
 /* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within
  * `absorb`. */
-static void warn_of_absorb(struct check *c, const struct scene_open *open)
+static void warn_of_absorb(struct check *check, const struct scene_open *open)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = check->scene;
     const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h;
     const int line = scene_line(scene, open->section, open->index, "absorb");
     if (!(open->absorb > 0) || open->kind != OPEN_PRESSURE) return;
     if (wave < reach)
-        warn_at(c->diag, scene, line,
+        warn_at(check->diag, scene, line,
                 "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The fluid "
                 "resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out waves of "
                 "up to the length L",
                 open->word, open->common->name, open->absorb, wave, reach);
     if (open->absorb > scene->top.end_time)
-        warn_at(c->diag, scene, line,
+        warn_at(check->diag, scene, line,
                 "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
                 "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a shorter "
                 "time",
@@ -161,24 +161,24 @@ static void warn_of_absorb(struct check *c, const struct scene_open *open)
                 scene->rho0 * scene->c0);
 }
 
-void warn_of_values(struct check *c)
+void warn_of_values(struct check *check)
 {
-    const struct scene *const scene = c->scene;
-    for (int k = 0; k < scene->n_fluid; k++) warn_of_sound_speed(c, &scene->fluid[k]);
-    if (scene->n_fluid > 0) warn_of_shift(c, &scene->fluid[0]);
-    warn_of_sliding(c);
+    const struct scene *const scene = check->scene;
+    for (int k = 0; k < scene->n_fluid; k++) warn_of_sound_speed(check, &scene->fluid[k]);
+    if (scene->n_fluid > 0) warn_of_shift(check, &scene->fluid[0]);
+    warn_of_sliding(check);
     for (int k = 0; k < scene->n_motion; k++) {
-        warn_of_motion_of_nothing(c, &scene->motion[k]);
-        if (*scene->motion[k].file) warn_of_motion_table(c, k);
+        warn_of_motion_of_nothing(check, &scene->motion[k]);
+        if (*scene->motion[k].file) warn_of_motion_table(check, k);
     }
-    if (scene->gravity_data.n > 0) warn_of_gravity_table(c);
+    if (scene->gravity_data.n > 0) warn_of_gravity_table(check);
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)
-            warn_at(c->diag, scene, open.common->line,
+            warn_at(check->diag, scene, open.common->line,
                     "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
                     "this boundary; use density_diffusion = 0.1",
                     open.word, open.common->name);
-        warn_of_absorb(c, &open);
+        warn_of_absorb(check, &open);
     }
 }

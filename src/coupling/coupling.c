@@ -23,13 +23,13 @@ void coupling_find_forces(const struct coupling *coupling, struct particles kind
     const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
     force_sweep *const find_force = mixed ? find_force_mixed : find_force_double;
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        struct particles *const p = &kinds[kind];
-        if (!p->fx) continue;
-        particles_clear(p->fx, p->n); /* those without fluid nearby get no force */
-        particles_clear(p->fy, p->n);
-        particles_clear(p->wet_x, p->n);
-        particles_clear(p->wet_y, p->n);
-        find_force(coupling->fluid, p, (enum kind)kind, cells);
+        struct particles *const particles = &kinds[kind];
+        if (!particles->fx) continue;
+        particles_clear(particles->fx, particles->n); /* those without fluid nearby get no force */
+        particles_clear(particles->fy, particles->n);
+        particles_clear(particles->wet_x, particles->n);
+        particles_clear(particles->wet_y, particles->n);
+        find_force(coupling->fluid, particles, (enum kind)kind, cells);
     }
 }
 
@@ -47,22 +47,22 @@ SPHFSI_INLINE double extrapolated(double *mean, double force, double per_time, d
  * to the middle of their kicks; `last`: the step before. */
 static void extrapolate_force(struct coupling *coupling, double ahead, double last)
 {
-    struct particles *const p = coupling->particles;
+    struct particles *const particles = coupling->particles;
     const double time = last + averaging_time(coupling), weight = last / time,
                  per_time = ahead / time;
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] = extrapolated(&p->mean_fx[i], p->fx[i], per_time, weight);
-        p->fy[i] = extrapolated(&p->mean_fy[i], p->fy[i], per_time, weight);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->fx[i] = extrapolated(&particles->mean_fx[i], particles->fx[i], per_time, weight);
+        particles->fy[i] = extrapolated(&particles->mean_fy[i], particles->fy[i], per_time, weight);
     }
 }
 
-static void scale_force(struct particles *p, double factor)
+static void scale_force(struct particles *particles, double factor)
 {
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] *= factor;
-        p->fy[i] *= factor;
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->fx[i] *= factor;
+        particles->fy[i] *= factor;
     }
 }
 
@@ -75,25 +75,26 @@ void coupling_predict(struct coupling *coupling, double dt, double last)
 
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last)
 {
-    struct particles *const p = coupling->particles;
+    struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, kick);
     if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
-    if (coupling->substeps && p->mean_fx) extrapolate_force(coupling, 0.5 * (dt - dt / n), last);
+    if (coupling->substeps && particles->mean_fx)
+        extrapolate_force(coupling, 0.5 * (dt - dt / n), last);
     /* Over its sub-steps the structure gets exactly the impulse given to the fluid. */
-    if (kick != dt) scale_force(p, kick / dt);
+    if (kick != dt) scale_force(particles, kick / dt);
         /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x0[i] = p->ux[i];
-        p->y0[i] = p->uy[i];
-        p->vx0[i] = p->vx[i];
-        p->vy0[i] = p->vy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x0[i] = particles->ux[i];
+        particles->y0[i] = particles->uy[i];
+        particles->vx0[i] = particles->vx[i];
+        particles->vy0[i] = particles->vy[i];
     }
     if (impedance) impulse_begin(coupling, dt / n);
-    solid_advance(coupling->solid, p, dt / n, n, coupling->centred);
+    solid_advance(coupling->solid, particles, dt / n, n, coupling->centred);
     if (impedance) impulse_end(coupling);
-    const double moved = solid_set_positions(p);
+    const double moved = solid_set_positions(particles);
     motion_after_substeps(coupling, dt);
     return moved;
 }

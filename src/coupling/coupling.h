@@ -9,8 +9,8 @@
 #include "solid/solid.h"
 
 /* Eq. 21b for particles of a kind near fluid (force.h). */
-typedef void force_sweep(const struct fluid *f, struct particles *p, enum kind kind,
-                         const struct cells *c);
+typedef void force_sweep(const struct fluid *fluid, struct particles *particles, enum kind kind,
+                         const struct cells *cells);
 extern force_sweep find_force_mixed, find_force_double;
 
 /* All but `substeps` and `impedance` are set by its owner. */

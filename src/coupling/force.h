@@ -26,7 +26,7 @@ SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS],
 
 /* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
  * the mirrored velocity. */
-static void drag_force(const struct fluid *f, const struct neighbours *neighbours,
+static void drag_force(const struct fluid *fluid, const struct neighbours *neighbours,
                        const struct receiver *s, const double *volume,
                        const struct vector_constants *k, double *fx, double *fy)
 {
@@ -39,13 +39,13 @@ static void drag_force(const struct fluid *f, const struct neighbours *neighbour
             sum_x[part] = vfma(weight, q.u, sum_x[part]);
             sum_y[part] = vfma(weight, q.v, sum_y[part]);
         }
-    add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
+    add_force(sum_x, sum_y, -PAIR_SLOPE * fluid->k.h, volume, fx, fy);
 }
 
 /* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with opposite
  * sign, N/m per depth; equal and opposite to the fluid's sums. With FX_IMPEDANCE also the surface
  * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
-SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
+SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbours *neighbours,
                                const struct receiver *s, const real *own, const double *volume,
                                const struct vector_constants *k, effect_set effects,
                                double *const force[2], double *const wet[2])
@@ -75,14 +75,14 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
             wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
             wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
         }
-    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
+    add_force(sum_x, sum_y, PAIR_SLOPE * fluid->k.h, volume, force[0], force[1]);
     if (effects & FX_IMPEDANCE)
-        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
+        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);
 }
 
 /* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed
  * fields. */
-SPHFSI_INLINE void force_on_cluster(const struct fluid *f, struct particles *p,
+SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles *particles,
                                     const int32_t *index, int count, const real *own,
                                     const struct neighbours *neighbours,
                                     const struct cell_sides *sides,
@@ -97,71 +97,73 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *f, struct particles *p,
         s.p = vspread(own + PACKED_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
-        fluid_force(f, neighbours, &s, own, volume, k, fx, (double *[]){&force_x[r], &force_y[r]},
-                    (double *[]){&wet_x[r], &wet_y[r]});
+        fluid_force(fluid, neighbours, &s, own, volume, k, fx,
+                    (double *[]){&force_x[r], &force_y[r]}, (double *[]){&wet_x[r], &wet_y[r]});
         if (!(fx & FX_NO_SLIP)) continue;
         s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
         s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
         for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
-        drag_force(f, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
+        drag_force(fluid, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
     }
     for (int r = 0; r < count; r++) {
-        p->fx[index[r]] = force_x[r];
-        p->fy[index[r]] = force_y[r];
+        particles->fx[index[r]] = force_x[r];
+        particles->fy[index[r]] = force_y[r];
         if (!(fx & FX_IMPEDANCE)) continue;
-        p->wet_x[index[r]] = wet_x[r];
-        p->wet_y[index[r]] = wet_y[r];
+        particles->wet_x[index[r]] = wet_x[r];
+        particles->wet_y[index[r]] = wet_y[r];
     }
 }
 
-SPHFSI_INLINE void force_on_cell(const struct fluid *f, struct particles *p, enum kind kind,
-                                 const struct cells *c, int32_t cell,
+SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *particles,
+                                 enum kind kind, const struct cells *cells, int32_t cell,
                                  const struct vector_constants *k, effect_set fx)
 {
-    const struct cell_list *const list = &c->kind[kind];
-    struct neighbour_scratch *const scratch = &f->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(f, c);
-    gather_around_cell(scratch, f, c, KIND_FLUID, cell);
+    const struct cell_list *const list = &cells->kind[kind];
+    struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    gather_around_cell(scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m;
-        const struct neighbours neighbours = gather_clusters(scratch, f, KIND_FLUID, kind, cluster);
-        force_on_cluster(f, p, &list->order[list->start[cell] + m * CLUSTER],
+        const struct neighbours neighbours =
+            gather_clusters(scratch, fluid, KIND_FLUID, kind, cluster);
+        force_on_cluster(fluid, particles, &list->order[list->start[cell] + m * CLUSTER],
                          particles_in(list, cell, m),
-                         cluster_packed(&f->packed[kind], (size_t)cluster), &neighbours, &sides, k,
-                         fx);
+                         cluster_packed(&fluid->packed[kind], (size_t)cluster), &neighbours, &sides,
+                         k, fx);
     }
 }
 
 /* A cell, for the sets of effects that are frequent; `any` has those of the case. */
-typedef void SWEEP(force)(const struct fluid *f, struct particles *p, enum kind kind,
-                          const struct cells *c, int32_t cell, const struct vector_constants *k);
-#define FORCE(name, set)                                                                        \
-    static void SWEEP(force_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
-                                    const struct cells *c, int32_t cell,                        \
-                                    const struct vector_constants *k)                           \
-    {                                                                                           \
-        force_on_cell(f, p, kind, c, cell, k, (set));                                           \
+typedef void SWEEP(force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
+                          const struct cells *cells, int32_t cell,
+                          const struct vector_constants *k);
+#define FORCE(name, set)                                                                     \
+    static void SWEEP(force_##name)(const struct fluid *fluid, struct particles *particles,  \
+                                    enum kind kind, const struct cells *cells, int32_t cell, \
+                                    const struct vector_constants *k)                        \
+    {                                                                                        \
+        force_on_cell(fluid, particles, kind, cells, cell, k, (set));                        \
     }
 #define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
 FORCE(bare, 0u)
 FORCE(impedance, FX_IMPEDANCE)
 FORCE(standard, STANDARD_SURFACE)
 FORCE(standard_impedance, STANDARD_SURFACE | FX_IMPEDANCE)
-FORCE(any, f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+FORCE(any, fluid->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
 #undef FORCE
 
-void SWEEP(find_force)(const struct fluid *f, struct particles *p, enum kind kind,
-                       const struct cells *c)
+void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
+                       const struct cells *cells)
 {
-    const struct vector_constants k = constants_of_sweep(f);
-    const bool impedance = kind == KIND_SOLID && f->effects & FX_IMPEDANCE;
-    const effect_set surface = f->effects & (effect_set)SURFACE_EFFECTS;
+    const struct vector_constants k = constants_of_sweep(fluid);
+    const bool impedance = kind == KIND_SOLID && fluid->effects & FX_IMPEDANCE;
+    const effect_set surface = fluid->effects & (effect_set)SURFACE_EFFECTS;
     SWEEP(force) *const force =
         surface == 0 ? (impedance ? SWEEP(force_impedance) : SWEEP(force_bare))
         : surface == STANDARD_SURFACE
             ? (impedance ? SWEEP(force_standard_impedance) : SWEEP(force_standard))
             : SWEEP(force_any);
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t n = 0; n < f->n_near_fluid[kind]; n++)
-        force(f, p, kind, c, f->near_fluid[kind][n], &k);
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
+        force(fluid, particles, kind, cells, fluid->near_fluid[kind][n], &k);
 }

@@ -21,6 +21,6 @@ void impulse_return(struct coupling *coupling, double kick);
 void impulse_set_time(struct coupling *coupling, double dt);
 
 /* Particle i and the fluid have no impulse to exchange. */
-void impulse_clear(struct particles *p, int64_t i);
+void impulse_clear(struct particles *particles, int64_t i);
 
 #endif

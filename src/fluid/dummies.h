@@ -4,7 +4,8 @@
 
 /* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with
  * accelerations (ax, ay) from the fluid within reach; 0 if there is none. */
-SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct neighbours *neighbours,
+SPHFSI_INLINE void extrapolated_pressure(const struct fluid *fluid,
+                                         const struct neighbours *neighbours,
                                          const struct receiver *s, const double *ax,
                                          const double *ay, double pressure[GROUPS])
 {
@@ -27,13 +28,13 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct nei
     total(sum_x, x);
     total(sum_y, y);
     for (int g = 0; g < GROUPS; g++) {
-        const double lift =
-            (f->k.gravity[0] - ax[g]) * (double)x[g] + (f->k.gravity[1] - ay[g]) * (double)y[g];
-        const double mean = ((double)p[g] + f->k.rho0 * f->k.h * lift) / (double)weight[g];
+        const double lift = (fluid->k.gravity[0] - ax[g]) * (double)x[g] +
+                            (fluid->k.gravity[1] - ay[g]) * (double)y[g];
+        const double mean = ((double)p[g] + fluid->k.rho0 * fluid->k.h * lift) / (double)weight[g];
         /* A particle alone on a wall interacts with its own pressure only. With suction as well as
          * pressure its bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third
          * of c0. */
-        pressure[g] = has_fluid_near(weight[g]) ? max2(f->k.lowest_wall_pressure, mean) : 0;
+        pressure[g] = has_fluid_near(weight[g]) ? max2(fluid->k.lowest_wall_pressure, mean) : 0;
     }
 }
 
@@ -81,12 +82,12 @@ SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double o
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
-SPHFSI_INLINE void gather_velocity(const struct dummies *d, const struct particles *p,
+SPHFSI_INLINE void gather_velocity(const struct dummies *d, const struct particles *particles,
                                    effect_set fx, double u[CLUSTER], double v[CLUSTER])
 {
     const bool moves = fx & FX_MOTION;
-    gather(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
-    gather(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
+    gather(d, d->kind == KIND_SOLID ? particles->wx : moves ? particles->vx : NULL, u);
+    gather(d, d->kind == KIND_SOLID ? particles->wy : moves ? particles->vy : NULL, v);
 }
 
 SPHFSI_INLINE void scatter(const struct dummies *d, const double in[CLUSTER], double *field)
@@ -101,50 +102,56 @@ SPHFSI_INLINE void pack_four(const struct dummies *d, const double in[CLUSTER], 
 }
 
 /* Positions, and the box around them. */
-SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *p,
-                                 const struct cells *c, int32_t cell, const struct dummies *d)
+SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particles *particles,
+                                 const struct cells *cells, int32_t cell, const struct dummies *d)
 {
-    const double inv_h = 1 / f->k.h;
+    const double inv_h = 1 / fluid->k.h;
     for (int r = 0; r < d->count; r++) {
         const int32_t i = d->at[r];
-        const double x = cells_minimum_image(c, 0, p->x[i] - cell_centre_x(c, cell));
-        const double y = cells_minimum_image(c, 1, p->y[i] - cell_centre_y(c, cell));
+        const double x =
+            cells_minimum_image(cells, 0, particles->x[i] - cell_centre_x(cells, cell));
+        const double y =
+            cells_minimum_image(cells, 1, particles->y[i] - cell_centre_y(cells, cell));
         d->packed[PACKED_X * CLUSTER + r] = (real)(x * inv_h);
         d->packed[PACKED_Y * CLUSTER + r] = (real)(y * inv_h);
     }
-    cluster_close(d->packed, f->packed[d->kind].n, d->count);
-    cluster_box(&f->packed[d->kind].boxes, d->cluster, d->packed, d->count);
+    cluster_close(d->packed, fluid->packed[d->kind].n, d->count);
+    cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
 /* What fx_one_sided and fx_repulsion need of the dummies. */
-SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct particles *p,
+SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
                                        const struct dummies *d, effect_set fx)
 {
     double ax[CLUSTER], ay[CLUSTER];
-    gather(d, p->ax, ax);
-    gather(d, p->ay, ay);
+    gather(d, particles->ax, ax);
+    gather(d, particles->ay, ay);
     for (int r = 0; r < d->count; r++) {
         real *const own = d->packed + r;
         if (fx & FX_ONE_SIDED) {
-            own[PACKED_LIFT_X * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[0] - ax[r]));
-            own[PACKED_LIFT_Y * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[1] - ay[r]));
+            own[PACKED_LIFT_X * CLUSTER] =
+                (real)(fluid->k.rho0 * fluid->k.h * (fluid->k.gravity[0] - ax[r]));
+            own[PACKED_LIFT_Y * CLUSTER] =
+                (real)(fluid->k.rho0 * fluid->k.h * (fluid->k.gravity[1] - ay[r]));
         }
         if (fx & FX_REPULSION) {
             const double spacing =
-                0.5 * (1 + sqrt(f->volume[d->kind][p->body[d->at[r]]])) * f->k.dp;
-            own[PACKED_NEAR * CLUSTER] = (real)(square(REPULSION_REACH * spacing / f->k.h) + ETA2);
+                0.5 * (1 + sqrt(fluid->volume[d->kind][particles->body[d->at[r]]])) * fluid->k.dp;
+            own[PACKED_NEAR * CLUSTER] =
+                (real)(square(REPULSION_REACH * spacing / fluid->k.h) + ETA2);
         }
     }
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
  * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
-static void no_slip(const struct fluid *f, const struct particles *p, const struct dummies *d,
-                    const struct neighbours *neighbours, const struct cell_sides *sides)
+static void no_slip(const struct fluid *fluid, const struct particles *particles,
+                    const struct dummies *d, const struct neighbours *neighbours,
+                    const struct cell_sides *sides)
 {
-    const bool own_image = f->effects & FX_ONE_SIDED;
+    const bool own_image = fluid->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
-    gather_velocity(d, p, f->effects, u, v);
+    gather_velocity(d, particles, fluid->effects, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && neighbours->n && !own_image; r += GROUPS) {
@@ -152,7 +159,8 @@ static void no_slip(const struct fluid *f, const struct particles *p, const stru
         mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        sticks[r] = neighbours->n && f->sticks[d->kind][p->body[d->at[r]]] ? 1 + own_image : 0;
+        sticks[r] =
+            neighbours->n && fluid->sticks[d->kind][particles->body[d->at[r]]] ? 1 + own_image : 0;
         if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];
@@ -163,48 +171,49 @@ static void no_slip(const struct fluid *f, const struct particles *p, const stru
 }
 
 /* A cluster of a cell. */
-SPHFSI_INLINE struct dummies dummies_at(const struct fluid *f, const struct cells *c,
+SPHFSI_INLINE struct dummies dummies_at(const struct fluid *fluid, const struct cells *cells,
                                         enum kind kind, int32_t cell, int32_t m)
 {
-    const struct cell_list *const list = &c->kind[kind];
+    const struct cell_list *const list = &cells->kind[kind];
     const size_t cluster = (size_t)list->cluster[cell] + (size_t)m;
     return (struct dummies){kind, particles_in(list, cell, m),
                             &list->order[list->start[cell] + m * CLUSTER], cluster,
-                            cluster_packed(&f->packed[kind], cluster)};
+                            cluster_packed(&fluid->packed[kind], cluster)};
 }
 
 /* Their pressure from the fluid within reach. */
-SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particles *p,
+SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct particles *particles,
                                     const struct dummies *d, const struct neighbours *neighbours,
                                     const struct cell_sides *sides, double pressure[CLUSTER])
 {
     double ax[CLUSTER], ay[CLUSTER];
-    gather(d, p->ax, ax);
-    gather(d, p->ay, ay);
+    gather(d, particles->ax, ax);
+    gather(d, particles->ay, ay);
     for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
         const struct receiver s = receiver_at(sides, d->packed + r);
-        extrapolated_pressure(f, neighbours, &s, &ax[r], &ay[r], &pressure[r]);
+        extrapolated_pressure(fluid, neighbours, &s, &ax[r], &ay[r], &pressure[r]);
     }
 }
 
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
  * than the fluid. */
-SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
+SPHFSI_INLINE void dummies_state(const struct fluid *fluid, struct particles *particles,
                                  const struct dummies *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER], effect_set fx)
 {
-    const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
+    const double mean = fluid->k.mass / fluid->k.rho0 * square(1 / fluid->k.h);
     double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0}, acting[CLUSTER];
-    gather_velocity(d, p, fx, u, v);
+    gather_velocity(d, particles, fx, u, v);
     /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
      * (L-6); and on a structure that of the interface impulse (T-35b). */
-    gather(d, d->kind == KIND_SOLID ? p->interface_pressure : NULL, acting);
-    for (int r = 0; r < CLUSTER && !(f->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
-    for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
+    gather(d, d->kind == KIND_SOLID ? particles->interface_pressure : NULL, acting);
+    for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
+    for (int r = 0; r < d->count; r++)
+        volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
     for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
-    scatter(d, pressure, p->p);
-    scatter(d, dens, p->dens);
+    scatter(d, pressure, particles->p);
+    scatter(d, dens, particles->dens);
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
@@ -215,49 +224,51 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
 /* Pressures and state of the dummies of a cell. */
-SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
-                                         const struct cells *c, int32_t cell, effect_set fx)
+SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct particles *particles,
+                                         enum kind kind, const struct cells *cells, int32_t cell,
+                                         effect_set fx)
 {
-    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(f, c);
-    const int32_t clusters = clusters_in(&c->kind[kind], cell);
+    struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    const int32_t clusters = clusters_in(&cells->kind[kind], cell);
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
-    gather_around_cell(neighbour_scratch, f, c, KIND_FLUID, cell);
+    gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
-        const struct dummies d = dummies_at(f, c, kind, cell, m);
-        if (kind != KIND_WALL || !f->walls_placed) place_dummies(f, p, c, cell, &d);
+        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
+        if (kind != KIND_WALL || !fluid->walls_placed)
+            place_dummies(fluid, particles, cells, cell, &d);
         const struct neighbours neighbours =
-            gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
-        dummies_pressure(f, p, &d, &neighbours, &sides, &pressure[m * CLUSTER]);
+            gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
+        dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[m * CLUSTER]);
     }
     for (int32_t m = clusters * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
     for (int32_t m = 0; m < clusters * CLUSTER; m += EOS_BLOCK)
-        eos_dens_of_block(&pressure[m], f->k.rho0, f->k.c0, &dens[m]);
+        eos_dens_of_block(&pressure[m], fluid->k.rho0, fluid->k.c0, &dens[m]);
     for (int32_t m = 0; m < clusters; m++) {
-        const struct dummies d = dummies_at(f, c, kind, cell, m);
-        dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
+        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
+        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
     }
 }
 
 /* After it: what the effects of a surface need. */
-static void dummies_surface_of_cell(const struct fluid *f, const struct particles *p,
-                                    enum kind kind, const struct cells *c, int32_t cell)
+static void dummies_surface_of_cell(const struct fluid *fluid, const struct particles *particles,
+                                    enum kind kind, const struct cells *cells, int32_t cell)
 {
-    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(f, c);
-    for (int32_t m = 0; m < clusters_in(&c->kind[kind], cell); m++) {
-        const struct dummies d = dummies_at(f, c, kind, cell, m);
-        pack_surface_fields(f, p, &d, f->effects);
-        if (!(f->effects & FX_NO_SLIP)) continue;
+    struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    for (int32_t m = 0; m < clusters_in(&cells->kind[kind], cell); m++) {
+        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
+        pack_surface_fields(fluid, particles, &d, fluid->effects);
+        if (!(fluid->effects & FX_NO_SLIP)) continue;
         const struct neighbours neighbours =
-            gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
-        no_slip(f, p, &d, &neighbours, &sides);
+            gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
+        no_slip(fluid, particles, &d, &neighbours, &sides);
     }
 }
 
 /* The state of a cell, with a constant kind and without tests for motion. */
-typedef void SWEEP(dummies_cell)(const struct fluid *f, struct particles *p, enum kind kind,
-                                 const struct cells *c, int32_t cell);
+typedef void SWEEP(dummies_cell)(const struct fluid *fluid, struct particles *particles,
+                                 enum kind kind, const struct cells *cells, int32_t cell);
 #define DUMMIES(name, of_kind, set)                                                               \
     static void SWEEP(dummies_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
                                       const struct cells *c, int32_t cell)                        \
@@ -276,15 +287,15 @@ static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind 
     return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
 }
 
-static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
-                           const struct cells *c, enum kind kind)
+static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                           const struct cells *cells, enum kind kind)
 {
-    struct particles *const p = &kinds[kind];
-    SWEEP(dummies_cell) *const state = SWEEP(dummies_state)(f->effects, kind);
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
-        state(f, p, kind, c, f->near_fluid[kind][k]);
-        if (f->effects & SURFACE_EFFECTS)
-            dummies_surface_of_cell(f, p, kind, c, f->near_fluid[kind][k]);
+    struct particles *const particles = &kinds[kind];
+    SWEEP(dummies_cell) *const state = SWEEP(dummies_state)(fluid->effects, kind);
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++) {
+        state(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
+        if (fluid->effects & SURFACE_EFFECTS)
+            dummies_surface_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
     }
 }

@@ -23,22 +23,23 @@ struct fluid_constants {
 };
 
 /* Mass of a fluid particle over that of most, and per depth, kg/m. */
-SPHFSI_INLINE double relative_mass(const struct particles *p, int64_t i)
+SPHFSI_INLINE double relative_mass(const struct particles *particles, int64_t i)
 {
-    return p->m ? p->m[i] : 1;
+    return particles->m ? particles->m[i] : 1;
 }
-SPHFSI_INLINE double particle_mass(const struct fluid_constants *k, const struct particles *p,
-                                   int64_t i)
+SPHFSI_INLINE double particle_mass(const struct fluid_constants *k,
+                                   const struct particles *particles, int64_t i)
 {
-    return k->mass * relative_mass(p, i);
+    return k->mass * relative_mass(particles, i);
 }
 
 /* Its kinetic energy, potential energy in gravity g and compression energy (T-5), J/m. */
 SPHFSI_INLINE double particle_energy(const struct fluid_constants *k, const double g[2],
-                                     const struct particles *p, int64_t i)
+                                     const struct particles *particles, int64_t i)
 {
-    return particle_mass(k, p, i) * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] -
-                                     g[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+    return particle_mass(k, particles, i) *
+           (0.5 * (square(particles->vx[i]) + square(particles->vy[i])) - g[0] * particles->x[i] -
+            g[1] * particles->y[i] + eos_energy(particles->dens[i], k->c0));
 }
 
 /* Largest values over all fluid particles of the last evaluation; order-free maxima. */
@@ -175,30 +176,30 @@ struct fluid {
 };
 
 /* Chooses the kernel and allocates packed fields. */
-enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, effect_set effects,
-                      const struct particles kinds[KIND_COUNT], const struct cells *c,
-                      struct diag *d) SPHFSI_CHECKED;
+enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
+                      effect_set effects, const struct particles kinds[KIND_COUNT],
+                      const struct cells *cells, struct diag *d) SPHFSI_CHECKED;
 
 /* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
  * except those at the free surface. Returns the largest shift, m. */
-double fluid_shift(const struct fluid *f, struct particles *p, double dt);
+double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt);
 
 /* The density that the acoustic damper remembers moves towards the present one. */
-void fluid_follow_density(const struct fluid *f, struct particles *p, double dt);
+void fluid_follow_density(const struct fluid *fluid, struct particles *particles, double dt);
 
 /* After sorting: finds the cells of walls and solids that have fluid within reach, and the
  * reverse. */
-void fluid_find_near(struct fluid *f, const struct cells *c);
+void fluid_find_near(struct fluid *fluid, const struct cells *cells);
 
 /* Most particles of any kind in one cell. */
-int32_t fluid_fullest_cell(const struct cells *c);
+int32_t fluid_fullest_cell(const struct cells *cells);
 
 /* One evaluation: pressures, dummies, rates. The cells must have skin left (cells_skin_left). The
  * time of each pass is added to phase_seconds. */
-void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                    double phase_seconds[PHASE_COUNT]);
+void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                    const struct cells *cells, double phase_seconds[PHASE_COUNT]);
 
 /* The fluid's own pressures to p, which no step needs. */
-void fluid_show(const struct fluid *f, struct particles *p);
+void fluid_show(const struct fluid *fluid, struct particles *particles);
 
 #endif

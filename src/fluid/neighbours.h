@@ -41,11 +41,11 @@ SPHFSI_INLINE void total(const vreal sum[PARTS], real out[GROUPS])
 }
 
 SPHFSI_INLINE void gather_around_cell(struct neighbour_scratch *neighbour_scratch,
-                                      const struct fluid *f, const struct cells *c, enum kind kind,
-                                      int32_t cell)
+                                      const struct fluid *fluid, const struct cells *cells,
+                                      enum kind kind, int32_t cell)
 {
-    neighbour_clusters_collect(&neighbour_scratch->around[kind], &f->packed[kind].boxes, c, kind,
-                               cell, f->k.h);
+    neighbour_clusters_collect(&neighbour_scratch->around[kind], &fluid->packed[kind].boxes, cells,
+                               kind, cell, fluid->k.h);
 }
 
 SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed,
@@ -58,23 +58,23 @@ SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed
 /* The neighbours of the cluster `own` of one kind among another kind, from the clusters collected
  * around its cell. */
 SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighbour_scratch,
-                                                const struct fluid *f, enum kind kind,
+                                                const struct fluid *fluid, enum kind kind,
                                                 enum kind own, int32_t cluster)
 {
     struct cluster_list *const near = &neighbour_scratch->near[kind];
-    cluster_list_build(near, &neighbour_scratch->around[kind], &f->packed[own].boxes, cluster);
-    return neighbours_of(&f->packed[kind], near);
+    cluster_list_build(near, &neighbour_scratch->around[kind], &fluid->packed[own].boxes, cluster);
+    return neighbours_of(&fluid->packed[kind], near);
 }
 
 /* The neighbours of the next cluster of a fluid cell: fluid outside its chunk and fluid ahead in
  * it. */
 SPHFSI_INLINE struct neighbours gather_clusters_ahead(struct neighbour_scratch *neighbour_scratch,
-                                                      const struct fluid *f)
+                                                      const struct fluid *fluid)
 {
     struct cluster_list *const near = &neighbour_scratch->near[KIND_FLUID];
     cluster_list_build_half(near, &neighbour_scratch->around[KIND_FLUID],
-                            &f->packed[KIND_FLUID].boxes);
-    return neighbours_of(&f->packed[KIND_FLUID], near);
+                            &fluid->packed[KIND_FLUID].boxes);
+    return neighbours_of(&fluid->packed[KIND_FLUID], near);
 }
 
 /* Sides of the cells in units of h. */
@@ -82,9 +82,10 @@ struct cell_sides {
     real x, y;
 };
 
-SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *f, const struct cells *c)
+SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const struct cells *cells)
 {
-    return (struct cell_sides){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
+    return (struct cell_sides){(real)(cells->side[0] / fluid->k.h),
+                               (real)(cells->side[1] / fluid->k.h)};
 }
 
 /* Particles a, one in each group of four lanes; with their positions relative to the centres of the

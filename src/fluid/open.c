@@ -13,12 +13,13 @@
  * creates no copies. */
 #define BAND 0.5
 
-int64_t open_places(const struct scene *s)
+int64_t open_places(const struct scene *scene)
 {
     double places = 1;
-    int64_t n = s->points[KIND_FLUID].n;
-    for (int c = 0; c < 2; c++) places *= (s->domain_upper[c] - s->domain_lower[c]) / s->top.dp;
-    const double taken = (double)(n + s->points[KIND_WALL].n);
+    int64_t n = scene->points[KIND_FLUID].n;
+    for (int c = 0; c < 2; c++)
+        places *= (scene->domain_upper[c] - scene->domain_lower[c]) / scene->top.dp;
+    const double taken = (double)(n + scene->points[KIND_WALL].n);
     return n + n / 8 + (int64_t)min2(1e9, max2(0, places - taken));
 }
 
@@ -62,13 +63,13 @@ static void fix_times(struct open *o, const struct fluid_constants *k, double ti
         }
 }
 
-enum err open_create(struct open *o, struct arena *a, const struct scene *s, int64_t next_id,
+enum err open_create(struct open *o, struct arena *a, const struct scene *scene, int64_t next_id,
                      struct diag *d)
 {
-    const size_t n = (size_t)scene_open_count(s);
+    const size_t n = (size_t)scene_open_count(scene);
     int64_t members = 0;
-    for (int64_t i = 0; i < s->points[KIND_FLUID].n; i++)
-        members += s->points[KIND_FLUID].open[i] > 0;
+    for (int64_t i = 0; i < scene->points[KIND_FLUID].n; i++)
+        members += scene->points[KIND_FLUID].open[i] > 0;
     o->n = (int)n;
     o->next_id = next_id;
     o->capacity = 4 * members + 64;
@@ -87,7 +88,7 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
         !o->mirror_p || !o->mirror_u || !o->mirror_v)
         return ERR_MEMORY;
     for (int k = 0; k < o->n; k++) {
-        o->boundary[k] = scene_open_at(s, k);
+        o->boundary[k] = scene_open_at(scene, k);
         TRY(copy_boundary(o, k, a, d));
         o->sum[k][OPEN_MEAN_FLOW] = (double)NAN;
     }
@@ -110,12 +111,12 @@ static void add_across(void *context, int64_t i, double x, double y, double r)
 {
     struct across *const s = context;
     const struct fluid_constants *const k = s->k;
-    const struct particles *const p = s->p;
-    if (p->open[i]) return;
+    const struct particles *const particles = s->p;
+    if (particles->open[i]) return;
     const double w = kernel_w(r, k->h);
-    const double u = p->vx[i], v = p->vy[i], mass = w * (1 + p->dens[i]);
+    const double u = particles->vx[i], v = particles->vy[i], mass = w * (1 + particles->dens[i]);
     s->w += w;
-    s->p_w += w * eos_pressure(p->dens[i], k->rho0, k->c0);
+    s->p_w += w * eos_pressure(particles->dens[i], k->rho0, k->c0);
     s->u += w * u;
     s->v += w * v;
     s->x += w * x;
@@ -132,11 +133,12 @@ static void add_across(void *context, int64_t i, double x, double y, double r)
 }
 
 /* The fluid within reach of a point, without the buffers. */
-static struct across state_across(const struct fluid_constants *k, const struct particles *p,
-                                  const struct cells *c, const double at[2])
+static struct across state_across(const struct fluid_constants *k,
+                                  const struct particles *particles, const struct cells *cells,
+                                  const double at[2])
 {
-    struct across sums = {.k = k, .p = p};
-    cells_each_near(c, KIND_FLUID, p, at, KERNEL_REACH * k->h, add_across, &sums);
+    struct across sums = {.k = k, .p = particles};
+    cells_each_near(cells, KIND_FLUID, particles, at, KERNEL_REACH * k->h, add_across, &sums);
     return sums;
 }
 
@@ -170,10 +172,11 @@ static void given_acceleration(const struct open_moment at[OPEN_TIMES],
  * along the normal would compress the buffer, because it has none along the line. Without fluid
  * there the velocity does not change. */
 static void see_velocity(struct open *o, int64_t m, const struct fluid_constants *k,
-                         const struct particles *p, const struct cells *c, const double foot[2])
+                         const struct particles *particles, const struct cells *cells,
+                         const double foot[2])
 {
-    const double *const n = o->boundary[p->open[o->member[m]] - 1].inward;
-    const struct across s = state_across(k, p, c, foot);
+    const double *const n = o->boundary[particles->open[o->member[m]] - 1].inward;
+    const struct across s = state_across(k, particles, cells, foot);
     if (!(s.w > 0)) return;
     const double normal =
         linear_value(&s, s.u, s.ux, s.uy) * n[0] + linear_value(&s, s.v, s.vx, s.vy) * n[1];
@@ -185,28 +188,28 @@ static void see_velocity(struct open *o, int64_t m, const struct fluid_constants
  * given pressure its velocity. With a given velocity: the pressure that T-10 gives a wall with that
  * velocity (T-50). Without fluid there its fields do not change. */
 static void see(struct open *o, int64_t m, const struct fluid_constants *k,
-                const struct particles *p, const struct cells *c, double time)
+                const struct particles *particles, const struct cells *cells, double time)
 {
     const int32_t i = o->member[m];
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
-    const double x[2] = {p->x[i], p->y[i]};
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
+    const double x[2] = {particles->x[i], particles->y[i]};
     double in, along, foot[2], mirror[2], a[2];
     scene_open_place(b, x, &in, &along);
     for (int axis = 0; axis < 2; axis++) {
         foot[axis] = x[axis] - in * b->inward[axis];
         mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
     }
-    const struct across s = state_across(k, p, c, mirror);
-    o->mirror_u[m] = p->vx[i];
-    o->mirror_v[m] = p->vy[i];
+    const struct across s = state_across(k, particles, cells, mirror);
+    o->mirror_u[m] = particles->vx[i];
+    o->mirror_v[m] = particles->vy[i];
     if (b->kind == OPEN_PRESSURE) {
         o->mirror_p[m] = s.w > 0 ? s.p_w / s.w : (double)NAN;
-        see_velocity(o, m, k, p, c, foot);
+        see_velocity(o, m, k, particles, cells, foot);
         return;
     }
-    o->mirror_p[m] = eos_pressure(p->dens[i], k->rho0, k->c0);
+    o->mirror_p[m] = eos_pressure(particles->dens[i], k->rho0, k->c0);
     if (!(s.w > 0)) return;
-    given_acceleration(o->at[p->open[i] - 1], k, foot, time, a);
+    given_acceleration(o->at[particles->open[i] - 1], k, foot, time, a);
     const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
     o->mirror_p[m] = (s.p_w + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
                                          (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
@@ -233,20 +236,20 @@ static double odd_pressure(const struct scene_open *b, double given, double mirr
 /* Velocity out of the fluid a spacing in front of the line, at fixed points: particles that come
  * and go would add noise. */
 static double flow_at(const struct scene_open *b, const struct fluid_constants *k,
-                      const struct particles *p, const struct cells *c, double along)
+                      const struct particles *particles, const struct cells *cells, double along)
 {
     double x[2];
     for (int axis = 0; axis < 2; axis++)
         x[axis] = b->from[axis] + along * b->along[axis] + k->dp * b->inward[axis];
-    const struct across s = state_across(k, p, c, x);
+    const struct across s = state_across(k, particles, cells, x);
     if (!(s.w > 0)) return 0;
     return -linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] -
            linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
 }
 
 /* The mean flow out of the fluid through each boundary that uses it. */
-static void find_flow(struct open *o, const struct fluid_constants *k, const struct particles *p,
-                      const struct cells *c)
+static void find_flow(struct open *o, const struct fluid_constants *k,
+                      const struct particles *particles, const struct cells *cells)
 {
     for (int n = 0; n < o->n; n++) {
         const struct scene_open *const b = &o->boundary[n];
@@ -255,7 +258,7 @@ static void find_flow(struct open *o, const struct fluid_constants *k, const str
         if (!(b->absorb > 0)) continue;
 #pragma omp parallel for schedule(static)
         for (int i = 0; i < places; i++)
-            o->flow[i] = flow_at(b, k, p, c, (i + 0.5) * b->length / places);
+            o->flow[i] = flow_at(b, k, particles, cells, (i + 0.5) * b->length / places);
         for (int i = 0; i < places; i++) sum += o->flow[i];
         o->rate[n].flow = sum / places;
         if (isnan(o->sum[n][OPEN_MEAN_FLOW])) o->sum[n][OPEN_MEAN_FLOW] = o->rate[n].flow;
@@ -264,23 +267,24 @@ static void find_flow(struct open *o, const struct fluid_constants *k, const str
 
 /* Counts a particle that is created (sign 1) or removed (-1). */
 static void book_particle(struct open *o, const struct fluid_constants *k,
-                          const struct particles *p, int64_t i, double sign)
+                          const struct particles *particles, int64_t i, double sign)
 {
-    double *const sum = o->sum[p->open[i] - 1];
-    sum[OPEN_MOMENTUM_X] += sign * particle_mass(k, p, i) * p->vx[i];
-    sum[OPEN_MOMENTUM_Y] += sign * particle_mass(k, p, i) * p->vy[i];
-    sum[OPEN_ENERGY] += sign * particle_energy(k, k->gravity, p, i);
+    double *const sum = o->sum[particles->open[i] - 1];
+    sum[OPEN_MOMENTUM_X] += sign * particle_mass(k, particles, i) * particles->vx[i];
+    sum[OPEN_MOMENTUM_Y] += sign * particle_mass(k, particles, i) * particles->vy[i];
+    sum[OPEN_ENERGY] += sign * particle_energy(k, k->gravity, particles, i);
 }
 
 static void set_particle(struct open *o, int64_t m, const struct fluid_constants *k,
-                         struct particles *p, double time)
+                         struct particles *particles, double time)
 {
     const int32_t i = o->member[m];
-    const int number = p->open[i] - 1;
+    const int number = particles->open[i] - 1;
     const struct scene_open *const b = &o->boundary[number];
     double v[2] = {o->mirror_u[m], o->mirror_v[m]}, pressure = o->mirror_p[m], in, along;
-    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &in, &along);
-    const double foot[2] = {p->x[i] - in * b->inward[0], p->y[i] - in * b->inward[1]};
+    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &in, &along);
+    const double foot[2] = {particles->x[i] - in * b->inward[0],
+                            particles->y[i] - in * b->inward[1]};
     if (b->kind == OPEN_PRESSURE) {
         double given = given_pressure(b, k, foot, time);
         if (b->absorb > 0) /* T-53 */
@@ -289,49 +293,51 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
     } else {
         scene_open_velocity(&o->at[number][OPEN_NOW].boundary, foot, time, v);
     }
-    p->vx[i] = v[0];
-    p->vy[i] = v[1];
-    p->dens[i] = eos_dens(pressure, k->rho0, k->c0);
-    if (p->dens_slow) p->dens_slow[i] = p->dens[i];
-    if (p->vx_half) {
-        p->vx_half[i] = v[0];
-        p->vy_half[i] = v[1];
+    particles->vx[i] = v[0];
+    particles->vy[i] = v[1];
+    particles->dens[i] = eos_dens(pressure, k->rho0, k->c0);
+    if (particles->dens_slow) particles->dens_slow[i] = particles->dens[i];
+    if (particles->vx_half) {
+        particles->vx_half[i] = v[0];
+        particles->vy_half[i] = v[1];
     }
-    if (p->vx_old) {
-        p->vx_old[i] = v[0];
-        p->vy_old[i] = v[1];
+    if (particles->vx_old) {
+        particles->vx_old[i] = v[0];
+        particles->vy_old[i] = v[1];
     }
 }
 
-void open_set(struct open *o, const struct fluid_constants *k, struct particles *p,
-              const struct cells *c, double time, bool book)
+void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
+              const struct cells *cells, double time, bool book)
 {
     fix_times(o, k, time);
 #pragma omp parallel for schedule(static)
-    for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, p, c, time);
-    find_flow(o, k, p, c);
+    for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, particles, cells, time);
+    find_flow(o, k, particles, cells);
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
-        const double u = p->vx[i], v = p->vy[i], energy = particle_energy(k, k->gravity, p, i);
-        set_particle(o, m, k, p, time);
+        const double u = particles->vx[i], v = particles->vy[i],
+                     energy = particle_energy(k, k->gravity, particles, i);
+        set_particle(o, m, k, particles, time);
         if (!book) continue;
-        double *const sum = o->sum[p->open[i] - 1];
-        sum[OPEN_MOMENTUM_X] += particle_mass(k, p, i) * (p->vx[i] - u);
-        sum[OPEN_MOMENTUM_Y] += particle_mass(k, p, i) * (p->vy[i] - v);
-        sum[OPEN_ENERGY] += particle_energy(k, k->gravity, p, i) - energy;
+        double *const sum = o->sum[particles->open[i] - 1];
+        sum[OPEN_MOMENTUM_X] += particle_mass(k, particles, i) * (particles->vx[i] - u);
+        sum[OPEN_MOMENTUM_Y] += particle_mass(k, particles, i) * (particles->vy[i] - v);
+        sum[OPEN_ENERGY] += particle_energy(k, k->gravity, particles, i) - energy;
     }
 }
 
-void open_hold(struct open *o, const struct fluid_constants *k, struct particles *p)
+void open_hold(struct open *o, const struct fluid_constants *k, struct particles *particles)
 {
     for (int n = 0; n < o->n; n++) o->rate[n].force[0] = o->rate[n].force[1] = o->rate[n].power = 0;
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
-        struct open_rate *const r = &o->rate[p->open[i] - 1];
-        r->force[0] -= particle_mass(k, p, i) * p->ax[i];
-        r->force[1] -= particle_mass(k, p, i) * p->ay[i];
-        r->power -= particle_mass(k, p, i) * (p->ax[i] * p->vx[i] + p->ay[i] * p->vy[i]);
-        p->ax[i] = p->ay[i] = 0;
+        struct open_rate *const r = &o->rate[particles->open[i] - 1];
+        r->force[0] -= particle_mass(k, particles, i) * particles->ax[i];
+        r->force[1] -= particle_mass(k, particles, i) * particles->ay[i];
+        r->power -= particle_mass(k, particles, i) *
+                    (particles->ax[i] * particles->vx[i] + particles->ay[i] * particles->vy[i]);
+        particles->ax[i] = particles->ay[i] = 0;
     }
 }
 
@@ -350,14 +356,14 @@ void open_book(struct open *o, double dt)
 
 /* --- exchange --- */
 
-bool open_due(const struct open *o, const struct particles *p, double dp)
+bool open_due(const struct open *o, const struct particles *particles, double dp)
 {
     bool due = false;
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
         double in, along;
-        scene_open_place(&o->boundary[p->open[i] - 1], (const double[]){p->x[i], p->y[i]}, &in,
-                         &along);
+        scene_open_place(&o->boundary[particles->open[i] - 1],
+                         (const double[]){particles->x[i], particles->y[i]}, &in, &along);
         due |= in > BAND * dp;
     }
     return due;
@@ -377,82 +383,84 @@ static double aside_of(const struct scene_open *b, double along, double dp)
 }
 
 /* A copy of a particle that enters, in the middle of its strip, at `in` before the line. */
-static enum err make_copy(struct open *o, const struct fluid_constants *k, struct particles *p,
-                          int64_t i, double in, struct diag *d)
+static enum err make_copy(struct open *o, const struct fluid_constants *k,
+                          struct particles *particles, int64_t i, double in, struct diag *d)
 {
-    const int number = p->open[i] - 1;
+    const int number = particles->open[i] - 1;
     const struct scene_open *const b = &o->boundary[number];
-    if (p->n == p->capacity)
+    if (particles->n == particles->capacity)
         return diag_fail(
             d, ERR_GUARD,
             "[%s %s] has brought in so much fluid that the limit of %lld particles is reached, "
             "because more fluid enters than leaves; a larger [domain] or an [outflow] may help",
-            b->inflow ? "inflow" : "outflow", b->common->name, (long long)p->capacity);
-    const int64_t to = p->n++;
+            b->inflow ? "inflow" : "outflow", b->common->name, (long long)particles->capacity);
+    const int64_t to = particles->n++;
     double place, along;
-    particles_copy(p, i, to);
-    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &place, &along);
+    particles_copy(particles, i, to);
+    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &place, &along);
     const double aside = aside_of(b, along, k->dp);
-    p->id[to] = o->next_id++;
-    p->x[to] += (in - place) * b->inward[0] + aside * b->along[0];
-    p->y[to] += (in - place) * b->inward[1] + aside * b->along[1];
+    particles->id[to] = o->next_id++;
+    particles->x[to] += (in - place) * b->inward[0] + aside * b->along[0];
+    particles->y[to] += (in - place) * b->inward[1] + aside * b->along[1];
     o->count[number][OPEN_ENTERED]++;
-    book_particle(o, k, p, to, 1);
+    book_particle(o, k, particles, to, 1);
     return ERR_OK;
 }
 
 /* The strip of a buffer, one spacing wide along the normal, that a particle lies in, and its
  * distance from the line. Every place on the line belongs to one strip, so fluid that returns
  * adds none. */
-static int strip_of(const struct scene_open *b, const struct particles *p, int64_t i, double dp,
-                    double *in)
+static int strip_of(const struct scene_open *b, const struct particles *particles, int64_t i,
+                    double dp, double *in)
 {
     double along;
-    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, in, &along);
+    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, in, &along);
     return (int)floor(along / strip_width(b, dp));
 }
 
 /* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are
  * new. */
-static double last_of_strip(const struct open *o, const struct particles *p, int64_t i,
+static double last_of_strip(const struct open *o, const struct particles *particles, int64_t i,
                             int64_t fresh, double dp)
 {
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     double last, in;
-    const int own = strip_of(b, p, i, dp, &last);
-    for (int64_t m = 0; m < o->n_members + p->n - fresh; m++) {
+    const int own = strip_of(b, particles, i, dp, &last);
+    for (int64_t m = 0; m < o->n_members + particles->n - fresh; m++) {
         const int64_t j = m < o->n_members ? o->member[m] : fresh + m - o->n_members;
-        if (p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own) last = min2(last, in);
+        if (particles->open[j] == particles->open[i] && strip_of(b, particles, j, dp, &in) == own)
+            last = min2(last, in);
     }
     return last;
 }
 
 /* T-54: fills the strip behind a particle that enters, but not above the level. Compressed
  * fluid has smaller distances: the inflow is its density times its velocity. */
-static enum err fill_strip(struct open *o, const struct fluid_constants *k, struct particles *p,
-                           int64_t i, int64_t fresh, struct diag *d)
+static enum err fill_strip(struct open *o, const struct fluid_constants *k,
+                           struct particles *particles, int64_t i, int64_t fresh, struct diag *d)
 {
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
-    const double spacing = k->dp / (1 + p->dens[i]);
-    if (p->y[i] > b->level) return ERR_OK; /* NAN: none */
-    double in = last_of_strip(o, p, i, fresh, k->dp) - spacing;
-    for (; in >= -b->depth; in -= spacing) TRY(make_copy(o, k, p, i, in, d));
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
+    const double spacing = k->dp / (1 + particles->dens[i]);
+    if (particles->y[i] > b->level) return ERR_OK; /* NAN: none */
+    double in = last_of_strip(o, particles, i, fresh, k->dp) - spacing;
+    for (; in >= -b->depth; in -= spacing) TRY(make_copy(o, k, particles, i, in, d));
     return ERR_OK;
 }
 
 /* Whether the buffer has no space for fluid that has come in: above its level, or close to a
  * buffer particle that moves inward. Two particles in one place would burst apart. */
-static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
+static bool strip_is_full(const struct open *o, const struct particles *particles, int64_t i,
+                          double dp)
 {
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     double place, in;
-    const int own = strip_of(b, p, i, dp, &place);
-    bool full = p->y[i] > b->level; /* it runs off over the inflow; NAN: none */
+    const int own = strip_of(b, particles, i, dp, &place);
+    bool full = particles->y[i] > b->level; /* it runs off over the inflow; NAN: none */
     for (int64_t m = 0; m < o->n_members && !full; m++) {
         const int64_t j = o->member[m];
-        full = p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&
-               fabs(in - place) < BAND * dp &&
-               p->vx[j] * b->inward[0] + p->vy[j] * b->inward[1] > 0;
+        full = particles->open[j] == particles->open[i] &&
+               strip_of(b, particles, j, dp, &in) == own && fabs(in - place) < BAND * dp &&
+               particles->vx[j] * b->inward[0] + particles->vy[j] * b->inward[1] > 0;
     }
     return full && b->kind == OPEN_VELOCITY;
 }
@@ -471,79 +479,81 @@ static int32_t buffer_at(const struct open *o, const double x[2], double dp)
 
 /* Whether a buffer particle is still in the buffer or in front of it. The sides of the buffer are
  * walls, which do not affect its motion. */
-static bool stays(const struct open *o, const struct particles *p, int64_t i, double dp)
+static bool stays(const struct open *o, const struct particles *particles, int64_t i, double dp)
 {
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     double in, along;
-    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &in, &along);
+    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &in, &along);
     return in >= -b->depth - dp && along > 0 && along < b->length;
 }
 
 /* Removes the particles that have left their buffers, and those that found no space in one. */
-static void end_particles(struct open *o, const struct fluid_constants *k, struct particles *p)
+static void end_particles(struct open *o, const struct fluid_constants *k,
+                          struct particles *particles)
 {
     int64_t kept = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        const bool crowded = p->open[i] < 0;
-        if (crowded) p->open[i] = -p->open[i];
-        if (crowded || (p->open[i] && !stays(o, p, i, k->dp))) {
-            o->count[p->open[i] - 1][OPEN_LEFT]++;
-            book_particle(o, k, p, i, -1);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const bool crowded = particles->open[i] < 0;
+        if (crowded) particles->open[i] = -particles->open[i];
+        if (crowded || (particles->open[i] && !stays(o, particles, i, k->dp))) {
+            o->count[particles->open[i] - 1][OPEN_LEFT]++;
+            book_particle(o, k, particles, i, -1);
             continue;
         }
-        if (kept < i) particles_copy(p, i, kept);
+        if (kept < i) particles_copy(particles, i, kept);
         kept++;
     }
-    p->n = kept;
+    particles->n = kept;
 }
 
 /* Marks fluid that is to be removed. The given velocity is then not all that passes the line. */
-static void turn_away(struct open *o, struct particles *p, int64_t i, struct diag *d)
+static void turn_away(struct open *o, struct particles *particles, int64_t i, struct diag *d)
 {
-    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     if (!o->warned)
         diag_warn(
             d,
             "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less "
             "flows in than is given; a higher `level`, a slower start or a further line may help",
-            b->inflow ? "inflow" : "outflow", b->common->name, p->x[i], p->y[i]);
+            b->inflow ? "inflow" : "outflow", b->common->name, particles->x[i], particles->y[i]);
     o->warned = true;
-    p->open[i] = -p->open[i];
+    particles->open[i] = -particles->open[i];
 }
 
-enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *p,
+enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *particles,
                        struct diag *d)
 {
-    const int64_t n = p->n; /* copies follow behind */
+    const int64_t n = particles->n; /* copies follow behind */
     enum err e = ERR_OK;
     for (int64_t i = 0; i < n && !e; i++) {
-        const double x[2] = {p->x[i], p->y[i]};
+        const double x[2] = {particles->x[i], particles->y[i]};
         double in, along;
-        if (p->open[i] == 0) {
-            p->open[i] = buffer_at(o, x, k->dp);
-            if (p->open[i] && strip_is_full(o, p, i, k->dp)) turn_away(o, p, i, d);
+        if (particles->open[i] == 0) {
+            particles->open[i] = buffer_at(o, x, k->dp);
+            if (particles->open[i] && strip_is_full(o, particles, i, k->dp))
+                turn_away(o, particles, i, d);
             continue;
         }
-        scene_open_place(&o->boundary[p->open[i] - 1], x, &in, &along);
-        if (in <= 0 || !stays(o, p, i, k->dp)) continue;
-        e = fill_strip(o, k, p, i, n, d);
-        p->open[i] = 0;
+        scene_open_place(&o->boundary[particles->open[i] - 1], x, &in, &along);
+        if (in <= 0 || !stays(o, particles, i, k->dp)) continue;
+        e = fill_strip(o, k, particles, i, n, d);
+        particles->open[i] = 0;
     }
-    end_particles(o, k, p);
+    end_particles(o, k, particles);
     return e;
 }
 
-enum err open_list(struct open *o, const struct particles *p, struct diag *d)
+enum err open_list(struct open *o, const struct particles *particles, struct diag *d)
 {
     o->n_members = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->open[i] == 0) continue;
-        if (p->open[i] < 0 || p->open[i] > o->n)
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->open[i] == 0) continue;
+        if (particles->open[i] < 0 || particles->open[i] > o->n)
             return diag_fail(
                 d, ERR_INPUT,
                 "checkpoint: fluid particle %lld belongs to open boundary %d, but the case has "
                 "only %d; restore the [inflow] and [outflow] sections of the checkpoint",
-                (long long)p->id[i], (int)p->open[i], o->n);
+                (long long)particles->id[i], (int)particles->open[i], o->n);
         if (o->n_members == o->capacity)
             return diag_fail(d, ERR_GUARD,
                              "the buffers of the open boundaries contain four times as many "

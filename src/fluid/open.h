@@ -48,31 +48,32 @@ struct open {
 };
 
 /* Number of fluid particles, in all, that a scene with open boundaries has memory for. */
-int64_t open_places(const struct scene *s);
+int64_t open_places(const struct scene *scene);
 
-enum err open_create(struct open *o, struct arena *a, const struct scene *s, int64_t next_id,
+enum err open_create(struct open *o, struct arena *a, const struct scene *scene, int64_t next_id,
                      struct diag *d) SPHFSI_CHECKED;
 
 /* Before an evaluation: sets velocities and densities of the buffers at a time, from the fluid
  * alone. `book`: the state is that between two steps, and its change counts in the account. */
-void open_set(struct open *o, const struct fluid_constants *k, struct particles *p,
-              const struct cells *c, double time, bool book);
+void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
+              const struct cells *cells, double time, bool book);
 
 /* After it: forces do not move buffers; the rates store the constraint forces. */
-void open_hold(struct open *o, const struct fluid_constants *k, struct particles *p);
+void open_hold(struct open *o, const struct fluid_constants *k, struct particles *particles);
 
 /* After a step: impulse and work of the last rates, and the mean flow. */
 void open_book(struct open *o, double dt);
 
 /* Whether a buffer particle is so far inside the fluid that it must be relabelled. */
-bool open_due(const struct open *o, const struct particles *p, double dp);
+bool open_due(const struct open *o, const struct particles *particles, double dp);
 
 /* Before a sorting: relabels, creates and removes particles. */
-enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *p,
+enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *particles,
                        struct diag *d) SPHFSI_CHECKED;
 
 /* After a sorting: finds the particles of the buffers. */
-enum err open_list(struct open *o, const struct particles *p, struct diag *d) SPHFSI_CHECKED;
+enum err open_list(struct open *o, const struct particles *particles, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Energy brought in through all of them, J/m. */
 double open_energy(const struct open *o);

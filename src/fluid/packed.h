@@ -57,52 +57,53 @@ SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid
 }
 
 /* Pressure that acts on the neighbours of the four particles from i on: T-3, and T-9a. */
-SPHFSI_INLINE four_double acting_pressure(const struct fluid *f, const struct particles *p,
-                                          int32_t i, effect_set fx)
+SPHFSI_INLINE four_double acting_pressure(const struct fluid *fluid,
+                                          const struct particles *particles, int32_t i,
+                                          effect_set fx)
 {
-    const four_double dens = FOUR(p->dens, i), pressure = pressure_of(dens, &f->k);
+    const four_double dens = FOUR(particles->dens, i), pressure = pressure_of(dens, &fluid->k);
     if (!(fx & FX_DAMPER)) return pressure;
-    return pressure + damper_pressure(dens - FOUR(p->dens_slow, i), &f->k);
+    return pressure + damper_pressure(dens - FOUR(particles->dens_slow, i), &fluid->k);
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
  * next cell. */
-SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
-                                const double centre[2], effect_set fx, real *out)
+SPHFSI_INLINE void pack_cluster(const struct fluid *fluid, const struct particles *particles,
+                                int32_t i, const double centre[2], effect_set fx, real *out)
 {
-    const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
-    const four_double dens = FOUR(p->dens, i);
-    put_four(out, PACKED_X, (FOUR(p->x, i) - centre[0]) * inv_h);
-    put_four(out, PACKED_Y, (FOUR(p->y, i) - centre[1]) * inv_h);
-    put_four(out, PACKED_U, FOUR(p->vx, i));
-    put_four(out, PACKED_V, FOUR(p->vy, i));
+    const double inv_h = 1 / fluid->k.h, volume = fluid->k.mass / fluid->k.rho0 * square(inv_h);
+    const four_double dens = FOUR(particles->dens, i);
+    put_four(out, PACKED_X, (FOUR(particles->x, i) - centre[0]) * inv_h);
+    put_four(out, PACKED_Y, (FOUR(particles->y, i) - centre[1]) * inv_h);
+    put_four(out, PACKED_U, FOUR(particles->vx, i));
+    put_four(out, PACKED_V, FOUR(particles->vy, i));
     four_double own = volume / (1 + dens);
-    if (fx & FX_MASSES) own = FOUR(p->m, i) * own;
+    if (fx & FX_MASSES) own = FOUR(particles->m, i) * own;
     put_four(out, PACKED_VOLUME, own);
-    put_four(out, PACKED_P, acting_pressure(f, p, i, fx));
+    put_four(out, PACKED_P, acting_pressure(fluid, particles, i, fx));
     put_four(out, PACKED_DENS, dens);
 }
 
-SPHFSI_INLINE void pack_cell(const struct fluid *f, const struct particles *p,
-                             const struct cells *c, int32_t cell, effect_set fx)
+SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *particles,
+                             const struct cells *cells, int32_t cell, effect_set fx)
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
-    const struct packed_fields *const packed = &f->packed[KIND_FLUID];
-    const double centre[2] = {cell_centre_x(c, cell), cell_centre_y(c, cell)};
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct packed_fields *const packed = &fluid->packed[KIND_FLUID];
+    const double centre[2] = {cell_centre_x(cells, cell), cell_centre_y(cells, cell)};
     const int32_t count = list->count[cell];
     for (int32_t first = 0; first < count; first += CLUSTER) {
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(f, p, list->start[cell] + first, centre, fx, out);
+        pack_cluster(fluid, particles, list->start[cell] + first, centre, fx, out);
         if (own < CLUSTER) cluster_close(out, packed->n, own);
         cluster_box(&packed->boxes, cluster, out, own);
     }
 }
 
 /* pack_cell for each set of the effects that it depends on. */
-typedef void SWEEP(pack)(const struct fluid *f, const struct particles *p, const struct cells *c,
-                         int32_t cell);
+typedef void SWEEP(pack)(const struct fluid *fluid, const struct particles *particles,
+                         const struct cells *cells, int32_t cell);
 #define PACK(name, set)                                                              \
     static void SWEEP(pack_##name)(const struct fluid *f, const struct particles *p, \
                                    const struct cells *c, int32_t cell)              \
@@ -115,16 +116,17 @@ PACK(damper, FX_DAMPER)
 PACK(masses_damper, FX_MASSES | FX_DAMPER)
 #undef PACK
 
-static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
-                          const struct cells *c)
+static void SWEEP(packed)(const struct fluid *fluid, const struct particles kinds[KIND_COUNT],
+                          const struct cells *cells)
 {
-    const bool masses = f->effects & FX_MASSES, damper = f->effects & FX_DAMPER;
+    const bool masses = fluid->effects & FX_MASSES, damper = fluid->effects & FX_DAMPER;
     SWEEP(pack) *const pack = damper   ? masses ? SWEEP(pack_masses_damper) : SWEEP(pack_damper)
                                 : masses ? SWEEP(pack_masses)
                                        : SWEEP(pack_plain);
-    const int32_t n = c->kind[KIND_FLUID].n_active;
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < n; k++) pack(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
+    const int32_t n = cells->kind[KIND_FLUID].n_active;
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t k = 0; k < n; k++)
+        pack(fluid, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
 }
 
 /* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the
@@ -185,55 +187,56 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
     }
 }
 
-static void slopes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
-                           int32_t cell)
+static void slopes_of_cell(const struct fluid *fluid, struct particles *particles,
+                           const struct cells *cells, int32_t cell)
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
-    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(f, c);
-    gather_around_cell(neighbour_scratch, f, c, KIND_FLUID, cell);
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
         const int count = particles_in(list, cell, m);
         const struct neighbours neighbours =
-            gather_clusters(neighbour_scratch, f, KIND_FLUID, KIND_FLUID, cluster);
+            gather_clusters(neighbour_scratch, fluid, KIND_FLUID, KIND_FLUID, cluster);
         for (int r = 0; r < count; r += GROUPS) {
-            const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster) + r;
+            const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster) + r;
             struct receiver a = receiver_at(&sides, own);
             a.dens = vspread(own + PACKED_DENS * CLUSTER);
             double slope[GROUPS][2];
             slopes_of(&neighbours, &a, slope);
             for (int g = 0; g < GROUPS && r + g < count; g++) {
-                p->slope_x[i + r + g] = slope[g][0] / f->k.h;
-                p->slope_y[i + r + g] = slope[g][1] / f->k.h;
+                particles->slope_x[i + r + g] = slope[g][0] / fluid->k.h;
+                particles->slope_y[i + r + g] = slope[g][1] / fluid->k.h;
             }
         }
     }
 }
 
 /* Packs the gradients, now that no other cell reads those fields. */
-SPHFSI_INLINE void pack_slopes(const struct fluid *f, const struct particles *p,
-                               const struct cells *c, int32_t cell)
+SPHFSI_INLINE void pack_slopes(const struct fluid *fluid, const struct particles *particles,
+                               const struct cells *cells, int32_t cell)
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
     for (int32_t m = 0; m < list->count[cell]; m++) {
         const int32_t i = list->start[cell] + m;
-        real *const own = cluster_packed(&f->packed[KIND_FLUID],
+        real *const own = cluster_packed(&fluid->packed[KIND_FLUID],
                                          (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
                           m % CLUSTER;
-        own[PACKED_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
-        own[PACKED_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
+        own[PACKED_SLOPE_X * CLUSTER] = (real)(particles->slope_x[i] * fluid->k.h);
+        own[PACKED_SLOPE_Y * CLUSTER] = (real)(particles->slope_y[i] * fluid->k.h);
     }
 }
 
-static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
-                          const struct cells *c)
+static void SWEEP(slopes)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                          const struct cells *cells)
 {
-    const struct cell_list *list = &c->kind[KIND_FLUID];
-    struct particles *const p = &kinds[KIND_FLUID];
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < (f->keeps_slopes ? 0 : list->n_active); k++)
-        slopes_of_cell(f, p, c, list->active[k]);
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < list->n_active; k++) pack_slopes(f, p, c, list->active[k]);
+    const struct cell_list *list = &cells->kind[KIND_FLUID];
+    struct particles *const particles = &kinds[KIND_FLUID];
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t k = 0; k < (fluid->keeps_slopes ? 0 : list->n_active); k++)
+        slopes_of_cell(fluid, particles, cells, list->active[k]);
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t k = 0; k < list->n_active; k++)
+        pack_slopes(fluid, particles, cells, list->active[k]);
 }

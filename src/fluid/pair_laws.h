@@ -35,9 +35,9 @@ struct vector_constants {
     vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
-SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *f)
+SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *fluid)
 {
-    const struct fluid_constants *const fk = &f->k;
+    const struct fluid_constants *const fk = &fluid->k;
     const double per_c2 = fk->h / square(fk->c0);
     return (struct vector_constants){
         .viscosity = vset((real)sqrt(2 * fk->model->artificial_viscosity * fk->c0 * fk->rho0)),

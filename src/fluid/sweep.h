@@ -55,18 +55,18 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 
 /* Writes the rates of `count` particles from i on, from their sums and the factors not included in
  * them. */
-SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32_t i, int count,
-                               const struct cluster_sums *s, real *deferred, struct pair_set fx,
-                               double acceleration2[CLUSTER])
+SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
+                               int count, const struct cluster_sums *s, real *deferred,
+                               struct pair_set fx, double acceleration2[CLUSTER])
 {
-    const struct fluid_constants *const k = &f->k;
+    const struct fluid_constants *const k = &fluid->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
     const double mix = PAIR_HAS(fx, LIMITER) ? 2 : 2 * k->model->density_diffusion * k->c0;
-    four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
+    four_double full = 1 + FOUR(particles->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
     if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
-        factor = factor / FOUR(p->m, i);
-        full = full / FOUR(p->m, i);
+        factor = factor / FOUR(particles->m, i);
+        full = full / FOUR(particles->m, i);
     }
     const four_double ax =
         factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
@@ -75,9 +75,9 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     if (PAIR_HAS(fx, DIFFUSION))
         rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
     const four_double ddens = -slope * full * rate;
-    store_four(p->ax + i, ax, count);
-    store_four(p->ay + i, ay, count);
-    store_four(p->ddens + i, ddens, count);
+    store_four(particles->ax + i, ax, count);
+    store_four(particles->ay + i, ay, count);
+    store_four(particles->ddens + i, ddens, count);
     const four_double a2 = ax * ax + ay * ay;
     for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
     if (!(PAIR_HAS(fx, SHIFTING))) return;
@@ -86,26 +86,28 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     const four_double grad_c_y =
         own_sum(s->grad_c_y) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_Y));
     const four_double div_r = own_sum(s->div_r) + take_deferred(DEFERRED(deferred, SUM_DIV_R));
-    store_four(p->grad_c_x + i, -slope * full * grad_c_x, count);
-    store_four(p->grad_c_y + i, -slope * full * grad_c_y, count);
-    store_four(p->div_r + i, slope * k->h * full * div_r, count);
+    store_four(particles->grad_c_x + i, -slope * full * grad_c_x, count);
+    store_four(particles->grad_c_y + i, -slope * full * grad_c_y, count);
+    store_four(particles->div_r + i, slope * k->h * full * div_r, count);
 }
 
 /* Sums with walls and structures, and their power on `count` particles from i on: what they add in
  * T-6 and T-7 to kinetic and compression energy and to that of the damper. */
-SPHFSI_INLINE void find_body_power(const struct fluid *f, struct particles *p, int32_t i, int count,
+SPHFSI_INLINE void find_body_power(const struct fluid *fluid, struct particles *particles,
+                                   int32_t i, int count,
                                    const struct neighbours neighbours[KIND_COUNT],
                                    const struct receiver a[ROWS], const struct vector_constants *k,
                                    struct pair_set fx, struct cluster_sums *s)
 {
     const four_double ax = own_sum(s->ax), ay = own_sum(s->ay), rate = own_sum(s->rate);
-    const four_double pressure = acting_pressure(f, p, i, f->effects);
+    const four_double pressure = acting_pressure(fluid, particles, i, fluid->effects);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, s);
-    store_four(p->body_power + i,
-               PAIR_SLOPE * f->k.h *
-                   (FOUR(p->vx, i) * (own_sum(s->ax) - ax) +
-                    FOUR(p->vy, i) * (own_sum(s->ay) - ay) - pressure * (own_sum(s->rate) - rate)),
+    store_four(particles->body_power + i,
+               PAIR_SLOPE * fluid->k.h *
+                   (FOUR(particles->vx, i) * (own_sum(s->ax) - ax) +
+                    FOUR(particles->vy, i) * (own_sum(s->ay) - ay) -
+                    pressure * (own_sum(s->rate) - rate)),
                count);
 }
 
@@ -128,21 +130,21 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
 }
 
 /* A cluster of `count` particles from i on. */
-SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, int32_t i,
-                                    int count, int32_t cluster,
+SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles *particles,
+                                    int32_t i, int count, int32_t cluster,
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
                                     const struct vector_constants *k, struct pair_set fx,
                                     const struct chunk *chunk, struct chunk_maxima *top)
 {
-    const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster);
+    const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
     const bool near_bodies = neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n;
-    if (FX_ENERGY_ACCOUNT && near_bodies && f->finds_body_power) {
-        find_body_power(f, p, i, count, neighbours, a, k, fx, &s);
+    if (FX_ENERGY_ACCOUNT && near_bodies && fluid->finds_body_power) {
+        find_body_power(fluid, particles, i, count, neighbours, a, k, fx, &s);
     } else {
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
             if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
@@ -151,51 +153,55 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
     if (count == CLUSTER) /* a compile-time constant */
-        rates_store(f, p, i, CLUSTER, &s, deferred, fx, top->acceleration2);
+        rates_store(fluid, particles, i, CLUSTER, &s, deferred, fx, top->acceleration2);
     else
-        rates_store(f, p, i, count, &s, deferred, fx, top->acceleration2);
+        rates_store(fluid, particles, i, count, &s, deferred, fx, top->acceleration2);
 }
 
-SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
-                                 int32_t cell, const struct vector_constants *k, struct pair_set fx,
+SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
+                                 const struct cells *cells, int32_t cell,
+                                 const struct vector_constants *k, struct pair_set fx,
                                  const struct chunk *chunk, struct chunk_maxima *top)
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
-    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(f, c);
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(fluid, cells);
     bool around[KIND_COUNT] = {false};
     neighbour_clusters_collect_half(&neighbour_scratch->around[KIND_FLUID],
-                                    &f->packed[KIND_FLUID].boxes, c, KIND_FLUID, cell, f->k.h,
-                                    chunk->range);
+                                    &fluid->packed[KIND_FLUID].boxes, cells, KIND_FLUID, cell,
+                                    fluid->k.h, chunk->range);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        around[kind] = f->near_dummies[cell] && f->n_near_fluid[kind];
-        if (around[kind]) gather_around_cell(neighbour_scratch, f, c, (enum kind)kind, cell);
+        around[kind] = fluid->near_dummies[cell] && fluid->n_near_fluid[kind];
+        if (around[kind])
+            gather_around_cell(neighbour_scratch, fluid, cells, (enum kind)kind, cell);
     }
     for (int32_t m = clusters_in(list, cell) - 1; m >= 0;
          m--) { /* in the order of the clusters ahead */
         const int32_t cluster = list->cluster[cell] + m;
         struct neighbours neighbours[KIND_COUNT];
-        neighbours[KIND_FLUID] = gather_clusters_ahead(neighbour_scratch, f);
+        neighbours[KIND_FLUID] = gather_clusters_ahead(neighbour_scratch, fluid);
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-            neighbours[kind] = around[kind] ? gather_clusters(neighbour_scratch, f, (enum kind)kind,
-                                                              KIND_FLUID, cluster)
+            neighbours[kind] = around[kind] ? gather_clusters(neighbour_scratch, fluid,
+                                                              (enum kind)kind, KIND_FLUID, cluster)
                                             : (struct neighbours){.n = 0};
-        rates_of_cluster(f, p, list->start[cell] + m * CLUSTER, particles_in(list, cell, m),
-                         cluster, neighbours, &sides, k, fx, chunk, top);
+        rates_of_cluster(fluid, particles, list->start[cell] + m * CLUSTER,
+                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, chunk,
+                         top);
     }
 }
 
 /* A chunk of the active cells, first to end - 1. */
-SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, const struct cells *c,
-                                  int32_t first, int32_t end, const struct vector_constants *k,
-                                  struct pair_set fx, struct fluid_extremes *top)
+SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
+                                  const struct cells *cells, int32_t first, int32_t end,
+                                  const struct vector_constants *k, struct pair_set fx,
+                                  struct fluid_extremes *top)
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
-                                f->neighbour_scratch[thread_index()].deferred};
+                                fluid->neighbour_scratch[thread_index()].deferred};
     struct chunk_maxima here = {.approach = {0}};
     for (int32_t m = first; m < end; m++)
-        rates_of_cell(f, p, c, list->active[m], k, fx, &chunk, &here);
+        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, &chunk, &here);
     top->approach = max2(top->approach, (double)vtop(here.approach));
     for (int r = 0; r < CLUSTER; r++)
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
@@ -203,16 +209,16 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, co
 
 /* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a
  * separate function before it can see that fx is a constant. */
-#define VARIANT(variant, set)                                                             \
-    static void SWEEP(rates_##variant)(const struct fluid *f, struct particles *p,        \
-                                       const struct cells *c, int32_t first, int32_t end, \
-                                       struct fluid_extremes *top)                        \
-    {                                                                                     \
-        const struct vector_constants k = constants_of_sweep(f);                          \
-        rates_of_chunk(f, p, c, first, end, &k, (struct pair_set){set}, top);             \
+#define VARIANT(variant, set)                                                                  \
+    static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \
+                                       const struct cells *cells, int32_t first, int32_t end,  \
+                                       struct fluid_extremes *top)                             \
+    {                                                                                          \
+        const struct vector_constants k = constants_of_sweep(fluid);                           \
+        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top);  \
     }
 #include "fluid/variants.def"
-VARIANT(any, f->effects &(effect_set)PAIR_EFFECTS)
+VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
 
 static const struct fluid_kernel SWEEP(kernels)[] = {

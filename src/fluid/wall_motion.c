@@ -3,14 +3,15 @@
 
 #include <string.h>
 
-enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
+enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,
                             const struct particles *walls, struct diag *d)
 {
-    m->never_skip = s->test.never_skip;
-    m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
+    m->never_skip = scene->test.never_skip;
+    m->body = arena_alloc(a, (size_t)scene->n_wall, sizeof *m->body, "moving walls", d);
     if (!m->body) return ERR_MEMORY;
-    for (int k = 0; k < s->n_wall; k++) {
-        const int motion = s->wall[k].motion[0] ? scene_find_motion(s, s->wall[k].motion) : -1;
+    for (int k = 0; k < scene->n_wall; k++) {
+        const int motion =
+            scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
         if (motion < 0) continue;
         int64_t first = 0;
         while (first < walls->n && walls->body[first] != k) first++;
@@ -22,26 +23,27 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     return ERR_OK;
 }
 
-static void place_body(const struct moving_wall *b, struct particles *p)
+static void place_body(const struct moving_wall *b, struct particles *particles)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t i = b->first; i < b->end; i++) {
-        const struct motion_point at = motion_of_point(&b->placed, p->X[i], p->Y[i]);
-        p->x[i] = at.x[0];
-        p->y[i] = at.x[1];
-        p->vx[i] = at.v[0];
-        p->vy[i] = at.v[1];
-        p->ax[i] = at.a[0];
-        p->ay[i] = at.a[1];
+        const struct motion_point at =
+            motion_of_point(&b->placed, particles->X[i], particles->Y[i]);
+        particles->x[i] = at.x[0];
+        particles->y[i] = at.x[1];
+        particles->vx[i] = at.v[0];
+        particles->vy[i] = at.v[1];
+        particles->ax[i] = at.a[0];
+        particles->ay[i] = at.a[1];
     }
 }
 
-void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct particles *walls,
+void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct particles *walls,
                        double time)
 {
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
-        const struct motion_state now = motion_at(s, b->motion, time);
+        const struct motion_state now = motion_at(scene, b->motion, time);
         /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
         if (b->known && memcmp(&now, &b->placed, sizeof now) == 0 && !m->never_skip) continue;
         b->placed = now;
@@ -52,9 +54,9 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct part
     }
 }
 
-void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls)
+void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particles *walls)
 {
-    if (m->never_skip || m->moved) cells_sort(c, KIND_WALL, walls);
+    if (m->never_skip || m->moved) cells_sort(cells, KIND_WALL, walls);
     m->moved = false;
 }
 

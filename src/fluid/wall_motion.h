@@ -23,15 +23,15 @@ struct wall_motion {
     bool never_skip; /* nothing is skipped; set by tests */
 };
 
-enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
+enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,
                             const struct particles *walls, struct diag *d) SPHFSI_CHECKED;
 
 /* Sets position, velocity and acceleration of moving walls at a time. */
-void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct particles *walls,
+void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct particles *walls,
                        double time);
 
 /* Sorts the walls again if any has moved since the last sorting. */
-void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls);
+void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particles *walls);
 
 /* Largest squared speed, and power on the fluid of all walls and of one, W/m. */
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);

@@ -7,23 +7,24 @@
 
 #include <math.h>
 
-static struct box2 box_of(const struct scene *s, int kind, int body)
+static struct box2 box_of(const struct scene *scene, int kind, int body)
 {
-    const struct scene_points *p = &s->points[kind];
+    const struct scene_points *p = &scene->points[kind];
     struct box2 box = box2_empty();
     for (int64_t k = 0; k < p->n; k++)
         if (body < 0 || p->body[k] == body) box2_include(&box, p->x[k], p->y[k]);
     return box;
 }
 
-static void include_motion(const struct scene *s, int wall, struct box2 *box)
+static void include_motion(const struct scene *scene, int wall, struct box2 *box)
 {
     enum { TIMES = 257 };
-    const int motion = scene_find_motion(s, s->wall[wall].motion);
+    const int motion = scene_find_motion(scene, scene->wall[wall].motion);
     if (motion < 0) return;
-    const struct box2 start = box_of(s, KIND_WALL, wall);
+    const struct box2 start = box_of(scene, KIND_WALL, wall);
     for (int k = 0; k < TIMES && start.low[0] <= start.high[0]; k++) {
-        const struct motion_state m = motion_at(s, motion, s->top.end_time * k / (TIMES - 1));
+        const struct motion_state m =
+            motion_at(scene, motion, scene->top.end_time * k / (TIMES - 1));
         for (int corner = 0; corner < 4; corner++) {
             double at[2];
             box2_corner(&start, corner, at);
@@ -35,47 +36,47 @@ static void include_motion(const struct scene *s, int wall, struct box2 *box)
 
 /* All initial positions and those of prescribed motion. Around them the kernel's reach, or the size
  * of the largest solid, which may swing that far; above them the scene's height once more. */
-static void default_domain(struct scene *s)
+static void default_domain(struct scene *scene)
 {
     struct box2 all = box2_empty();
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t k = 0; k < s->points[kind].n; k++)
-            box2_include(&all, s->points[kind].x[k], s->points[kind].y[k]);
-    for (int k = 0; k < s->n_wall; k++) include_motion(s, k, &all);
-    const struct box2 solids = box_of(s, KIND_SOLID, -1);
-    double margin = 2 * s->h + s->top.dp;
+        for (int64_t k = 0; k < scene->points[kind].n; k++)
+            box2_include(&all, scene->points[kind].x[k], scene->points[kind].y[k]);
+    for (int k = 0; k < scene->n_wall; k++) include_motion(scene, k, &all);
+    const struct box2 solids = box_of(scene, KIND_SOLID, -1);
+    double margin = 2 * scene->h + scene->top.dp;
     for (int c = 0; c < 2; c++) margin = max2(margin, solids.high[c] - solids.low[c]);
     for (int c = 0; c < 2; c++) {
-        s->domain_lower[c] = all.low[c] - margin;
-        s->domain_upper[c] = all.high[c] + margin + (c == 1 ? all.high[1] - all.low[1] : 0);
+        scene->domain_lower[c] = all.low[c] - margin;
+        scene->domain_upper[c] = all.high[c] + margin + (c == 1 ? all.high[1] - all.low[1] : 0);
     }
 }
 
 /* The two sides of a periodic domain coincide: a point on the upper one is moved to the lower
  * one. */
-static bool in_domain(const struct scene *s, int axis, double x)
+static bool in_domain(const struct scene *scene, int axis, double x)
 {
-    const double upper = s->domain_upper[axis];
-    return x >= s->domain_lower[axis] && (scene_periodic(s, axis) ? x < upper : x <= upper);
+    const double upper = scene->domain_upper[axis];
+    return x >= scene->domain_lower[axis] && (scene_periodic(scene, axis) ? x < upper : x <= upper);
 }
 
-static enum err given_domain(struct scene *s, struct diag *d)
+static enum err given_domain(struct scene *scene, struct diag *d)
 {
-    const int line = s->domain.common.line;
+    const int line = scene->domain.common.line;
     for (int c = 0; c < 2; c++) {
-        s->domain_lower[c] = s->domain.lower[c];
-        s->domain_upper[c] = s->domain.upper[c];
-        if (!(s->domain.lower[c] < s->domain.upper[c]))
-            return fail_at(d, s, line,
+        scene->domain_lower[c] = scene->domain.lower[c];
+        scene->domain_upper[c] = scene->domain.upper[c];
+        if (!(scene->domain.lower[c] < scene->domain.upper[c]))
+            return fail_at(d, scene, line,
                            "[domain] lower must lie below and left of upper; here %c is %g and "
                            "%g m",
-                           "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
+                           "xy"[c], scene -> domain.lower[c], scene->domain.upper[c]);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct scene_points *p = &s->points[kind];
+        const struct scene_points *p = &scene->points[kind];
         for (int64_t k = 0; k < p->n; k++) {
-            if (in_domain(s, 0, p->x[k]) && in_domain(s, 1, p->y[k])) continue;
-            return fail_at(d, s, line,
+            if (in_domain(scene, 0, p->x[k]) && in_domain(scene, 1, p->y[k])) continue;
+            return fail_at(d, scene, line,
                            "a %s particle at (%g, %g) m lies outside [domain]; enlarge "
                            "[domain] or change the shape",
                            kind_names[kind], p->x[k], p->y[k]);
@@ -87,110 +88,111 @@ static enum err given_domain(struct scene *s, struct diag *d)
 /* --- periodic sides --- */
 
 /* The lattice must continue through the side without a seam. */
-static enum err check_period(const struct scene *s, int axis, struct diag *d)
+static enum err check_period(const struct scene *scene, int axis, struct diag *d)
 {
-    const double period = s->domain.upper[axis] - s->domain.lower[axis];
-    const double n = period / s->top.dp;
+    const double period = scene->domain.upper[axis] - scene->domain.lower[axis];
+    const double n = period / scene->top.dp;
     if (fabs(n - round(n)) <= 1e-6) return ERR_OK;
-    return fail_at(d, s, s->domain.common.line,
+    return fail_at(d, scene, scene->domain.common.line,
                    "[domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
                    "must be a whole number of them; %.9g m would fit",
-                   "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
+                   "xy"[axis], period, n, scene -> top.dp, round(n) * scene->top.dp);
 }
 
 /* Bodies are bonded within the domain only: a body through a periodic side would be cut there. */
-static enum err check_span(const struct scene *s, int axis, int body, struct diag *d)
+static enum err check_span(const struct scene *scene, int axis, int body, struct diag *d)
 {
-    const struct box2 box = box_of(s, KIND_SOLID, body);
-    const double period = s->domain.upper[axis] - s->domain.lower[axis];
+    const struct box2 box = box_of(scene, KIND_SOLID, body);
+    const double period = scene->domain.upper[axis] - scene->domain.lower[axis];
     const double gap = period - (box.high[axis] - box.low[axis]);
-    if (gap >= 2 * s->h) return ERR_OK;
-    return fail_at(d, s, s->domain.common.line,
+    if (gap >= 2 * scene->h) return ERR_OK;
+    return fail_at(d, scene, scene->domain.common.line,
                    "[domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
                    "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
                    "needed",
-                   s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
+                   scene->solid[body].common.name, "xy"[axis], gap, 2 * scene -> h);
 }
 
-static enum err check_periodic(const struct scene *s, struct diag *d)
+static enum err check_periodic(const struct scene *scene, struct diag *d)
 {
-    if (s->domain.periodic == PERIODIC_NONE) return ERR_OK;
-    const int line = s->domain.common.line;
-    if (s->lattice.angle != 0)
-        return fail_at(d, s, line,
+    if (scene->domain.periodic == PERIODIC_NONE) return ERR_OK;
+    const int line = scene->domain.common.line;
+    if (scene->lattice.angle != 0)
+        return fail_at(d, scene, line,
                        "[domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
                        "at the sides; it must be 0",
-                       s->numerics.lattice_angle);
+                       scene->numerics.lattice_angle);
     for (int axis = 0; axis < 2; axis++) {
-        if (!scene_periodic(s, axis)) continue;
-        if (s->domain.lower[axis] >= s->domain.upper[axis])
-            return fail_at(d, s, line, "[domain] periodic needs `lower` and `upper`");
-        TRY(check_period(s, axis, d));
-        for (int k = 0; k < s->n_solid; k++) TRY(check_span(s, axis, k, d));
+        if (!scene_periodic(scene, axis)) continue;
+        if (scene->domain.lower[axis] >= scene->domain.upper[axis])
+            return fail_at(d, scene, line, "[domain] periodic needs `lower` and `upper`");
+        TRY(check_period(scene, axis, d));
+        for (int k = 0; k < scene->n_solid; k++) TRY(check_span(scene, axis, k, d));
     }
     return ERR_OK;
 }
 
 /* --- probes --- */
 
-static enum err check_body_probe(const struct sampler *g, const struct scene_probe *probe)
+static enum err check_body_probe(const struct sampler *sampler, const struct scene_probe *probe)
 {
-    const struct scene *s = g->scene;
-    const struct scene_points *p = &s->points[KIND_SOLID];
-    const int body = scene_find_solid(s, probe->body);
+    const struct scene *scene = sampler->scene;
+    const struct scene_points *p = &scene->points[KIND_SOLID];
+    const int body = scene_find_solid(scene, probe->body);
     double nearest = HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == body)
             nearest = min2(nearest,
                            elementary_hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));
     /* A corner of a body is sqrt(1/2) dp from its particle's centre. */
-    const double dp = scene_solid_dp(s, body), outside = nearest - sqrt(0.5) * dp;
+    const double dp = scene_solid_dp(scene, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;
-    return fail_at(g->diag, s, probe->common.line,
+    return fail_at(sampler->diag, scene, probe->common.line,
                    "[probe %s] point (%g, %g) lies about %.3g m outside of [solid %s]",
                    probe->common.name, probe->point[0], probe->point[1], outside, probe->body);
 }
 
-static enum err check_place(const struct sampler *g, const struct scene_probe *probe,
+static enum err check_place(const struct sampler *sampler, const struct scene_probe *probe,
                             const char *key, const double at[2])
 {
-    const struct scene *s = g->scene;
+    const struct scene *scene = sampler->scene;
     bool inside = true;
     for (int c = 0; c < 2; c++)
-        inside &= at[c] >= s->domain_lower[c] && at[c] <= s->domain_upper[c];
+        inside &= at[c] >= scene->domain_lower[c] && at[c] <= scene->domain_upper[c];
     if (inside) return ERR_OK;
-    return fail_at(g->diag, s, probe->common.line,
+    return fail_at(sampler->diag, scene, probe->common.line,
                    "[probe %s] %s (%g, %g) lies outside of the domain, (%g, %g) to (%g, %g) m",
-                   probe->common.name, key, at[0], at[1], s->domain_lower[0], s->domain_lower[1],
-                   s->domain_upper[0], s->domain_upper[1]);
+                   probe->common.name, key, at[0], at[1], scene->domain_lower[0],
+                   scene->domain_lower[1], scene->domain_upper[0], scene->domain_upper[1]);
 }
 
-static enum err check_probes(struct sampler *g)
+static enum err check_probes(struct sampler *sampler)
 {
-    const struct scene *s = g->scene;
-    for (int k = 0; k < s->n_probe; k++) {
-        const struct scene_probe *probe = &s->probe[k];
+    const struct scene *scene = sampler->scene;
+    for (int k = 0; k < scene->n_probe; k++) {
+        const struct scene_probe *probe = &scene->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (target == TARGET_SOLID_POINT) TRY(geometry_go_on(g, check_body_probe(g, probe)));
+        if (target == TARGET_SOLID_POINT)
+            TRY(geometry_go_on(sampler, check_body_probe(sampler, probe)));
         if (target == TARGET_FLUID_POINT || line)
-            TRY(geometry_go_on(g, check_place(g, probe, "point", probe->point)));
-        if (line) TRY(geometry_go_on(g, check_place(g, probe, "to", probe->to)));
+            TRY(geometry_go_on(sampler, check_place(sampler, probe, "point", probe->point)));
+        if (line) TRY(geometry_go_on(sampler, check_place(sampler, probe, "to", probe->to)));
     }
     return ERR_OK;
 }
 
 /* --- initial values --- */
 
-static enum err check_field(const struct sampler *g, const struct scene_expr *field, int kind,
+static enum err check_field(const struct sampler *sampler, const struct scene_expr *field, int kind,
                             int body, const struct scene_section_common *common, const char *key)
 {
-    const struct scene_points *p = &g->scene->points[kind];
+    const struct scene_points *p = &sampler->scene->points[kind];
     for (int c = 0; c < 2 && field->e[c]; c++) {
         for (int64_t k = 0; k < p->n; k++) {
             if (p->body[k] != body || isfinite(scene_expr_at(field->e[c], p->x[k], p->y[k])))
                 continue;
-            return fail_at(g->diag, g->scene, common->line,
+            return fail_at(sampler->diag, sampler->scene, common->line,
                            "[%s %s] %s is not finite at (%g, %g) m; change the expression",
                            kind_names[kind], common->name, key, p->x[k], p->y[k]);
         }
@@ -198,29 +200,31 @@ static enum err check_field(const struct sampler *g, const struct scene_expr *fi
     return ERR_OK;
 }
 
-static enum err check_fields(struct sampler *g)
+static enum err check_fields(struct sampler *sampler)
 {
-    const struct scene *s = g->scene;
-    for (int k = 0; k < s->n_fluid; k++) {
-        const struct scene_fluid *f = &s->fluid[k];
-        TRY(geometry_go_on(g, check_field(g, &f->velocity, KIND_FLUID, k, &f->common, "velocity")));
-        TRY(geometry_go_on(g, check_field(g, &f->pressure, KIND_FLUID, k, &f->common, "pressure")));
+    const struct scene *scene = sampler->scene;
+    for (int k = 0; k < scene->n_fluid; k++) {
+        const struct scene_fluid *f = &scene->fluid[k];
+        TRY(geometry_go_on(sampler, check_field(sampler, &f->velocity, KIND_FLUID, k, &f->common,
+                                                "velocity")));
+        TRY(geometry_go_on(sampler, check_field(sampler, &f->pressure, KIND_FLUID, k, &f->common,
+                                                "pressure")));
     }
-    for (int k = 0; k < s->n_solid; k++)
-        TRY(geometry_go_on(g, check_field(g, &s->solid[k].velocity, KIND_SOLID, k,
-                                          &s->solid[k].common, "velocity")));
+    for (int k = 0; k < scene->n_solid; k++)
+        TRY(geometry_go_on(sampler, check_field(sampler, &scene->solid[k].velocity, KIND_SOLID, k,
+                                                &scene->solid[k].common, "velocity")));
     return ERR_OK;
 }
 
-enum err geometry_extent(struct sampler *g)
+enum err geometry_extent(struct sampler *sampler)
 {
-    struct scene *s = g->scene;
-    const struct scene_domain *dom = &s->domain;
-    TRY(check_periodic(s, g->diag));
+    struct scene *scene = sampler->scene;
+    const struct scene_domain *dom = &scene->domain;
+    TRY(check_periodic(scene, sampler->diag));
     if (dom->lower[0] == dom->upper[0] && dom->lower[1] == dom->upper[1])
-        default_domain(s);
+        default_domain(scene);
     else
-        TRY(given_domain(s, g->diag));
-    TRY(check_probes(g));
-    return check_fields(g);
+        TRY(given_domain(scene, sampler->diag));
+    TRY(check_probes(sampler));
+    return check_fields(sampler);
 }

@@ -5,10 +5,10 @@
 
 #include "case/case.h"
 
-static bool touches(const struct scene *s, const struct point_grid *t, int body, int other,
+static bool touches(const struct scene *scene, const struct point_grid *t, int body, int other,
                     double reach)
 {
-    const struct scene_points *const p = &s->points[KIND_SOLID];
+    const struct scene_points *const p = &scene->points[KIND_SOLID];
     for (int64_t k = 0; k < p->n; k++) {
         if (p->body[k] != body) continue;
         struct point_visit v = point_grid_visit(t, p->x[k], p->y[k], reach);
@@ -18,23 +18,24 @@ static bool touches(const struct scene *s, const struct point_grid *t, int body,
     return false;
 }
 
-enum err geometry_check_joined(struct sampler *g)
+enum err geometry_check_joined(struct sampler *sampler)
 {
-    const struct scene *const s = g->scene;
-    const struct scene_points *const p = &s->points[KIND_SOLID];
-    for (int k = 0; k < s->n_solid; k++) {
-        const int other = scene_find_solid(s, s->solid[k].joined);
+    const struct scene *const scene = sampler->scene;
+    const struct scene_points *const p = &scene->points[KIND_SOLID];
+    for (int k = 0; k < scene->n_solid; k++) {
+        const int other = scene_find_solid(scene, scene->solid[k].joined);
         if (other < 0) continue;
         struct point_grid table;
-        const double reach = 2 * scene_solid_h(s, k) * (1 - 1e-9);
-        TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &g->temp, g->diag));
+        const double reach = 2 * scene_solid_h(scene, k) * (1 - 1e-9);
+        TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &sampler->temp, sampler->diag));
         for (int64_t n = 0; n < p->n; n++) point_grid_insert(&table, n);
-        if (touches(s, &table, k, other, reach)) continue;
+        if (touches(scene, &table, k, other, reach)) continue;
         TRY(geometry_go_on(
-            g, fail_at(g->diag, s, scene_line(s, SECTION_solid, k, "joined"),
-                       "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
-                       "from it; move it, or leave `joined` out",
-                       s->solid[k].common.name, s->solid[k].joined, reach)));
+            sampler,
+            fail_at(sampler->diag, scene, scene_line(scene, SECTION_solid, k, "joined"),
+                    "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
+                    "from it; move it, or leave `joined` out",
+                    scene->solid[k].common.name, scene->solid[k].joined, reach)));
     }
     return ERR_OK;
 }

@@ -168,10 +168,10 @@ struct lattice_group {
 };
 
 static enum err turned_outlines(struct outlines *o, const struct outlines *from, double angle,
-                                struct sampler *g)
+                                struct sampler *sampler)
 {
     *o = *from;
-    return outlines_turn(o, angle, &g->temp, g->diag);
+    return outlines_turn(o, angle, &sampler->temp, sampler->diag);
 }
 
 /* Whether the previous line has a crossing of the same kind at nearly the same position: then the
@@ -185,16 +185,17 @@ static bool goes_on(const struct crossing *before, int n, const struct crossing 
 
 /* Adds the crossings of one region along the axis at `angle`; returns only their number if `to` is
  * NULL. */
-static enum err region_crossings(struct sampler *g, const struct region *region, double angle,
+static enum err region_crossings(struct sampler *sampler, const struct region *region, double angle,
                                  double dp, bool whole, struct crossing **to, int *n)
 {
     struct outlines body, minus, clamp = {0};
-    TRY(turned_outlines(&body, &region->add, angle, g));
-    TRY(turned_outlines(&minus, &region->minus, angle, g));
+    TRY(turned_outlines(&body, &region->add, angle, sampler));
+    TRY(turned_outlines(&minus, &region->minus, angle, sampler));
     if (region->kind == KIND_SOLID && !whole) {
-        TRY(outlines_of(&clamp, g->scene, &g->scene->solid[region->body].clamp, &g->temp, g->diag));
-        TRY(outlines_turn(&clamp, angle, &g->temp, g->diag));
-        omit_hinges(&clamp, &g->scene->solid[region->body].clamp, dp);
+        TRY(outlines_of(&clamp, sampler->scene, &sampler->scene->solid[region->body].clamp,
+                        &sampler->temp, sampler->diag));
+        TRY(outlines_turn(&clamp, angle, &sampler->temp, sampler->diag));
+        omit_hinges(&clamp, &sampler->scene->solid[region->body].clamp, dp);
     }
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int k = 0; k < body.n; k++) {
@@ -205,10 +206,10 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
     const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
     const double step = (high - low) / lines;
-    double *const buffer =
-        arena_alloc(&g->temp, 3 * (size_t)capacity, sizeof *buffer, "sampling", g->diag);
-    struct crossing *const two_lines =
-        arena_alloc(&g->temp, 4 * (size_t)capacity, sizeof *two_lines, "sampling", g->diag);
+    double *const buffer = arena_alloc(&sampler->temp, 3 * (size_t)capacity, sizeof *buffer,
+                                       "sampling", sampler->diag);
+    struct crossing *const two_lines = arena_alloc(&sampler->temp, 4 * (size_t)capacity,
+                                                   sizeof *two_lines, "sampling", sampler->diag);
     if (!buffer || !two_lines) return ERR_MEMORY;
     int64_t total = 0;
     for (int pass = 0; pass < 2; pass++) {
@@ -226,8 +227,8 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
         }
         if (pass == 1) break;
         if (*n + total > INT32_MAX / 2) return ERR_OK;
-        struct crossing *const more = arena_alloc(&g->temp, (size_t)*n + (size_t)total + 1,
-                                                  sizeof *more, "sampling", g->diag);
+        struct crossing *const more = arena_alloc(&sampler->temp, (size_t)*n + (size_t)total + 1,
+                                                  sizeof *more, "sampling", sampler->diag);
         if (!more) return ERR_MEMORY;
         if (*n) memcpy(more, *to, (size_t)*n * sizeof *more);
         *to = more;
@@ -236,7 +237,7 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
 }
 
 /* The edges of a group across one axis: of its free part, or of the whole if no part is free. */
-static enum err find_edges(struct sampler *g, const struct lattice_group *group, int axis,
+static enum err find_edges(struct sampler *sampler, const struct lattice_group *group, int axis,
                            struct crossing **edge, int *n)
 {
     const double angle = group->angle + (axis ? 0.5 * PI : 0);
@@ -244,7 +245,7 @@ static enum err find_edges(struct sampler *g, const struct lattice_group *group,
     *edge = NULL;
     for (int whole = 0; whole < 2 && *n == 0; whole++) {
         for (int k = 0; k < group->n; k++)
-            TRY(region_crossings(g, group->region[k], angle, group->dp, whole, edge, n));
+            TRY(region_crossings(sampler, group->region[k], angle, group->dp, whole, edge, n));
         *n = merge_edges(*edge, *n, group->dp);
     }
     return ERR_OK;
@@ -309,12 +310,13 @@ static void fit_axis(const struct crossing *edge, int n, double dp, bool fixed, 
 }
 
 /* Corner of the box around a group, in its own axes. */
-static enum err lower_corner(struct sampler *g, const struct lattice_group *group, double corner[2])
+static enum err lower_corner(struct sampler *sampler, const struct lattice_group *group,
+                             double corner[2])
 {
     corner[0] = corner[1] = HUGE_VAL;
     for (int k = 0; k < group->n; k++) {
         struct outlines o;
-        TRY(turned_outlines(&o, &group->region[k]->add, group->angle, g));
+        TRY(turned_outlines(&o, &group->region[k]->add, group->angle, sampler));
         for (int j = 0; j < o.n; j++)
             for (int c = 0; c < 2; c++) corner[c] = min2(corner[c], o.item[j].low[c]);
     }
@@ -323,22 +325,22 @@ static enum err lower_corner(struct sampler *g, const struct lattice_group *grou
 
 /* A solid's lattice is the common one if that fits. Otherwise its origin is its lower left corner.
  * If edges are then between lattice lines, it is fitted to them. */
-static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
+static enum err fit_solids(struct sampler *sampler, const struct lattice_group *group)
 {
     double corner[2];
     bool shifted = false;
     struct scene_lattice l = {.angle = group->angle,
                               .turn = {elementary_cos(group->angle), elementary_sin(group->angle)},
                               .spacing = {group->dp, group->dp}};
-    TRY(lower_corner(g, group, corner));
+    TRY(lower_corner(sampler, group, corner));
     for (int c = 0; c < 2; c++) {
-        const struct scene_lattice *const common = &g->scene->lattice;
+        const struct scene_lattice *const common = &sampler->scene->lattice;
         const double cells = (corner[c] - common->origin[c]) / group->dp;
         const bool same = group->angle == common->angle && fabs(cells - round(cells)) <= on_lattice;
         l.origin[c] = same ? common->origin[c] : corner[c];
         struct crossing *edge;
         int n;
-        TRY(find_edges(g, group, c, &edge, &n));
+        TRY(find_edges(sampler, group, c, &edge, &n));
         double off = 0;
         for (int k = 0; k < n; k++) {
             const double place = (edge[k].at - l.origin[c]) / group->dp;
@@ -353,19 +355,20 @@ static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
     const bool square_cells = l.spacing[0] == group->dp && l.spacing[1] == group->dp;
     l.dp = square_cells ? group->dp : sqrt(l.spacing[0] * l.spacing[1]);
     for (int k = 0; k < group->n; k++) group->region[k]->lattice = l;
-    g->scene->off_lattice |= shifted && group->angle == 0 && !l.fitted;
+    sampler->scene->off_lattice |= shifted && group->angle == 0 && !l.fitted;
     return ERR_OK;
 }
 
 /* --- groups --- */
 
-static enum err group_direction(struct sampler *g, struct lattice_group *group)
+static enum err group_direction(struct sampler *sampler, struct lattice_group *group)
 {
     size_t most = 1;
     for (int k = 0; k < group->n; k++)
         for (int j = 0; j < group->region[k]->list->n; j++)
             most += (size_t)group->region[k]->list->item[j].n;
-    struct direction *all = arena_alloc(&g->temp, most, sizeof *all, "sampling", g->diag);
+    struct direction *all =
+        arena_alloc(&sampler->temp, most, sizeof *all, "sampling", sampler->diag);
     if (!all) return ERR_MEMORY;
     int n = 0;
     for (int k = 0; k < group->n; k++) n += add_directions(group->region[k]->list, all + n);
@@ -381,29 +384,29 @@ static double given_angle(double angle)
 }
 
 /* The lattice of fluid and walls. A periodic one cannot be rotated. */
-static enum err common_lattice(struct sampler *g, struct region **list)
+static enum err common_lattice(struct sampler *sampler, struct region **list)
 {
-    struct scene *s = g->scene;
-    struct lattice_group group = {.region = list, .dp = s->top.dp};
-    for (int k = 0; k < g->n_regions; k++)
-        if (g->regions[k].kind != KIND_SOLID) list[group.n++] = &g->regions[k];
-    if (!isnan(s->numerics.lattice_angle))
-        group.angle = given_angle(s->numerics.lattice_angle);
-    else if (s->domain.periodic == PERIODIC_NONE)
-        TRY(group_direction(g, &group));
-    const double *at = s->numerics.lattice_origin;
+    struct scene *scene = sampler->scene;
+    struct lattice_group group = {.region = list, .dp = scene->top.dp};
+    for (int k = 0; k < sampler->n_regions; k++)
+        if (sampler->regions[k].kind != KIND_SOLID) list[group.n++] = &sampler->regions[k];
+    if (!isnan(scene->numerics.lattice_angle))
+        group.angle = given_angle(scene->numerics.lattice_angle);
+    else if (scene->domain.periodic == PERIODIC_NONE)
+        TRY(group_direction(sampler, &group));
+    const double *at = scene->numerics.lattice_origin;
     const double c = elementary_cos(group.angle), sine = elementary_sin(group.angle);
-    struct scene_lattice *l = &s->lattice;
+    struct scene_lattice *l = &scene->lattice;
     *l = (struct scene_lattice){.angle = group.angle,
                                 .turn = {c, sine},
                                 .spacing = {group.dp, group.dp},
                                 .dp = group.dp};
     lattice_place(l, at[0], at[1], l->origin);
-    if (group.angle != 0 && !scene_given(s, SECTION_numerics, 0, "lattice_origin")) {
+    if (group.angle != 0 && !scene_given(scene, SECTION_numerics, 0, "lattice_origin")) {
         for (int axis = 0; axis < 2; axis++) {
             struct crossing *edge;
             int n;
-            TRY(find_edges(g, &group, axis, &edge, &n));
+            TRY(find_edges(sampler, &group, axis, &edge, &n));
             fit_axis(edge, n, group.dp, true, &l->origin[axis], &l->spacing[axis]);
         }
     }
@@ -412,46 +415,47 @@ static enum err common_lattice(struct sampler *g, struct region **list)
 }
 
 /* Gives solids that are bonded to each other, directly or through others, the same number. */
-static void number_bonds(const struct scene *s, int *bond)
+static void number_bonds(const struct scene *scene, int *bond)
 {
-    for (int k = 0; k < s->n_solid; k++) bond[k] = k;
-    for (int k = 0; k < s->n_solid; k++) {
-        if (!s->solid[k].joined[0]) continue;
-        const int a = bond[k], b = bond[scene_find_solid(s, s->solid[k].joined)];
-        for (int j = 0; j < s->n_solid; j++)
+    for (int k = 0; k < scene->n_solid; k++) bond[k] = k;
+    for (int k = 0; k < scene->n_solid; k++) {
+        if (!scene->solid[k].joined[0]) continue;
+        const int a = bond[k], b = bond[scene_find_solid(scene, scene->solid[k].joined)];
+        for (int j = 0; j < scene->n_solid; j++)
             if (bond[j] == a || bond[j] == b) bond[j] = a < b ? a : b;
     }
 }
 
-static enum err solid_lattice(struct sampler *g, const int *bond, int number, struct region **list)
+static enum err solid_lattice(struct sampler *sampler, const int *bond, int number,
+                              struct region **list)
 {
-    struct scene *s = g->scene;
-    struct lattice_group group = {.region = list, .dp = scene_solid_dp(s, number)};
-    for (int k = 0; k < s->n_solid; k++)
-        if (bond[k] == number) list[group.n++] = &g->regions[k];
+    struct scene *scene = sampler->scene;
+    struct lattice_group group = {.region = list, .dp = scene_solid_dp(scene, number)};
+    for (int k = 0; k < scene->n_solid; k++)
+        if (bond[k] == number) list[group.n++] = &sampler->regions[k];
     if (group.n == 0) return ERR_OK;
-    TRY(group_direction(g, &group));
+    TRY(group_direction(sampler, &group));
     for (int k = group.n - 1; k >= 0; k--) {
-        const double given = s->solid[list[k]->body].lattice_angle;
+        const double given = scene->solid[list[k]->body].lattice_angle;
         if (!isnan(given)) group.angle = given_angle(given);
     }
-    return fit_solids(g, &group);
+    return fit_solids(sampler, &group);
 }
 
-enum err geometry_choose_lattices(struct sampler *g)
+enum err geometry_choose_lattices(struct sampler *sampler)
 {
-    struct scene *s = g->scene;
-    const size_t n = (size_t)s->n_solid;
-    struct region **list =
-        arena_alloc(&g->temp, (size_t)g->n_regions, sizeof *list, "sampling", g->diag);
-    int *bond = arena_alloc(&g->temp, n, sizeof *bond, "sampling", g->diag);
+    struct scene *scene = sampler->scene;
+    const size_t n = (size_t)scene->n_solid;
+    struct region **list = arena_alloc(&sampler->temp, (size_t)sampler->n_regions, sizeof *list,
+                                       "sampling", sampler->diag);
+    int *bond = arena_alloc(&sampler->temp, n, sizeof *bond, "sampling", sampler->diag);
     struct scene_lattice *const to =
-        arena_alloc(&s->arena, n, sizeof *s->solid_lattice, "lattice", g->diag);
+        arena_alloc(&scene->arena, n, sizeof *scene->solid_lattice, "lattice", sampler->diag);
     if (!list || !bond || !to) return ERR_MEMORY;
-    number_bonds(s, bond);
-    TRY(common_lattice(g, list));
-    for (int k = 0; k < s->n_solid; k++) TRY(solid_lattice(g, bond, k, list));
-    for (int k = 0; k < s->n_solid; k++) to[k] = g->regions[k].lattice;
-    s->solid_lattice = to;
+    number_bonds(scene, bond);
+    TRY(common_lattice(sampler, list));
+    for (int k = 0; k < scene->n_solid; k++) TRY(solid_lattice(sampler, bond, k, list));
+    for (int k = 0; k < scene->n_solid; k++) to[k] = sampler->regions[k].lattice;
+    scene->solid_lattice = to;
     return ERR_OK;
 }

@@ -33,13 +33,13 @@ static bool along_lattice(const struct shape *shape, const struct region *region
     return true;
 }
 
-enum err layers_find(struct sampler *g, struct region *region)
+enum err layers_find(struct sampler *sampler, struct region *region)
 {
-    region->layered =
-        arena_alloc(&g->temp, (size_t)region->add.n, sizeof *region->layered, "walls", g->diag);
+    region->layered = arena_alloc(&sampler->temp, (size_t)region->add.n, sizeof *region->layered,
+                                  "walls", sampler->diag);
     if (!region->layered) return ERR_MEMORY;
     if (region->kind != KIND_WALL) return ERR_OK;
-    const struct shape_list *const minus = &g->scene->wall[region->body].minus;
+    const struct shape_list *const minus = &sampler->scene->wall[region->body].minus;
     bool all = false;
     for (int k = 0; k < minus->n; k++) all |= !along_lattice(&minus->item[k], region);
     for (int k = 0; k < region->add.n; k++) {
@@ -72,11 +72,11 @@ static double twice_area(const struct loop *o)
 }
 
 static enum err loop_of_circle(const struct outline *o, double dp, struct loop *to,
-                               struct sampler *g)
+                               struct sampler *sampler)
 {
     const double wanted = 2 * PI * o->radius / dp * PARTS;
     to->n = wanted < 32 ? 32 : wanted > 1e6 ? 1000000 : (int)wanted;
-    to->pt = arena_alloc(&g->temp, (size_t)to->n, sizeof *to->pt, "walls", g->diag);
+    to->pt = arena_alloc(&sampler->temp, (size_t)to->n, sizeof *to->pt, "walls", sampler->diag);
     if (!to->pt) return ERR_MEMORY;
     for (int k = 0; k < to->n; k++) {
         to->pt[k][0] = o->centre[0] + o->radius * elementary_cos(2 * PI * k / to->n);
@@ -97,14 +97,14 @@ static void turn_round(struct loop *o)
 
 /* The outline of a piece, or the drawn side of a polyline, from its pieces `first` to `end`. */
 static enum err make_loop(const struct outlines *o, int first, int end, bool polyline,
-                          bool wall_inside, double dp, struct loop *to, struct sampler *g)
+                          bool wall_inside, double dp, struct loop *to, struct sampler *sampler)
 {
     const struct outline *const piece = &o->item[first];
     *to = (struct loop){.n = polyline ? end - first + 1 : piece->n, .open = polyline};
     if (piece->n == 0)
-        TRY(loop_of_circle(piece, dp, to, g));
+        TRY(loop_of_circle(piece, dp, to, sampler));
     else {
-        to->pt = arena_alloc(&g->temp, (size_t)to->n, sizeof *to->pt, "walls", g->diag);
+        to->pt = arena_alloc(&sampler->temp, (size_t)to->n, sizeof *to->pt, "walls", sampler->diag);
         if (!to->pt) return ERR_MEMORY;
         for (int k = 0; k < to->n; k++)
             memcpy(to->pt[k],
@@ -341,14 +341,15 @@ static enum err each_loop(struct layers *l, struct face_set *set, visitor *visit
     return ERR_OK;
 }
 
-enum err layers_create(struct layers *l, struct sampler *g, const struct region *region)
+enum err layers_create(struct layers *l, struct sampler *sampler, const struct region *region)
 {
     const double dp = region->lattice.dp;
-    *l = (struct layers){.g = g, .region = region, .dp = dp, .points = {.side = dp}};
-    l->set = arena_alloc(&g->temp, (size_t)region->add.n + 1, sizeof *l->set, "walls", g->diag);
+    *l = (struct layers){.g = sampler, .region = region, .dp = dp, .points = {.side = dp}};
+    l->set = arena_alloc(&sampler->temp, (size_t)region->add.n + 1, sizeof *l->set, "walls",
+                         sampler->diag);
     if (!l->set) return ERR_MEMORY;
     l->set[l->n_sets++] =
-        (struct face_set){.spacing = dp, .depth = dp * (1 + ceil(2 * g->scene->h / dp))};
+        (struct face_set){.spacing = dp, .depth = dp * (1 + ceil(2 * sampler->scene->h / dp))};
     for (int k = 0, end; k < region->add.n; k = end) {
         for (end = k + 1; end < region->add.n && region->add.shape[end] == region->add.shape[k];)
             end++;

@@ -26,10 +26,10 @@ struct layers {
 };
 
 /* Sets region->layered for the pieces that need layers. */
-enum err layers_find(struct sampler *g, struct region *region) SPHFSI_CHECKED;
+enum err layers_find(struct sampler *sampler, struct region *region) SPHFSI_CHECKED;
 
 /* Starts with the faces of the pieces that need layers. */
-enum err layers_create(struct layers *l, struct sampler *g, const struct region *region)
+enum err layers_create(struct layers *l, struct sampler *sampler, const struct region *region)
     SPHFSI_CHECKED;
 /* Adds a point of the lattice of the other pieces. */
 enum err layers_take(struct layers *l, double x, double y) SPHFSI_CHECKED;

@@ -7,12 +7,12 @@
 
 /* scene_read and scene_parse followed by scene_sample. After success the caller frees with
  * scene_free; after a failure there is nothing to free. */
-enum err scene_load(struct scene *s, const char *path, int n_sets, const char *const *sets,
+enum err scene_load(struct scene *scene, const char *path, int n_sets, const char *const *sets,
                     struct diag *d) SPHFSI_CHECKED;
-enum err scene_load_text(struct scene *s, const char *text, const char *path, int n_sets,
+enum err scene_load_text(struct scene *scene, const char *text, const char *path, int n_sets,
                          const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 
 /* Samples all shapes into s->points; sets h and the effective domain (geometry/sampling.c). */
-enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+enum err scene_sample(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -12,11 +12,12 @@
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 
-static enum err refuse(const struct sampler *g, const struct scene_open *o, const char *what,
+static enum err refuse(const struct sampler *sampler, const struct scene_open *o, const char *what,
                        const double x[2], const char *mend)
 {
-    return fail_at(g->diag, g->scene, o->common->line, "[%s %s] %s at (%.6g, %.6g) m: %s",
-                   o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
+    return fail_at(sampler->diag, sampler->scene, o->common->line,
+                   "[%s %s] %s at (%.6g, %.6g) m: %s", o->inflow ? "inflow" : "outflow",
+                   o->common->name, what, x[0], x[1], mend);
 }
 
 /* Points of a kind around a boundary's buffer. */
@@ -26,13 +27,14 @@ struct around {
     int64_t *at;
 };
 
-static enum err find_around(struct sampler *g, const struct scene_open *o, enum kind kind,
+static enum err find_around(struct sampler *sampler, const struct scene_open *o, enum kind kind,
                             struct around *a)
 {
-    const struct scene_points *const p = &g->scene->points[kind];
-    const double margin = 2 * g->scene->top.dp;
+    const struct scene_points *const p = &sampler->scene->points[kind];
+    const double margin = 2 * sampler->scene->top.dp;
     *a = (struct around){.points = p};
-    a->at = arena_alloc(&g->temp, (size_t)p->n, sizeof *a->at, "open boundaries", g->diag);
+    a->at =
+        arena_alloc(&sampler->temp, (size_t)p->n, sizeof *a->at, "open boundaries", sampler->diag);
     if (!a->at) return ERR_MEMORY;
     for (int64_t k = 0; k < p->n; k++) {
         double in, along;
@@ -62,30 +64,30 @@ struct lattice {
     double step; /* m, along the line */
 };
 
-static struct lattice lattice_of(const struct scene *s, const struct scene_open *o)
+static struct lattice lattice_of(const struct scene *scene, const struct scene_open *o)
 {
     const double most = 1e9; /* more than is accepted, but an integer */
-    struct lattice l = {(int)min2(most, max2(1, round(o->length / s->top.dp))),
-                        (int)round(o->depth / s->top.dp), 0};
+    struct lattice l = {(int)min2(most, max2(1, round(o->length / scene->top.dp))),
+                        (int)round(o->depth / scene->top.dp), 0};
     l.step = o->length / l.across;
     return l;
 }
 
 /* Position i of row j; row -1 is the first one inside the fluid. False: above the water. */
-static bool lattice_point(const struct scene *s, const struct scene_open *o,
+static bool lattice_point(const struct scene *scene, const struct scene_open *o,
                           const struct lattice *l, int i, int j, double x[2])
 {
-    const double along = (i + 0.5) * l->step, in = -(j + 0.5) * s->top.dp;
+    const double along = (i + 0.5) * l->step, in = -(j + 0.5) * scene->top.dp;
     for (int c = 0; c < 2; c++) x[c] = o->from[c] + along * o->along[c] + in * o->inward[c];
     return isnan(o->level) || x[1] < o->level;
 }
 
 /* Fluid behind the line at the start, and a line without fluid at it. */
-static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
+static enum err check_fluid(const struct sampler *sampler, const struct scene_open *o,
                             const struct around *fluid)
 {
-    const double dp = g->scene->top.dp;
-    const struct lattice l = lattice_of(g->scene, o);
+    const double dp = sampler->scene->top.dp;
+    const struct lattice l = lattice_of(sampler->scene, o);
     for (int64_t k = 0; k < fluid->n; k++) {
         const int64_t i = fluid->at[k];
         const double x[2] = {fluid->points->x[i], fluid->points->y[i]};
@@ -93,83 +95,84 @@ static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
         scene_open_place(o, x, &in, &along);
         if (fluid->points->open[i] == 0 && in < -1e-6 * dp && in > -o->depth && along > 0 &&
             along < o->length)
-            return refuse(g, o, "has fluid behind its line", x,
+            return refuse(sampler, o, "has fluid behind its line", x,
                           "end the fluid's shape at the line, or change `side`");
     }
     int wet = 0, places = 0;
     double x[2] = {o->from[0], o->from[1]};
     for (int i = 0; i < l.across; i++) {
-        if (!lattice_point(g->scene, o, &l, i, -1, x)) continue;
+        if (!lattice_point(sampler->scene, o, &l, i, -1, x)) continue;
         places++;
         wet += nearest(fluid, x, NEXT_TO * dp) >= 0;
     }
     if (places > 0 && 2 * wet >= places) return ERR_OK;
-    return refuse(g, o, "has no fluid along its line", x,
+    return refuse(sampler, o, "has no fluid along its line", x,
                   "the shape of the fluid must begin at the line; change `side` if the fluid lies "
                   "on the other side");
 }
 
 /* The particle at the position of a buffer particle, if any. */
-static enum err check_place(const struct sampler *g, const struct scene_open *o,
+static enum err check_place(const struct sampler *sampler, const struct scene_open *o,
                             const struct around kinds[KIND_COUNT], const double x[2])
 {
-    const double near = SAME_PLACE * g->scene->top.dp;
+    const double near = SAME_PLACE * sampler->scene->top.dp;
     const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
     if (nearest(&kinds[KIND_WALL], x, near) >= 0)
-        return refuse(g, o, "lies in a wall", x,
+        return refuse(sampler, o, "lies in a wall", x,
                       "shorten the line, or cut an opening in the wall with `minus`");
     if (nearest(&kinds[KIND_SOLID], x, near) >= 0)
-        return refuse(g, o, "lies in a solid", x, "move the line");
+        return refuse(sampler, o, "lies in a solid", x, "move the line");
     if (fluid >= 0 && kinds[KIND_FLUID].points->open[fluid])
-        return refuse(g, o, "overlaps another open boundary", x, "move one of the two");
+        return refuse(sampler, o, "overlaps another open boundary", x, "move one of the two");
     return ERR_OK;
 }
 
-static enum err append(struct sampler *g, int number, const struct scene_open *o)
+static enum err append(struct sampler *sampler, int number, const struct scene_open *o)
 {
-    struct scene *const s = g->scene;
-    struct scene_points *const p = &s->points[KIND_FLUID];
-    const struct lattice l = lattice_of(s, o);
+    struct scene *const scene = sampler->scene;
+    struct scene_points *const p = &scene->points[KIND_FLUID];
+    const struct lattice l = lattice_of(scene, o);
     const int64_t before = p->n;
     struct around kinds[KIND_COUNT];
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        TRY(find_around(g, o, (enum kind)kind, &kinds[kind]));
-    TRY(check_fluid(g, o, &kinds[KIND_FLUID]));
+        TRY(find_around(sampler, o, (enum kind)kind, &kinds[kind]));
+    TRY(check_fluid(sampler, o, &kinds[KIND_FLUID]));
     for (int j = 0; j < l.rows; j++)
         for (int i = 0; i < l.across; i++) {
             double x[2];
-            if (!lattice_point(s, o, &l, i, j, x)) continue;
-            TRY(check_place(g, o, kinds, x));
+            if (!lattice_point(scene, o, &l, i, j, x)) continue;
+            TRY(check_place(sampler, o, kinds, x));
             p->x[p->n] = x[0];
             p->y[p->n] = x[1];
             p->body[p->n] = 0;
             p->open[p->n] = number + 1;
             p->n++;
         }
-    return p->n > before ? ERR_OK : refuse(g, o, "is above its level", o->from, "raise `level`");
+    return p->n > before ? ERR_OK
+                         : refuse(sampler, o, "is above its level", o->from, "raise `level`");
 }
 
 /* Enlarges a field of the fluid's points. */
-#define GROW(field)                                                                          \
-    do {                                                                                     \
-        __typeof__(*p->field) *const to =                                                    \
-            arena_alloc(&s->arena, (size_t)(p->n + more), sizeof *to, "particles", g->diag); \
-        if (!to) return ERR_MEMORY;                                                          \
-        for (int64_t k = 0; k < p->n; k++) to[k] = p->field ? p->field[k] : 0;               \
-        p->field = to;                                                                       \
+#define GROW(field)                                                                            \
+    do {                                                                                       \
+        __typeof__(*p->field) *const to = arena_alloc(&scene->arena, (size_t)(p->n + more),    \
+                                                      sizeof *to, "particles", sampler->diag); \
+        if (!to) return ERR_MEMORY;                                                            \
+        for (int64_t k = 0; k < p->n; k++) to[k] = p->field ? p->field[k] : 0;                 \
+        p->field = to;                                                                         \
     } while (0)
 
-enum err geometry_open(struct sampler *g)
+enum err geometry_open(struct sampler *sampler)
 {
-    struct scene *const s = g->scene;
-    struct scene_points *const p = &s->points[KIND_FLUID];
+    struct scene *const scene = sampler->scene;
+    struct scene_points *const p = &scene->points[KIND_FLUID];
     int64_t more = 0;
-    if (s->n_fluid == 0 || scene_open_count(s) == 0) return ERR_OK;
-    for (int k = 0; k < scene_open_count(s); k++) {
-        const struct scene_open o = scene_open_at(s, k);
-        const struct lattice l = lattice_of(s, &o);
+    if (scene->n_fluid == 0 || scene_open_count(scene) == 0) return ERR_OK;
+    for (int k = 0; k < scene_open_count(scene); k++) {
+        const struct scene_open o = scene_open_at(scene, k);
+        const struct lattice l = lattice_of(scene, &o);
         if ((double)l.across * l.rows > 1e8)
-            return refuse(g, &o, "has a buffer for more than 1e8 particles", o.from,
+            return refuse(sampler, &o, "has a buffer for more than 1e8 particles", o.from,
                           "use a larger dp or a shorter line");
         more += (int64_t)l.across * l.rows;
     }
@@ -177,9 +180,9 @@ enum err geometry_open(struct sampler *g)
     GROW(y);
     GROW(body);
     GROW(open);
-    for (int k = 0; k < scene_open_count(s); k++) {
-        const struct scene_open o = scene_open_at(s, k);
-        TRY(geometry_go_on(g, append(g, k, &o)));
+    for (int k = 0; k < scene_open_count(scene); k++) {
+        const struct scene_open o = scene_open_at(scene, k);
+        TRY(geometry_go_on(sampler, append(sampler, k, &o)));
     }
     return ERR_OK;
 }

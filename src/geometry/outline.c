@@ -54,15 +54,15 @@ static bool mitre(const struct shape *p, int k, double far[2])
     return true;
 }
 
-static enum err cut_polyline(const struct scene *s, const struct shape *p, struct outline *pieces,
-                             struct arena *a, struct diag *d)
+static enum err cut_polyline(const struct scene *scene, const struct shape *p,
+                             struct outline *pieces, struct arena *a, struct diag *d)
 {
     double(*far)[2] = arena_alloc(a, (size_t)p->n, sizeof *far, "polyline", d);
     double(*corners)[2] = arena_alloc(a, 4 * (size_t)p->n, sizeof *corners, "polyline", d);
     if (!far || !corners) return ERR_MEMORY;
     for (int k = 0; k < p->n; k++)
         if (!mitre(p, k, far[k]))
-            return fail_at(d, s, p->line,
+            return fail_at(d, scene, p->line,
                            "the polyline turns too sharply at its point %d (%g, %g); use a "
                            "larger angle or insert a point",
                            k + 1, p->pt[k][0], p->pt[k][1]);
@@ -70,7 +70,7 @@ static enum err cut_polyline(const struct scene *s, const struct shape *p, struc
         const double along = (p->pt[k + 1][0] - p->pt[k][0]) * (far[k + 1][0] - far[k][0]) +
                              (p->pt[k + 1][1] - p->pt[k][1]) * (far[k + 1][1] - far[k][1]);
         if (along <= 0)
-            return fail_at(d, s, p->line,
+            return fail_at(d, scene, p->line,
                            "segment %d of the polyline is too short for a thickness of %g m: "
                            "the joints at its ends cross",
                            k + 1, fabs(p->size));
@@ -84,8 +84,8 @@ static enum err cut_polyline(const struct scene *s, const struct shape *p, struc
     return ERR_OK;
 }
 
-static enum err cut_shape(const struct scene *s, const struct shape *shape, struct outline *piece,
-                          struct arena *a, struct diag *d)
+static enum err cut_shape(const struct scene *scene, const struct shape *shape,
+                          struct outline *piece, struct arena *a, struct diag *d)
 {
     switch (shape->kind) {
     case SHAPE_CIRCLE:
@@ -96,7 +96,7 @@ static enum err cut_shape(const struct scene *s, const struct shape *shape, stru
         piece->n = shape->n;
         piece->pt = shape->pt;
         return ERR_OK;
-    case SHAPE_POLYLINE: return cut_polyline(s, shape, piece, a, d);
+    case SHAPE_POLYLINE: return cut_polyline(scene, shape, piece, a, d);
     case SHAPE_BOX: break;
     }
     const double *low = shape->pt[0], *high = shape->pt[1];
@@ -111,7 +111,7 @@ static enum err cut_shape(const struct scene *s, const struct shape *shape, stru
     return ERR_OK;
 }
 
-enum err outlines_of(struct outlines *o, const struct scene *s, const struct shape_list *list,
+enum err outlines_of(struct outlines *o, const struct scene *scene, const struct shape_list *list,
                      struct arena *a, struct diag *d)
 {
     size_t most = 0;
@@ -124,7 +124,7 @@ enum err outlines_of(struct outlines *o, const struct scene *s, const struct sha
     for (int k = 0; k < list->n; k++) {
         const struct shape *shape = &list->item[k];
         const int pieces = shape->kind == SHAPE_POLYLINE ? shape->n - 1 : 1;
-        TRY(cut_shape(s, shape, &o->item[o->n], a, d));
+        TRY(cut_shape(scene, shape, &o->item[o->n], a, d));
         for (int j = 0; j < pieces; j++) {
             set_bounds(&o->item[o->n]);
             o->shape[o->n++] = k;

@@ -22,7 +22,7 @@ struct outlines {
 
 /* Cuts the shapes into pieces: a polyline into one quadrilateral for each segment, with mitred
  * joints, so that neighbours share an edge. */
-enum err outlines_of(struct outlines *o, const struct scene *s, const struct shape_list *list,
+enum err outlines_of(struct outlines *o, const struct scene *scene, const struct shape_list *list,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
 /* The intervals [from[0], from[1]), [from[2], from[3]) ... of the line at height y inside a piece;

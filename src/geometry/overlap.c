@@ -15,57 +15,62 @@
 static const double same_place = 0.7;
 
 /* Mean of the spacings of two points' lattices. */
-static double spacing(const struct region *regions, const struct samples *p, int64_t a, int64_t b)
+static double spacing(const struct region *regions, const struct samples *samples, int64_t a,
+                      int64_t b)
 {
-    return 0.5 * (regions[p->region[a]].lattice.dp + regions[p->region[b]].lattice.dp);
+    return 0.5 * (regions[samples->region[a]].lattice.dp + regions[samples->region[b]].lattice.dp);
 }
 
 /* The first point in the table, of another region, that coincides with point k; -1: none. */
 static int64_t coinciding(const struct point_grid *t, const struct region *regions,
-                          const struct samples *p, int64_t k)
+                          const struct samples *samples, int64_t k)
 {
-    struct point_visit v = point_grid_visit(t, p->x[k], p->y[k], t->side);
+    struct point_visit v = point_grid_visit(t, samples->x[k], samples->y[k], t->side);
     while (point_grid_next(t, &v))
-        if (p->region[v.k] != p->region[k] &&
-            square(p->x[v.k] - p->x[k]) + square(p->y[v.k] - p->y[k]) <
-                square(same_place * spacing(regions, p, k, v.k)))
+        if (samples->region[v.k] != samples->region[k] &&
+            square(samples->x[v.k] - samples->x[k]) + square(samples->y[v.k] - samples->y[k]) <
+                square(same_place * spacing(regions, samples, k, v.k)))
             return v.k;
     return -1;
 }
 
-static int motion_of(const struct scene *s, const struct region *wall)
+static int motion_of(const struct scene *scene, const struct region *wall)
 {
-    return scene_find_motion(s, s->wall[wall->body].motion);
+    return scene_find_motion(scene, scene->wall[wall->body].motion);
 }
 
-int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y)
+int geometry_shape_at(const struct sampler *sampler, const struct region *region, double x,
+                      double y)
 {
     double at[2];
     lattice_place(&region->lattice, x, y, at);
     at[0] += NUDGE_X * region->lattice.spacing[0];
     at[1] += NUDGE_Y * region->lattice.spacing[1];
     for (int k = 0; k < region->minus.n; k++)
-        if (outline_contains(&region->minus.item[k], at[0], at[1], g->scratch)) return -1;
+        if (outline_contains(&region->minus.item[k], at[0], at[1], sampler->scratch)) return -1;
     for (int k = 0; k < region->add.n; k++)
-        if (outline_contains(&region->add.item[k], at[0], at[1], g->scratch))
+        if (outline_contains(&region->add.item[k], at[0], at[1], sampler->scratch))
             return region->add.shape[k];
     return -1;
 }
 
-bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y)
+bool geometry_covers(const struct sampler *sampler, const struct region *region, double x, double y)
 {
-    return geometry_shape_at(g, region, x, y) >= 0;
+    return geometry_shape_at(sampler, region, x, y) >= 0;
 }
 
 /* Whether point k can be omitted because of point `other`. Lattices at different angles, and
  * layers, have points too near to each other on both sides of a common edge. */
-static bool yields_to(const struct sampler *g, const struct samples *p, int64_t k, int64_t other)
+static bool yields_to(const struct sampler *sampler, const struct samples *samples, int64_t k,
+                      int64_t other)
 {
-    const struct region *mine = &g->regions[p->region[k]], *its = &g->regions[p->region[other]];
-    if (!geometry_covers(g, its, p->x[k], p->y[k])) return true;
+    const struct region *mine = &sampler->regions[samples->region[k]],
+                        *its = &sampler->regions[samples->region[other]];
+    if (!geometry_covers(sampler, its, samples->x[k], samples->y[k])) return true;
     if (mine->kind != KIND_WALL) return false;
-    if (its->kind == KIND_SOLID) return p->clamped[other];
-    return its->kind == KIND_WALL && motion_of(g->scene, mine) == motion_of(g->scene, its);
+    if (its->kind == KIND_SOLID) return samples->clamped[other];
+    return its->kind == KIND_WALL &&
+           motion_of(sampler->scene, mine) == motion_of(sampler->scene, its);
 }
 
 static bool has_band(const struct region *region)
@@ -75,8 +80,8 @@ static bool has_band(const struct region *region)
     return false;
 }
 
-static enum err fail_overlap(struct sampler *g, const struct region *mine, const struct region *its,
-                             double x, double y, int64_t count)
+static enum err fail_overlap(struct sampler *sampler, const struct region *mine,
+                             const struct region *its, double x, double y, int64_t count)
 {
     const char *mend = "move one of the shapes, or subtract the overlap with `minus`";
     if (has_band(mine) || has_band(its))
@@ -89,71 +94,75 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
                               : "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
         mend = "walls that move differently must not overlap";
-    return fail_at(g->diag, g->scene, mine->line,
+    return fail_at(sampler->diag, sampler->scene, mine->line,
                    "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s",
                    (long long)count, kind_names[mine->kind], mine->name, kind_names[its->kind],
                    its->name, x, y, mend);
 }
 
 /* Sets `kept`; fails if a region overlaps another one and must not. */
-static enum err find_overlaps(struct sampler *g, const struct samples *p, struct point_grid *t,
-                              uint8_t *kept)
+static enum err find_overlaps(struct sampler *sampler, const struct samples *samples,
+                              struct point_grid *t, uint8_t *kept)
 {
     int64_t k = 0;
-    for (int region = 0; region < g->n_regions; region++) {
+    for (int region = 0; region < sampler->n_regions; region++) {
         int64_t wrong = 0, first = -1, first_other = -1;
-        for (; k < p->n && p->region[k] == region; k++) {
-            const int64_t other = coinciding(t, g->regions, p, k);
+        for (; k < samples->n && samples->region[k] == region; k++) {
+            const int64_t other = coinciding(t, sampler->regions, samples, k);
             kept[k] = other < 0;
             if (kept[k]) point_grid_insert(t, k);
-            if (kept[k] || yields_to(g, p, k, other)) continue;
+            if (kept[k] || yields_to(sampler, samples, k, other)) continue;
             if (!wrong++) {
                 first = k;
                 first_other = other;
             }
         }
         if (wrong)
-            return fail_overlap(g, &g->regions[region], &g->regions[p->region[first_other]],
-                                p->x[first], p->y[first], wrong);
+            return fail_overlap(sampler, &sampler->regions[region],
+                                &sampler->regions[samples->region[first_other]], samples->x[first],
+                                samples->y[first], wrong);
     }
     return ERR_OK;
 }
 
-static enum err store(struct sampler *g, const struct samples *p, const uint8_t *kept,
+static enum err store(struct sampler *sampler, const struct samples *samples, const uint8_t *kept,
                       enum kind kind)
 {
-    struct scene *s = g->scene;
-    struct scene_points *to = &s->points[kind];
+    struct scene *scene = sampler->scene;
+    struct scene_points *to = &scene->points[kind];
     size_t n = 0;
-    for (int64_t k = 0; k < p->n; k++) n += kept[k] && g->regions[p->region[k]].kind == kind;
+    for (int64_t k = 0; k < samples->n; k++)
+        n += kept[k] && sampler->regions[samples->region[k]].kind == kind;
     *to = (struct scene_points){0};
-    to->x = arena_alloc(&s->arena, n, sizeof *to->x, "particles", g->diag);
-    to->y = arena_alloc(&s->arena, n, sizeof *to->y, "particles", g->diag);
-    to->body = arena_alloc(&s->arena, n, sizeof *to->body, "particles", g->diag);
+    to->x = arena_alloc(&scene->arena, n, sizeof *to->x, "particles", sampler->diag);
+    to->y = arena_alloc(&scene->arena, n, sizeof *to->y, "particles", sampler->diag);
+    to->body = arena_alloc(&scene->arena, n, sizeof *to->body, "particles", sampler->diag);
     if (!to->x || !to->y || !to->body) return ERR_MEMORY;
     if (kind == KIND_SOLID) {
-        to->clamped = arena_alloc(&s->arena, n, 1, "particles", g->diag);
+        to->clamped = arena_alloc(&scene->arena, n, 1, "particles", sampler->diag);
         if (!to->clamped) return ERR_MEMORY;
     }
-    for (int64_t k = 0; k < p->n; k++) {
-        const struct region *region = &g->regions[p->region[k]];
+    for (int64_t k = 0; k < samples->n; k++) {
+        const struct region *region = &sampler->regions[samples->region[k]];
         if (!kept[k] || region->kind != kind) continue;
-        to->x[to->n] = p->x[k];
-        to->y[to->n] = p->y[k];
+        to->x[to->n] = samples->x[k];
+        to->y[to->n] = samples->y[k];
         to->body[to->n] = region->body;
-        if (to->clamped) to->clamped[to->n] = p->clamped[k];
+        if (to->clamped) to->clamped[to->n] = samples->clamped[k];
         to->n++;
     }
     return ERR_OK;
 }
 
-enum err geometry_merge(struct sampler *g, const struct samples *p)
+enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
 {
     struct point_grid t;
-    uint8_t *kept = arena_alloc(&g->temp, (size_t)p->n, 1, "overlaps", g->diag);
+    uint8_t *kept = arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
     if (!kept) return ERR_MEMORY;
-    TRY(point_grid_create(&t, g->scene->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
-    TRY(find_overlaps(g, p, &t, kept));
-    for (int kind = 0; kind < KIND_COUNT; kind++) TRY(store(g, p, kept, (enum kind)kind));
+    TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,
+                          &sampler->temp, sampler->diag));
+    TRY(find_overlaps(sampler, samples, &t, kept));
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        TRY(store(sampler, samples, kept, (enum kind)kind));
     return ERR_OK;
 }

@@ -41,32 +41,33 @@ static void cells_of(const struct region *region, double x, double y, double at[
     at[1] = (y - l->origin[1]) / l->spacing[1];
 }
 
-static bool in_shape(const struct sampler *g, const struct region *r, double x, double y)
+static bool in_shape(const struct sampler *sampler, const struct region *r, double x, double y)
 {
     for (int k = 0; k < r->minus.n; k++)
-        if (outline_contains(&r->minus.item[k], x, y, g->scratch)) return false;
+        if (outline_contains(&r->minus.item[k], x, y, sampler->scratch)) return false;
     for (int k = 0; k < r->add.n; k++)
-        if (outline_contains(&r->add.item[k], x, y, g->scratch)) return true;
+        if (outline_contains(&r->add.item[k], x, y, sampler->scratch)) return true;
     return false;
 }
 
 /* Adds the cell of a point of an edge with this normal, unless the shape is on both of its
  * sides. */
-static enum err visit(struct cut_cells *c, struct sampler *g, const double at[2],
+static enum err visit(struct cut_cells *c, struct sampler *sampler, const double at[2],
                       const double normal[2])
 {
     const double step = 1e-3 * c->region->lattice.dp;
-    if (in_shape(g, c->region, at[0] + step * normal[0], at[1] + step * normal[1]) ==
-        in_shape(g, c->region, at[0] - step * normal[0], at[1] - step * normal[1]))
+    if (in_shape(sampler, c->region, at[0] + step * normal[0], at[1] + step * normal[1]) ==
+        in_shape(sampler, c->region, at[0] - step * normal[0], at[1] - step * normal[1]))
         return ERR_OK;
     double cell[2];
     cells_of(c->region, at[0], at[1], cell);
     const double i = floor(cell[0]) + 0.5, j = floor(cell[1]) + 0.5;
-    return point_grid_any(&c->grid, i, j, 0.5) ? ERR_OK
-                                               : point_grid_add(&c->grid, i, j, &g->temp, g->diag);
+    return point_grid_any(&c->grid, i, j, 0.5)
+               ? ERR_OK
+               : point_grid_add(&c->grid, i, j, &sampler->temp, sampler->diag);
 }
 
-static enum err visit_edge(struct cut_cells *c, struct sampler *g, const double a[2],
+static enum err visit_edge(struct cut_cells *c, struct sampler *sampler, const double a[2],
                            const double b[2])
 {
     const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
@@ -75,12 +76,12 @@ static enum err visit_edge(struct cut_cells *c, struct sampler *g, const double 
     const int parts = 1 + (int)min2(1e8, length / c->region->lattice.dp * PARTS);
     for (int k = 0; k < parts; k++) {
         const double s = (k + 0.5) / parts, at[2] = {a[0] + s * dx, a[1] + s * dy};
-        TRY(visit(c, g, at, normal));
+        TRY(visit(c, sampler, at, normal));
     }
     return ERR_OK;
 }
 
-static enum err visit_circle(struct cut_cells *c, struct sampler *g, const struct outline *o)
+static enum err visit_circle(struct cut_cells *c, struct sampler *sampler, const struct outline *o)
 {
     const int parts = 1 + (int)min2(1e8, 2 * PI * o->radius / c->region->lattice.dp * PARTS);
     for (int k = 0; k < parts; k++) {
@@ -88,18 +89,19 @@ static enum err visit_circle(struct cut_cells *c, struct sampler *g, const struc
                      normal[2] = {elementary_cos(angle), elementary_sin(angle)},
                      at[2] = {o->centre[0] + o->radius * normal[0],
                               o->centre[1] + o->radius * normal[1]};
-        TRY(visit(c, g, at, normal));
+        TRY(visit(c, sampler, at, normal));
     }
     return ERR_OK;
 }
 
-static enum err visit_outlines(struct cut_cells *c, struct sampler *g, const struct outlines *o)
+static enum err visit_outlines(struct cut_cells *c, struct sampler *sampler,
+                               const struct outlines *o)
 {
     for (int k = 0; k < o->n; k++) {
         const struct outline *const piece = &o->item[k];
-        if (piece->n == 0) TRY(visit_circle(c, g, piece));
+        if (piece->n == 0) TRY(visit_circle(c, sampler, piece));
         for (int j = 0; j < piece->n; j++)
-            TRY(visit_edge(c, g, piece->pt[j], piece->pt[(j + 1) % piece->n]));
+            TRY(visit_edge(c, sampler, piece->pt[j], piece->pt[(j + 1) % piece->n]));
     }
     return ERR_OK;
 }
@@ -128,16 +130,18 @@ static double share_of(const struct region *r, const double centre[2], double mi
     return area / LINES;
 }
 
-static enum err find_cells(struct cut_cells *c, struct sampler *g, const struct region *region)
+static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
+                           const struct region *region)
 {
     *c = (struct cut_cells){.region = region, .grid.side = 1};
-    TRY(visit_outlines(c, g, &region->add));
-    TRY(visit_outlines(c, g, &region->minus));
+    TRY(visit_outlines(c, sampler, &region->add));
+    TRY(visit_outlines(c, sampler, &region->minus));
     const size_t n = (size_t)c->grid.n + 1;
     const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
-    double *const line = arena_alloc(&g->temp, 2 * ends, sizeof *line, "packing", g->diag);
-    c->share = arena_alloc(&g->temp, n, sizeof *c->share, "packing", g->diag);
-    c->middle = arena_alloc(&g->temp, n, sizeof *c->middle, "packing", g->diag);
+    double *const line =
+        arena_alloc(&sampler->temp, 2 * ends, sizeof *line, "packing", sampler->diag);
+    c->share = arena_alloc(&sampler->temp, n, sizeof *c->share, "packing", sampler->diag);
+    c->middle = arena_alloc(&sampler->temp, n, sizeof *c->middle, "packing", sampler->diag);
     if (!line || !c->share || !c->middle) return ERR_MEMORY;
     for (int64_t k = 0; k < c->grid.n; k++)
         c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]}, c->middle[k],
@@ -158,9 +162,9 @@ struct packing {
 
 /* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
  * filled when the sum of the shares exceeds the number of filled cells by a half. */
-static enum err refill(struct packing *p, const struct cut_cells *c, struct scene_points *to)
+static enum err refill(struct packing *packing, const struct cut_cells *c, struct scene_points *to)
 {
-    const struct scene_points *const from = &p->g->scene->points[KIND_FLUID];
+    const struct scene_points *const from = &packing->g->scene->points[KIND_FLUID];
     const struct scene_lattice *const l = &c->region->lattice;
     for (int64_t k = 0; k < from->n; k++) {
         double at[2], cell[2];
@@ -174,7 +178,8 @@ static enum err refill(struct packing *p, const struct cut_cells *c, struct scen
     }
     double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
-        TRY(point_grid_add(&p->cells, c->grid.x[k], c->grid.y[k], &p->g->temp, p->g->diag));
+        TRY(point_grid_add(&packing->cells, c->grid.x[k], c->grid.y[k], &packing->g->temp,
+                           packing->g->diag));
         excess += c->share[k];
         if (excess < 0.5) continue;
         excess--;
@@ -189,27 +194,28 @@ static enum err refill(struct packing *p, const struct cut_cells *c, struct scen
 }
 
 /* Whether a position is within `reach` smoothing lengths of a cut cell. */
-static bool beside(const struct packing *p, double x, double y, double reach)
+static bool beside(const struct packing *packing, double x, double y, double reach)
 {
-    const struct scene *const s = p->g->scene;
+    const struct scene *const scene = packing->g->scene;
     double at[2];
-    lattice_place(&s->lattice, x, y, at);
-    for (int c = 0; c < 2; c++) at[c] = (at[c] - s->lattice.origin[c]) / s->lattice.spacing[c];
-    return point_grid_any(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
+    lattice_place(&scene->lattice, x, y, at);
+    for (int c = 0; c < 2; c++)
+        at[c] = (at[c] - scene->lattice.origin[c]) / scene->lattice.spacing[c];
+    return point_grid_any(&packing->cells, at[0], at[1], reach * scene->h / scene->top.dp);
 }
 
 /* What covers a place in the lattice: a shape of fluid, any other, or none. */
 enum cover { COVER_NONE, COVER_FLUID, COVER_BODY };
 
-static enum cover cover_of(const struct sampler *g, const double cell[2], double at[2])
+static enum cover cover_of(const struct sampler *sampler, const double cell[2], double at[2])
 {
-    const struct scene_lattice *const l = &g->scene->lattice;
+    const struct scene_lattice *const l = &sampler->scene->lattice;
     enum cover found = COVER_NONE;
     place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
                      l->origin[1] + cell[1] * l->spacing[1], at);
-    for (int r = 0; r < g->n_regions && found != COVER_BODY; r++)
-        if (geometry_covers(g, &g->regions[r], at[0], at[1]))
-            found = g->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
+    for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
+        if (geometry_covers(sampler, &sampler->regions[r], at[0], at[1]))
+            found = sampler->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
     return found;
 }
 
@@ -217,155 +223,167 @@ static enum cover cover_of(const struct sampler *g, const double cell[2], double
  * fluid. Beside walls and bodies, whose particles are not in the lattice, it is the share of
  * points in it. Their rows and columns differ in number, so that an edge along the diagonal meets
  * one of them at most. */
-static double air_share(const struct sampler *g, const double cell[2], double at[2])
+static double air_share(const struct sampler *sampler, const double cell[2], double at[2])
 {
     enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
     int air = 0, body = 0;
     for (int k = 0; k < COLUMNS * ROWS_OF_CELL; k++) {
         const double part[2] = {cell[0] + (k % COLUMNS + 0.5) / COLUMNS - 0.5,
                                 cell[1] + (k / COLUMNS + 0.5) / ROWS_OF_CELL - 0.5};
-        const enum cover cover = cover_of(g, part, at);
+        const enum cover cover = cover_of(sampler, part, at);
         air += cover == COVER_NONE;
         body += cover == COVER_BODY;
     }
-    const enum cover centre = cover_of(g, cell, at);
+    const enum cover centre = cover_of(sampler, cell, at);
     return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : centre == COVER_NONE;
 }
 
 /* Cells of the lattice count as points by their share outside all shapes, so that nothing moves
  * into the air. */
-static enum err add_air(struct packing *p)
+static enum err add_air(struct packing *packing)
 {
-    const struct sampler *const g = p->g;
-    const int64_t around = (int64_t)ceil(2 * KERNEL_REACH * g->scene->h / g->scene->top.dp);
-    for (int64_t k = 0; k < p->cells.n; k++)
+    const struct sampler *const sampler = packing->g;
+    const int64_t around =
+        (int64_t)ceil(2 * KERNEL_REACH * sampler->scene->h / sampler->scene->top.dp);
+    for (int64_t k = 0; k < packing->cells.n; k++)
         for (int64_t j = -around; j <= around; j++)
             for (int64_t i = -around; i <= around; i++) {
-                const double cell[2] = {p->cells.x[k] + (double)i, p->cells.y[k] + (double)j};
-                if (!point_grid_any(&p->air, cell[0], cell[1], 0.1))
-                    TRY(point_grid_add(&p->air, cell[0], cell[1], &p->g->temp, g->diag));
+                const double cell[2] = {packing->cells.x[k] + (double)i,
+                                        packing->cells.y[k] + (double)j};
+                if (!point_grid_any(&packing->air, cell[0], cell[1], 0.1))
+                    TRY(point_grid_add(&packing->air, cell[0], cell[1], &packing->g->temp,
+                                       sampler->diag));
             }
     return ERR_OK;
 }
 
-static void add_point(struct packing *p, double x, double y, double volume)
+static void add_point(struct packing *packing, double x, double y, double volume)
 {
-    p->x[p->n] = x;
-    p->y[p->n] = y;
-    p->volume[p->n++] = volume;
+    packing->x[packing->n] = x;
+    packing->y[packing->n] = y;
+    packing->volume[packing->n++] = volume;
 }
 
 /* The points that take part: fluid within the kernel's reach of a cut cell moves, all else
  * stays. */
-static enum err gather(struct packing *p)
+static enum err gather(struct packing *packing)
 {
-    const struct sampler *const g = p->g;
-    const struct scene *const s = g->scene;
-    size_t n = (size_t)p->air.n;
-    for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)s->points[kind].n;
-    p->x = arena_alloc(&p->g->temp, n, sizeof *p->x, "packing", g->diag);
-    p->y = arena_alloc(&p->g->temp, n, sizeof *p->y, "packing", g->diag);
-    p->volume = arena_alloc(&p->g->temp, n, sizeof *p->volume, "packing", g->diag);
-    p->particle = arena_alloc(&p->g->temp, n, sizeof *p->particle, "packing", g->diag);
-    if (!p->x || !p->y || !p->volume || !p->particle) return ERR_MEMORY;
+    const struct sampler *const sampler = packing->g;
+    const struct scene *const scene = sampler->scene;
+    size_t n = (size_t)packing->air.n;
+    for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)scene->points[kind].n;
+    packing->x = arena_alloc(&packing->g->temp, n, sizeof *packing->x, "packing", sampler->diag);
+    packing->y = arena_alloc(&packing->g->temp, n, sizeof *packing->y, "packing", sampler->diag);
+    packing->volume =
+        arena_alloc(&packing->g->temp, n, sizeof *packing->volume, "packing", sampler->diag);
+    packing->particle =
+        arena_alloc(&packing->g->temp, n, sizeof *packing->particle, "packing", sampler->diag);
+    if (!packing->x || !packing->y || !packing->volume || !packing->particle) return ERR_MEMORY;
     for (int fixed = 0; fixed < 2; fixed++) {
         for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
-            const struct scene_points *const from = &s->points[kind];
+            const struct scene_points *const from = &scene->points[kind];
             for (int64_t k = 0; k < from->n; k++) {
                 const bool moves =
-                    kind == KIND_FLUID && beside(p, from->x[k], from->y[k], KERNEL_REACH);
+                    kind == KIND_FLUID && beside(packing, from->x[k], from->y[k], KERNEL_REACH);
                 if (moves == (fixed == 1) ||
-                    !beside(p, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
+                    !beside(packing, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
                     continue;
-                if (moves) p->particle[p->n] = k;
-                const double dp = kind == KIND_SOLID ? scene_solid_dp(s, from->body[k]) : s->top.dp;
-                add_point(p, from->x[k], from->y[k], square(dp));
+                if (moves) packing->particle[packing->n] = k;
+                const double dp =
+                    kind == KIND_SOLID ? scene_solid_dp(scene, from->body[k]) : scene->top.dp;
+                add_point(packing, from->x[k], from->y[k], square(dp));
             }
         }
-        if (!fixed) p->n_free = p->n;
+        if (!fixed) packing->n_free = packing->n;
     }
-    for (int64_t k = 0; k < p->air.n; k++) {
+    for (int64_t k = 0; k < packing->air.n; k++) {
         double at[2];
-        const double share = air_share(g, (const double[]){p->air.x[k], p->air.y[k]}, at);
-        if (share > 0) add_point(p, at[0], at[1], share * square(s->top.dp));
+        const double share =
+            air_share(sampler, (const double[]){packing->air.x[k], packing->air.y[k]}, at);
+        if (share > 0) add_point(packing, at[0], at[1], share * square(scene->top.dp));
     }
     return ERR_OK;
 }
 
 /* Minus the gradient of C, 1/m (T-80). */
-static void push(const struct packing *p, const struct point_grid *t, int64_t k, double sum[2])
+static void push(const struct packing *packing, const struct point_grid *t, int64_t k,
+                 double sum[2])
 {
-    const double h = p->g->scene->h, x = p->x[k], y = p->y[k];
+    const double h = packing->g->scene->h, x = packing->x[k], y = packing->y[k];
     sum[0] = sum[1] = 0;
     struct point_visit v = point_grid_visit(t, x, y, KERNEL_REACH * h);
     while (point_grid_next(t, &v)) {
-        const double dx = x - p->x[v.k], dy = y - p->y[v.k], r = sqrt(dx * dx + dy * dy);
-        const double factor = -p->volume[v.k] * kernel_slope(r, h);
+        const double dx = x - packing->x[v.k], dy = y - packing->y[v.k],
+                     r = sqrt(dx * dx + dy * dy);
+        const double factor = -packing->volume[v.k] * kernel_slope(r, h);
         sum[0] += factor * dx;
         sum[1] += factor * dy;
     }
 }
 
 /* The shifts of T-80. */
-static enum err settle(struct packing *p)
+static enum err settle(struct packing *packing)
 {
-    const struct sampler *const g = p->g;
-    const double h = g->scene->h, dp = g->scene->top.dp;
+    const struct sampler *const sampler = packing->g;
+    const double h = sampler->scene->h, dp = sampler->scene->top.dp;
     struct point_grid t;
-    TRY(point_grid_create(&t, KERNEL_REACH * h, p->n, p->x, p->y, &p->g->temp, g->diag));
-    double(*move)[2] =
-        arena_alloc(&p->g->temp, (size_t)p->n_free + 1, sizeof *move, "packing", g->diag);
+    TRY(point_grid_create(&t, KERNEL_REACH * h, packing->n, packing->x, packing->y,
+                          &packing->g->temp, sampler->diag));
+    double(*move)[2] = arena_alloc(&packing->g->temp, (size_t)packing->n_free + 1, sizeof *move,
+                                   "packing", sampler->diag);
     if (!move) return ERR_MEMORY;
     double largest = HUGE_VAL;
     for (int step = 0; step < most_shifts && largest > still * dp; step++) {
         largest = 0;
         point_grid_clear(&t);
-        for (int64_t k = 0; k < p->n; k++) point_grid_insert(&t, k);
-        for (int64_t k = 0; k < p->n_free; k++) push(p, &t, k, move[k]);
-        for (int64_t k = 0; k < p->n_free; k++) {
+        for (int64_t k = 0; k < packing->n; k++) point_grid_insert(&t, k);
+        for (int64_t k = 0; k < packing->n_free; k++) push(packing, &t, k, move[k]);
+        for (int64_t k = 0; k < packing->n_free; k++) {
             for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);
             const double length = elementary_hypot(move[k][0], move[k][1]);
             const double part = min2(1, longest * dp / max2(length, 1e-300));
-            p->x[k] += part * move[k][0];
-            p->y[k] += part * move[k][1];
+            packing->x[k] += part * move[k][0];
+            packing->y[k] += part * move[k][1];
             largest = max2(largest, part * length);
         }
     }
     return ERR_OK;
 }
 
-enum err geometry_pack(struct sampler *g)
+enum err geometry_pack(struct sampler *sampler)
 {
-    struct scene *const s = g->scene;
-    struct scene_points *const points = &s->points[KIND_FLUID];
-    if (s->top.scheme != SCHEME_STANDARD || points->n == 0) return ERR_OK;
+    struct scene *const scene = sampler->scene;
+    struct scene_points *const points = &scene->points[KIND_FLUID];
+    if (scene->top.scheme != SCHEME_STANDARD || points->n == 0) return ERR_OK;
     struct cut_cells *const cut =
-        arena_alloc(&g->temp, (size_t)s->n_fluid, sizeof *cut, "packing", g->diag);
+        arena_alloc(&sampler->temp, (size_t)scene->n_fluid, sizeof *cut, "packing", sampler->diag);
     if (!cut) return ERR_MEMORY;
     int64_t most = 0;
     int n_cut = 0;
-    for (int k = 0; k < g->n_regions; k++) {
-        if (g->regions[k].kind != KIND_FLUID) continue;
-        TRY(find_cells(&cut[n_cut], g, &g->regions[k]));
+    for (int k = 0; k < sampler->n_regions; k++) {
+        if (sampler->regions[k].kind != KIND_FLUID) continue;
+        TRY(find_cells(&cut[n_cut], sampler, &sampler->regions[k]));
         most += cut[n_cut++].grid.n;
     }
     if (most == 0) return ERR_OK;
-    s->packed = true;
-    struct packing p = {.g = g, .cells.side = KERNEL_REACH * s->h / s->top.dp, .air.side = 1};
+    scene->packed = true;
+    struct packing packing = {.g = sampler,
+                              .cells.side = KERNEL_REACH * scene->h / scene->top.dp,
+                              .air.side = 1};
     struct scene_points to = {0};
     const size_t n = (size_t)(points->n + most);
-    to.x = arena_alloc(&s->arena, n, sizeof *to.x, "particles", g->diag);
-    to.y = arena_alloc(&s->arena, n, sizeof *to.y, "particles", g->diag);
-    to.body = arena_alloc(&s->arena, n, sizeof *to.body, "particles", g->diag);
+    to.x = arena_alloc(&scene->arena, n, sizeof *to.x, "particles", sampler->diag);
+    to.y = arena_alloc(&scene->arena, n, sizeof *to.y, "particles", sampler->diag);
+    to.body = arena_alloc(&scene->arena, n, sizeof *to.body, "particles", sampler->diag);
     if (!to.x || !to.y || !to.body) return ERR_MEMORY;
-    for (int k = 0; k < n_cut; k++) TRY(refill(&p, &cut[k], &to));
+    for (int k = 0; k < n_cut; k++) TRY(refill(&packing, &cut[k], &to));
     *points = to;
-    TRY(add_air(&p));
-    TRY(gather(&p));
-    TRY(settle(&p));
-    for (int64_t k = 0; k < p.n_free; k++) {
-        points->x[p.particle[k]] = p.x[k];
-        points->y[p.particle[k]] = p.y[k];
+    TRY(add_air(&packing));
+    TRY(gather(&packing));
+    TRY(settle(&packing));
+    for (int64_t k = 0; k < packing.n_free; k++) {
+        points->x[packing.particle[k]] = packing.x[k];
+        points->y[packing.particle[k]] = packing.y[k];
     }
     return ERR_OK;
 }

@@ -56,58 +56,61 @@ struct samples {
 /* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next
  * section; the error itself after CASE_MAX_PROBLEMS of them and of the case's values.
  * geometry_problems then ends what needs sound input. */
-SPHFSI_INLINE enum err geometry_go_on(struct sampler *g, enum err e)
+SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 {
-    g->problems += e == ERR_INPUT;
-    return e == ERR_INPUT && g->diag && diag_count(g->diag) < CASE_MAX_PROBLEMS ? ERR_OK : e;
+    sampler->problems += e == ERR_INPUT;
+    return e == ERR_INPUT && sampler->diag && diag_count(sampler->diag) < CASE_MAX_PROBLEMS ? ERR_OK
+                                                                                            : e;
 }
 
-SPHFSI_INLINE enum err geometry_problems(const struct sampler *g)
+SPHFSI_INLINE enum err geometry_problems(const struct sampler *sampler)
 {
-    return g->problems ? ERR_INPUT : ERR_OK;
+    return sampler->problems ? ERR_INPUT : ERR_OK;
 }
 
-enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
+enum err geometry_sample(struct sampler *sampler, struct samples *samples) SPHFSI_CHECKED;
 
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
-enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_choose_lattices(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* Whether a clamp is so small a circle that it is meant as a hinge. */
 bool geometry_is_hinge(const struct shape *clamp, double dp);
 
 /* Marks the particles of a solid, from index `from` on, that its clamps hold. */
-enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
-    SPHFSI_CHECKED;
+enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t from,
+                        struct samples *samples) SPHFSI_CHECKED;
 
 /* Refuses bodies of one row of particles, and finds the area that a body's particles cover. */
-enum err geometry_check_bodies(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_check_bodies(struct sampler *sampler) SPHFSI_CHECKED;
 /* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates; the smallest
  * number of them across a body. */
 double geometry_rows_between(const struct region *region, int c, double low, double high);
 double geometry_rows_across(const struct region *region);
 
 /* The regions of a scene that has been sampled, for questions about places. */
-enum err geometry_draw(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_draw(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* Applies the rules of overlap and stores the points that remain in the scene. */
-enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
+enum err geometry_merge(struct sampler *sampler, const struct samples *samples) SPHFSI_CHECKED;
 
 /* Packs fluid beside edges that are not along its lattice, with `scheme = standard`
  * (geometry/pack.c). */
-enum err geometry_pack(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or
  * -1; and whether there is one. */
-int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y);
-bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
+int geometry_shape_at(const struct sampler *sampler, const struct region *region, double x,
+                      double y);
+bool geometry_covers(const struct sampler *sampler, const struct region *region, double x,
+                     double y);
 
 /* Fills the buffers of open boundaries. */
-enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_open(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* Effective domain; probes inside their bodies; initial values finite. */
-enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_extent(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* Bodies that are bonded touch (geometry/joined.c). */
-enum err geometry_check_joined(struct sampler *g) SPHFSI_CHECKED;
+enum err geometry_check_joined(struct sampler *sampler) SPHFSI_CHECKED;
 
 #endif

@@ -140,45 +140,46 @@ static size_t image_bytes(const struct simulation *sim, const struct numbers *li
     return bytes;
 }
 
-static uint32_t put_particles(struct image *m, const struct simulation *s)
+static uint32_t put_particles(struct image *m, const struct simulation *sim)
 {
     uint32_t blocks = 0;
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++) {
             const struct field_info *info = &field_table[f];
-            const void *data = field_array(&s->kind[k], info);
+            const void *data = field_array(&sim->kind[k], info);
             if (!data || info->keep != KEEP_STATE) continue;
-            put_block(m, info->name, (unsigned)k, item_of(info->type), data, (size_t)s->kind[k].n);
+            put_block(m, info->name, (unsigned)k, item_of(info->type), data,
+                      (size_t)sim->kind[k].n);
             blocks++;
         }
     return blocks;
 }
 
-enum err checkpoint_capture(struct image *m, struct simulation *s, const char *case_text,
+enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d)
 {
     struct numbers list[MAX_NUMBERS];
-    const int n = list_numbers(s, list);
+    const int n = list_numbers(sim, list);
     const size_t case_length = strlen(case_text) + 1; /* with its 0 */
-    TRY(reserve(m, image_bytes(s, list, n, case_length), d));
+    TRY(reserve(m, image_bytes(sim, list, n, case_length), d));
     struct file_header head = {
         .format = FORMAT,
         .byte_order = BYTE_ORDER_MARK,
         .header_size = sizeof(struct file_header),
         .block_header_size = sizeof(struct block_header),
         .case_hash = checksum(case_text, case_length),
-        .time = s->state.time,
-        .steps = s->state.steps,
+        .time = sim->state.time,
+        .steps = sim->state.steps,
     };
     memcpy(head.magic, magic, sizeof magic);
     snprintf(head.version, sizeof head.version, "%s", version);
-    for (int k = 0; k < KIND_COUNT; k++) head.count[k] = s->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++) head.count[k] = sim->kind[k].n;
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
     put_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, &m->snapshots_missed, 1);
     for (int k = 0; k < n; k++)
         put_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].data, list[k].count);
-    head.blocks = 2 + (uint32_t)n + put_particles(m, s);
+    head.blocks = 2 + (uint32_t)n + put_particles(m, sim);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
@@ -303,7 +304,8 @@ static enum err check_footer(const struct image *m, const char *path, struct dia
     return ERR_OK;
 }
 
-/* Every block is complete, has correct checksums and a terminated name; no bytes follow the last block. */
+/* Every block is complete, has correct checksums and a terminated name; no bytes follow the last
+ * block. */
 static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
 {
     struct file_header head;
@@ -356,8 +358,8 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         TRY(path_join(path, folder, name, d));
         const enum err e = checkpoint_read(m, path, &why);
         if (e == ERR_OK) return ERR_OK;
-        /* Without memory nothing is known about this checkpoint. A restart from an older one would remove
-         * it. */
+        /* Without memory nothing is known about this checkpoint. A restart from an older one would
+         * remove it. */
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; the one before it is tried", why.text);
     }
@@ -440,48 +442,50 @@ enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct dia
     return range_check("snapshots_missed", (double)*snapshots, 0, COUNTS, d);
 }
 
-/* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the present
- * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces, and
- * gradients until they are found. */
-static void set_missing_field(struct particles *p, const struct field_info *info)
+/* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the
+ * present ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean
+ * forces, and gradients until they are found. */
+static void set_missing_field(struct particles *particles, const struct field_info *info)
 {
-    void *const data = field_array(p, info);
-    const void *position = data == p->X ? p->x : data == p->Y ? p->y : NULL;
+    void *const data = field_array(particles, info);
+    const void *position = data == particles->X   ? particles->x
+                           : data == particles->Y ? particles->y
+                                                  : NULL;
     if (position)
-        memcpy(data, position, (size_t)p->n * info->size);
+        memcpy(data, position, (size_t)particles->n * info->size);
     else
-        memset(data, 0, (size_t)p->n * info->size);
+        memset(data, 0, (size_t)particles->n * info->size);
 }
 
-static enum err load_particles(const struct image *m, struct particles *p, enum kind kind,
+static enum err load_particles(const struct image *m, struct particles *particles, enum kind kind,
                                int64_t n, bool fork, struct diag *d)
 {
-    if (n < 0 || n > p->capacity)
+    if (n < 0 || n > particles->capacity)
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: it has %" PRId64 " %s particles, but the case has %" PRId64,
-                         n, kind_names[kind], p->capacity);
-    p->n = n;
+                         n, kind_names[kind], particles->capacity);
+    particles->n = n;
     for (int f = 0; f < field_count; f++) {
         const struct field_info *info = &field_table[f];
-        void *data = field_array(p, info);
+        void *data = field_array(particles, info);
         if (!data || info->keep != KEEP_STATE) continue;
         struct block b;
         const unsigned optional =
             kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION);
         if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
-            set_missing_field(p, info);
+            set_missing_field(particles, info);
         else
             TRY(load_block(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
     return ERR_OK;
 }
 
-static enum err check_kind(const struct simulation *s, enum kind kind, struct diag *d)
+static enum err check_kind(const struct simulation *sim, enum kind kind, struct diag *d)
 {
-    const struct particles *p = &s->kind[kind];
-    const int64_t cells = (int64_t)s->cells.nx * s->cells.ny;
-    for (int64_t i = 0; i < p->n; i++) {
-        const int32_t cell = p->cell[i];
+    const struct particles *particles = &sim->kind[kind];
+    const int64_t cells = (int64_t)sim->cells.nx * sim->cells.ny;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const int32_t cell = particles->cell[i];
         if (cell < -1 || cell >= cells)
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64
@@ -489,42 +493,42 @@ static enum err check_kind(const struct simulation *s, enum kind kind, struct di
                              "%" PRId64 " are valid; the file is damaged or not of this case",
                              kind_names[kind], i, cell, cells - 1);
         if (cell < 0) continue;
-        if (!cells_is_near(&s->cells, cell, p->x[i], p->y[i]))
+        if (!cells_is_near(&sim->cells, cell, particles->x[i], particles->y[i]))
             return diag_fail(
                 d, ERR_INPUT,
                 "checkpoint: %s particle %" PRId64
                 " at (%.6g, %.6g) m is too far from its cell, %d; the file is damaged or "
                 "not of this case",
-                kind_names[kind], i, p->x[i], p->y[i], cell);
+                kind_names[kind], i, particles->x[i], particles->y[i], cell);
     }
     return ERR_OK;
 }
 
-enum err checkpoint_check_cells(const struct simulation *s, struct diag *d)
+enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
 {
-    for (int k = 0; k < KIND_COUNT; k++) TRY(check_kind(s, (enum kind)k, d));
+    for (int k = 0; k < KIND_COUNT; k++) TRY(check_kind(sim, (enum kind)k, d));
     return ERR_OK;
 }
 
-enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
+enum err checkpoint_load(const struct image *m, struct simulation *sim, bool fork, struct diag *d)
 {
     const struct image_info info = checkpoint_info(m);
     for (int k = 0; k < KIND_COUNT; k++)
-        TRY(load_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
+        TRY(load_particles(m, &sim->kind[k], (enum kind)k, info.count[k], fork, d));
     struct numbers list[MAX_NUMBERS];
-    const int n = list_numbers(s, list);
+    const int n = list_numbers(sim, list);
     for (int k = 0; k < n; k++) /* The probes of a fork may be others: they begin anew. */
         if (!fork || list[k].name != carried_name)
             TRY(load_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].count, list[k].data,
                            d));
-    return ranges_check(s, d);
+    return ranges_check(sim, d);
 }
 
-enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+enum err checkpoint_apply(const struct image *m, struct simulation *sim, struct diag *d)
 {
-    TRY(checkpoint_load(m, s, false, d));
-    if (s->effects & FX_FLUID) TRY(checkpoint_check_cells(s, d));
-    return simulation_resume(s, d);
+    TRY(checkpoint_load(m, sim, false, d));
+    if (sim->effects & FX_FLUID) TRY(checkpoint_check_cells(sim, d));
+    return simulation_resume(sim, d);
 }
 
 void checkpoint_free(struct image *m)

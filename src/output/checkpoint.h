@@ -25,11 +25,11 @@ struct image_info {
 };
 
 /* Copies the state into the image; its old contents are lost. */
-enum err checkpoint_capture(struct image *m, struct simulation *s, const char *case_text,
+enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d) SPHFSI_CHECKED;
 
-/* Writes the image to the folder as step-NNNNNNNNN.ckpt, returned in `path`, and keeps only the two newest
- * checkpoints. */
+/* Writes the image to the folder as step-NNNNNNNNN.ckpt, returned in `path`, and keeps only the two
+ * newest checkpoints. */
 enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d) SPHFSI_CHECKED;
 
@@ -60,34 +60,36 @@ struct block_info {
     const void *data; /* points into the image */
 };
 
-/* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at. Returns false
- * after the last block. */
+/* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at.
+ * Returns false after the last block. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info);
 
 /* How many snapshots had been missed when it was captured. */
 enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in the new
- * case is loaded as at rest. Used by the two functions below. */
-enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
+/* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
+ * the new case is loaded as at rest. Used by the two functions below. */
+enum err checkpoint_load(const struct image *m, struct simulation *sim, bool fork, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Whether each particle is in the cell that it was loaded with, or near it. ERR_INPUT: the grid is another
- * one. */
-enum err checkpoint_check_cells(const struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+/* Whether each particle is in the cell that it was loaded with, or near it. ERR_INPUT: the grid is
+ * another one. */
+enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Loads a valid image into a simulation of the same case from simulation_create, and recomputes derived
- * fields (simulation_resume). */
-enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+/* Loads a valid image into a simulation of the same case from simulation_create, and recomputes
+ * derived fields (simulation_resume). */
+enum err checkpoint_apply(const struct image *m, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The same for a case with other physics. Particles are sorted again if the grid is another one; a motion
- * must continue from the present position of its wall; dissipation is counted from this time. */
-enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
+/* The same for a case with other physics. Particles are sorted again if the grid is another one; a
+ * motion must continue from the present position of its wall; dissipation is counted from this
+ * time. */
+enum err checkpoint_fork(const struct image *m, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 
-/* For a restart: removes checkpoints of more than `steps` steps, and unfinished ones of killed runs. */
+/* For a restart: removes checkpoints of more than `steps` steps, and unfinished ones of killed
+ * runs. */
 enum err checkpoint_remove_later(const char *folder, int64_t steps, struct diag *d) SPHFSI_CHECKED;
 
 void checkpoint_free(struct image *m);

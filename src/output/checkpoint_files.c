@@ -16,7 +16,8 @@ void checkpoint_name(char name[CHECKPOINT_NAME_TEXT], int64_t steps)
     snprintf(name, CHECKPOINT_NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
 }
 
-/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the number. */
+/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the
+ * number. */
 static int64_t steps_of(const struct dirent *entry)
 {
     char name[CHECKPOINT_NAME_TEXT];
@@ -28,7 +29,8 @@ static int64_t steps_of(const struct dirent *entry)
     return strcmp(entry->d_name, name) == 0 ? steps : -1;
 }
 
-/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1. */
+/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1.
+ */
 enum err checkpoint_next(const char *folder, int64_t *steps, struct diag *d)
 {
     const int64_t limit = *steps;

@@ -25,24 +25,24 @@ struct sampling {
 static void add_to_sample(void *context, int64_t i, double x, double y, double r)
 {
     struct sampling *const at = context;
-    const struct particles *const p = &at->sim->kind[at->kind];
+    const struct particles *const particles = &at->sim->kind[at->kind];
     const struct fluid_constants *const k = &at->sim->fluid.k;
     const double w = kernel_w(r, k->h) * square(k->dp);
     if (at->kind != KIND_FLUID) {
         at->sum.occupied += w;
-        at->wall_x += w * (p->ax ? p->ax[i] : 0);
-        at->wall_y += w * (p->ay ? p->ay[i] : 0);
+        at->wall_x += w * (particles->ax ? particles->ax[i] : 0);
+        at->wall_y += w * (particles->ay ? particles->ay[i] : 0);
         return;
     }
     at->sum.fill += w;
-    at->sum.pressure += w * eos_pressure(p->dens[i], k->rho0, k->c0);
-    at->sum.vx += w * p->vx[i];
-    at->sum.vy += w * p->vy[i];
+    at->sum.pressure += w * eos_pressure(particles->dens[i], k->rho0, k->c0);
+    at->sum.vx += w * particles->vx[i];
+    at->sum.vy += w * particles->vy[i];
     at->dx -= w * x;
     at->dy -= w * y;
-    at->rho += w * k->rho0 * (1 + p->dens[i]);
-    at->ax += w * p->ax[i];
-    at->ay += w * p->ay[i];
+    at->rho += w * k->rho0 * (1 + particles->dens[i]);
+    at->ax += w * particles->ax[i];
+    at->ay += w * particles->ay[i];
 }
 
 /* T-10a: from the mean over the fluid to a place beside it. */
@@ -137,26 +137,27 @@ static void count(void *n, int64_t i, double x, double y, double r)
  * reach. */
 static bool belongs_together(const struct simulation *sim, int64_t i)
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     int n = 0; /* with itself */
-    cells_each_near(&sim->cells, KIND_FLUID, p, (double[]){p->x[i], p->y[i]},
-                    KERNEL_REACH * sim->fluid.k.h, count, &n);
+    cells_each_near(&sim->cells, KIND_FLUID, particles,
+                    (double[]){particles->x[i], particles->y[i]}, KERNEL_REACH * sim->fluid.k.h,
+                    count, &n);
     return n >= 3;
 }
 
 double fluid_front(const struct simulation *sim, int direction)
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const bool vertical = direction == DIRECTION_UP || direction == DIRECTION_DOWN;
     const double sign = direction == DIRECTION_RIGHT || direction == DIRECTION_UP ? 1 : -1;
-    const double *const coordinate = vertical ? p->y : p->x;
+    const double *const coordinate = vertical ? particles->y : particles->x;
     double foremost = -(double)INFINITY, any = -(double)INFINITY;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const double ahead = sign * coordinate[i];
         any = max2(any, ahead);
         if (ahead > foremost && belongs_together(sim, i)) foremost = ahead;
     }
-    if (p->n == 0) return (double)NAN;
+    if (particles->n == 0) return (double)NAN;
     /* The water ends half a spacing beyond the last particle's centre. */
     return sign * ((isfinite(foremost) ? foremost : any) + 0.5 * sim->scene->top.dp);
 }
@@ -197,7 +198,7 @@ static double images_at_line(const struct flux_line *line, double reach, double 
 
 double fluid_flux(const struct simulation *sim, const double a[2], const double b[2])
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct flux_line line = flux_line(sim, a, b);
     const double tx = line.along[0], ty = line.along[1];
     /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side
@@ -205,13 +206,14 @@ double fluid_flux(const struct simulation *sim, const double a[2], const double 
      * flows into an opening round its edge. */
     const double dp = sim->scene->top.dp, reach = dp;
     double sum = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        const double x = cells_minimum_image(&sim->cells, 0, p->x[i] - a[0]);
-        const double y = cells_minimum_image(&sim->cells, 1, p->y[i] - a[1]);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double x = cells_minimum_image(&sim->cells, 0, particles->x[i] - a[0]);
+        const double y = cells_minimum_image(&sim->cells, 1, particles->y[i] - a[1]);
         const double bell = images_at_line(&line, reach, x, y);
         if (bell == 0) continue;
-        const double m = relative_mass(p, i);
-        sum += bell * m * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
+        const double m = relative_mass(particles, i);
+        sum += bell * m * square(dp) / (1 + particles->dens[i]) *
+               (particles->vx[i] * ty - particles->vy[i] * tx);
     }
     return sum;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
+ * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on.
+ */
 #include "output/checkpoint.h"
 #include "base/elementary.h"
 #include "coupling/impulse.h"
@@ -10,122 +11,129 @@
 
 /* Every particle of a moving wall has to be where its motion puts it: a jump would move it through
  * the fluid. */
-static enum err check_wall(const struct simulation *s, int64_t i, const struct motion_state *m,
+static enum err check_wall(const struct simulation *sim, int64_t i, const struct motion_state *m,
                            struct diag *d)
 {
-    const struct particles *const p = &s->kind[KIND_WALL];
-    const struct motion_point to = motion_of_point(m, p->X[i], p->Y[i]);
-    if (elementary_hypot(p->x[i] - to.x[0], p->y[i] - to.x[1]) <= 1e-3 * s->scene->top.dp)
+    const struct particles *const particles = &sim->kind[KIND_WALL];
+    const struct motion_point to = motion_of_point(m, particles->X[i], particles->Y[i]);
+    if (elementary_hypot(particles->x[i] - to.x[0], particles->y[i] - to.x[1]) <=
+        1e-3 * sim->scene->top.dp)
         return ERR_OK;
-    const struct scene_wall *const w = &s->scene->wall[p->body[i]];
+    const struct scene_wall *const w = &sim->scene->wall[particles->body[i]];
     return diag_fail(
         d, ERR_INPUT,
         "fork: a particle of [wall %s] would jump at %.6g s from its place in the checkpoint, "
         "(%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let the motion begin where the "
         "checkpoint ends",
-        w->common.name, s->state.time, p->x[i], p->y[i], to.x[0], to.x[1], w->motion);
+        w->common.name, sim->state.time, particles->x[i], particles->y[i], to.x[0], to.x[1],
+        w->motion);
 }
 
-static enum err fork_walls(struct simulation *s, struct diag *d)
+static enum err fork_walls(struct simulation *sim, struct diag *d)
 {
-    struct particles *p = &s->kind[KIND_WALL];
+    struct particles *particles = &sim->kind[KIND_WALL];
     struct motion_state m = {0};
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct scene_wall *const w = &s->scene->wall[p->body[i]];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const struct scene_wall *const w = &sim->scene->wall[particles->body[i]];
         if (!w->motion[0]) {
-            p->vx[i] = p->vy[i] = 0;
-            if (p->ax) p->ax[i] = p->ay[i] = 0;
+            particles->vx[i] = particles->vy[i] = 0;
+            if (particles->ax) particles->ax[i] = particles->ay[i] = 0;
             continue;
         }
-        if (i == 0 || p->body[i] != p->body[i - 1])
-            m = motion_at(s->scene, scene_find_motion(s->scene, w->motion), s->state.time);
-        TRY(check_wall(s, i, &m, d));
+        if (i == 0 || particles->body[i] != particles->body[i - 1])
+            m = motion_at(sim->scene, scene_find_motion(sim->scene, w->motion), sim->state.time);
+        TRY(check_wall(sim, i, &m, d));
     }
     return ERR_OK;
 }
 
-/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they
- * are;
- * the motion of a clamp must continue from their present displacement. */
-static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
+/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where
+ * they are; the motion of a clamp must continue from their present displacement. */
+static enum err fork_clamps(struct simulation *sim, const double *free, struct diag *d)
 {
-    struct particles *const p = &s->kind[KIND_SOLID];
-    double *const ux = s->solid.scratch[1], *const uy = s->solid.scratch[2];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->free[i] = free[i];
-        ux[i] = p->ux[i];
-        uy[i] = p->uy[i];
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    double *const ux = sim->solid.scratch[1], *const uy = sim->solid.scratch[2];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->free[i] = free[i];
+        ux[i] = particles->ux[i];
+        uy[i] = particles->uy[i];
         if (free[i] != 0) continue;
-        p->vx[i] = p->vy[i] = 0;
-        if (p->wx) p->wx[i] = p->wy[i] = p->ax[i] = p->ay[i] = p->jx[i] = p->jy[i] = 0;
+        particles->vx[i] = particles->vy[i] = 0;
+        if (particles->wx)
+            particles->wx[i] = particles->wy[i] = particles->ax[i] = particles->ay[i] =
+                particles->jx[i] = particles->jy[i] = 0;
     }
-    solid_place_clamps(&s->solid, p, s->state.time);
-    for (int64_t i = 0; i < p->n; i++) {
-        if (elementary_hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
-        const struct scene_solid *const b = &s->scene->solid[p->body[i]];
+    solid_place_clamps(&sim->solid, particles, sim->state.time);
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (elementary_hypot(particles->ux[i] - ux[i], particles->uy[i] - uy[i]) <=
+            1e-3 * sim->solid.dp)
+            continue;
+        const struct scene_solid *const b = &sim->scene->solid[particles->body[i]];
         return diag_fail(d, ERR_INPUT,
                          "fork: the clamp of [solid %s] would jump at %.6g s from its displacement "
                          "in the checkpoint, (%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let "
                          "the motion begin where the checkpoint ends",
-                         b->common.name, s->state.time, ux[i], uy[i], p->ux[i], p->uy[i],
-                         b->clamp_motion);
+                         b->common.name, sim->state.time, ux[i], uy[i], particles->ux[i],
+                         particles->uy[i], b->clamp_motion);
     }
     return ERR_OK;
 }
 
-/* Drops the interface impulse if the new case has no impedance interface, which would give it on. */
-static void clear_interface_impulse(struct simulation *s)
+/* Drops the interface impulse if the new case has no impedance interface, which would give it on.
+ */
+static void clear_interface_impulse(struct simulation *sim)
 {
-    struct particles *const p = &s->kind[KIND_SOLID];
-    if (!p->interface_pressure || s->effects & FX_IMPEDANCE) return;
-    for (int64_t i = 0; i < p->n; i++) impulse_clear(p, i);
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    if (!particles->interface_pressure || sim->effects & FX_IMPEDANCE) return;
+    for (int64_t i = 0; i < particles->n; i++) impulse_clear(particles, i);
 }
 
-/* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork without a
- * change keeps its bits. */
-static bool order_fits(const struct simulation *s)
+/* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork
+ * without a change keeps its bits. */
+static bool order_fits(const struct simulation *sim)
 {
     struct diag other_grid = {.code = ERR_OK};
-    if (checkpoint_check_cells(s, &other_grid)) return false;
-    const struct cells *const c = &s->cells;
+    if (checkpoint_check_cells(sim, &other_grid)) return false;
+    const struct cells *const cells = &sim->cells;
     for (int k = 0; k < KIND_COUNT; k++) {
-        const struct particles *const p = &s->kind[k];
-        for (int64_t i = 0; i < p->n; i++) {
-            const double x = p->x[i] - c->lower[0], y = p->y[i] - c->lower[1];
-            const bool inside =
-                x >= 0 && x < c->nx * c->side[0] && y >= 0 && y < c->ny * c->side[1];
-            if (p->cell[i] < 0 && inside) return false;
+        const struct particles *const particles = &sim->kind[k];
+        for (int64_t i = 0; i < particles->n; i++) {
+            const double x = particles->x[i] - cells->lower[0],
+                         y = particles->y[i] - cells->lower[1];
+            const bool inside = x >= 0 && x < cells->nx * cells->side[0] && y >= 0 &&
+                                y < cells->ny * cells->side[1];
+            if (particles->cell[i] < 0 && inside) return false;
         }
     }
     return true;
 }
 
-static enum err sort_again(struct simulation *s, struct diag *d)
+static enum err sort_again(struct simulation *sim, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
-        if (k == KIND_SOLID && !(s->effects & FX_COUPLING)) continue;
-        const int64_t out = cells_sort(&s->cells, (enum kind)k, &s->kind[k]);
+        if (k == KIND_SOLID && !(sim->effects & FX_COUPLING)) continue;
+        const int64_t out = cells_sort(&sim->cells, (enum kind)k, &sim->kind[k]);
         if (k == KIND_FLUID && out)
             return diag_fail(d, ERR_INPUT,
                              "fork: %" PRId64 " fluid particles of the checkpoint are outside the "
                              "domain of this case; enlarge [domain]",
                              out);
     }
-    s->state.sorts++;
+    sim->state.sorts++;
     return ERR_OK;
 }
 
-enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
+enum err checkpoint_fork(const struct image *m, struct simulation *sim, struct diag *d)
 {
-    const struct particles *const solid = &s->kind[KIND_SOLID];
-    double *const free = s->solid.scratch[0];
-    if (s->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
-    TRY(checkpoint_load(m, s, true, d));
-    if (s->effects & (FX_FLUID | FX_MOTION)) TRY(fork_walls(s, d));
-    if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
-    clear_interface_impulse(s);
-    if ((s->effects & FX_FLUID) && !order_fits(s)) TRY(sort_again(s, d));
-    TRY(simulation_resume(s, d));
-    energy_begin(s);
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    double *const free = sim->solid.scratch[0];
+    if (sim->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
+    TRY(checkpoint_load(m, sim, true, d));
+    if (sim->effects & (FX_FLUID | FX_MOTION)) TRY(fork_walls(sim, d));
+    if (sim->effects & FX_SOLID) TRY(fork_clamps(sim, free, d));
+    clear_interface_impulse(sim);
+    if ((sim->effects & FX_FLUID) && !order_fits(sim)) TRY(sort_again(sim, d));
+    TRY(simulation_resume(sim, d));
+    energy_begin(sim);
     return ERR_OK;
 }

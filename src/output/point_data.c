@@ -15,29 +15,32 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
-double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+double snapshot_value(enum data what, const struct simulation *sim, enum kind kind, int64_t i,
                       int column)
 {
-    const struct particles *p = &s->kind[kind];
+    const struct particles *particles = &sim->kind[kind];
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;
     if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
-        solid_cauchy(&s->solid, p, i, sigma, &det);
+        solid_cauchy(&sim->solid, particles, i, sigma, &det);
     switch (what) {
-    case D_POINTS: return vector_value(p->x[i], p->y[i], column);
-    case D_VELOCITY: return vector_value(p->vx[i], p->vy[i], column);
+    case D_POINTS: return vector_value(particles->x[i], particles->y[i], column);
+    case D_VELOCITY: return vector_value(particles->vx[i], particles->vy[i], column);
     case D_PRESSURE:
-        if (kind == KIND_FLUID) return eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
-        return p->p ? p->p[i] : 0;
+        if (kind == KIND_FLUID)
+            return eos_pressure(particles->dens[i], sim->fluid.k.rho0, sim->fluid.k.c0);
+        return particles->p ? particles->p[i] : 0;
     case D_VON_MISES: return solid_von_mises(sigma);
     case D_DET_F: return det;
     case D_DENSITY:
-        if (solid) return s->solid.body[p->body[i]].density / det;
-        return p->dens ? s->scene->rho0 * (1 + p->dens[i]) : 0;
+        if (solid) return sim->solid.body[particles->body[i]].density / det;
+        return particles->dens ? sim->scene->rho0 * (1 + particles->dens[i]) : 0;
     case D_STRESS: return stress_value(sigma, column);
     case D_DISPLACEMENT:
-        if (solid) return vector_value(p->ux[i], p->uy[i], column);
-        return p->X ? vector_value(p->x[i] - p->X[i], p->y[i] - p->Y[i], column) : 0;
+        if (solid) return vector_value(particles->ux[i], particles->uy[i], column);
+        return particles->X ? vector_value(particles->x[i] - particles->X[i],
+                                           particles->y[i] - particles->Y[i], column)
+                            : 0;
     default: return 0;
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What fields.vtkhdf says of a particle. Here and not in snapshot.h, so that programs that only read fields
- * build without HDF5. */
+ * What fields.vtkhdf says of a particle. Here and not in snapshot.h, so that programs that only
+ * read fields build without HDF5. */
 #ifndef SPHFSI_OUTPUT_POINT_DATA_H
 #define SPHFSI_OUTPUT_POINT_DATA_H
 
@@ -29,7 +29,7 @@ enum data {
 };
 
 /* Value of one particle in a floating dataset; simulation_refresh comes first. */
-double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+double snapshot_value(enum data what, const struct simulation *sim, enum kind kind, int64_t i,
                       int column);
 
 #endif

@@ -12,39 +12,41 @@ struct moment {
     double m00, m10, m01, m20, m11, m02;
 };
 
-/* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields; this one
- * is smooth and vanishes at the reach. */
+/* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;
+ * this one is smooth and vanishes at the reach. */
 static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
 
 /* Particles of the body within `reach` of the probe; `particle` may be NULL to count only. */
-static int find_near(const struct particles *p, int body, const double at[2], double reach,
+static int find_near(const struct particles *particles, int body, const double at[2], double reach,
                      int32_t *particle)
 {
     int n = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != body) continue;
-        if (square(p->X[i] - at[0]) + square(p->Y[i] - at[1]) >= square(reach)) continue;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->body[i] != body) continue;
+        if (square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]) >= square(reach))
+            continue;
         if (particle) particle[n] = (int32_t)i;
         n++;
     }
     return n;
 }
 
-static double nearest_distance(const struct particles *p, int body, const double at[2])
+static double nearest_distance(const struct particles *particles, int body, const double at[2])
 {
     double best = (double)INFINITY;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->body[i] == body)
-            best = min2(best, square(p->X[i] - at[0]) + square(p->Y[i] - at[1]));
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->body[i] == body)
+            best = min2(best, square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]));
     return sqrt(best);
 }
 
-static struct moment moments(const struct probe *pr, const struct particles *p, double reach)
+static struct moment moments(const struct probe *pr, const struct particles *particles,
+                             double reach)
 {
     struct moment m = {0};
     for (int k = 0; k < pr->n; k++) {
-        const double x = (p->X[pr->particle[k]] - pr->point[0]) / reach;
-        const double y = (p->Y[pr->particle[k]] - pr->point[1]) / reach;
+        const double x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
+        const double y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
         const double w = weight_at(x * x + y * y);
         m.m00 += w, m.m10 += w * x, m.m01 += w * y;
         m.m20 += w * x * x, m.m11 += w * x * y, m.m02 += w * y * y;
@@ -52,46 +54,47 @@ static struct moment moments(const struct probe *pr, const struct particles *p, 
     return m;
 }
 
-/* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of the plane
- * fitted to the particles. Particles on one line determine no plane: then the weighted mean. */
-static void weigh(struct probe *pr, const struct particles *p, double reach)
+/* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of
+ * the plane fitted to the particles. Particles on one line determine no plane: then the weighted
+ * mean. */
+static void weigh(struct probe *pr, const struct particles *particles, double reach)
 {
-    const struct moment m = moments(pr, p, reach);
+    const struct moment m = moments(pr, particles, reach);
     const double c00 = m.m20 * m.m02 - m.m11 * m.m11;
     const double c10 = m.m11 * m.m01 - m.m10 * m.m02;
     const double c01 = m.m10 * m.m11 - m.m20 * m.m01;
     const double det = m.m00 * c00 + m.m10 * c10 + m.m01 * c01;
     const bool collinear = !(det > 1e-9 * m.m00 * m.m00 * m.m00);
     for (int k = 0; k < pr->n; k++) {
-        const double x = (p->X[pr->particle[k]] - pr->point[0]) / reach;
-        const double y = (p->Y[pr->particle[k]] - pr->point[1]) / reach;
+        const double x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
+        const double y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
         const double w = weight_at(x * x + y * y);
         pr->weight[k] = collinear ? w / m.m00 : w * (c00 + c10 * x + c01 * y) / det;
     }
 }
 
 /* A corner of a body is 0.71 dp from its nearest particle; a point further than h is a mistake. */
-static enum err attach(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
+static enum err attach(struct probe *pr, const struct scene_probe *sp, const struct simulation *sim,
                        struct arena *a, struct diag *d)
 {
     const int body = pr->body;
-    const struct particles *p = &s->kind[KIND_SOLID];
-    const char *const name = s->scene->solid[body].common.name;
-    const double h = scene_solid_h(s->scene, body), reach = 2 * h;
-    const double distance = nearest_distance(p, body, pr->point);
+    const struct particles *particles = &sim->kind[KIND_SOLID];
+    const char *const name = sim->scene->solid[body].common.name;
+    const double h = scene_solid_h(sim->scene, body), reach = 2 * h;
+    const double distance = nearest_distance(particles, body, pr->point);
     char place[LOCATION_TEXT];
-    scene_location(s->scene, sp->common.line, place);
+    scene_location(sim->scene, sp->common.line, place);
     if (!(distance < h))
         return diag_fail(d, ERR_INPUT,
                          "%s: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
                          "[solid %s]; move it to h = %.3g m or less",
                          place, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
-    pr->n = find_near(p, body, pr->point, reach, NULL);
+    pr->n = find_near(particles, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);
     if (!pr->particle || !pr->weight) return ERR_MEMORY;
-    find_near(p, body, pr->point, reach, pr->particle);
-    weigh(pr, p, reach);
+    find_near(particles, body, pr->point, reach, pr->particle);
+    weigh(pr, particles, reach);
     return ERR_OK;
 }
 
@@ -111,45 +114,45 @@ static bool needs_refresh(int quantity)
            quantity == PROBE_SURFACE_PRESSURE;
 }
 
-static struct probe_body find_body(const struct scene *s, const char *name)
+static struct probe_body find_body(const struct scene *scene, const char *name)
 {
-    const int solid = scene_find_solid(s, name);
+    const int solid = scene_find_solid(scene, name);
     if (solid >= 0) return (struct probe_body){KIND_SOLID, solid};
-    return (struct probe_body){KIND_WALL, scene_find_wall(s, name)};
+    return (struct probe_body){KIND_WALL, scene_find_wall(scene, name)};
 }
 
 /* The bodies of a force. */
-static enum err find_bodies(struct probe *pr, const struct scene *s, const char *list,
+static enum err find_bodies(struct probe *pr, const struct scene *scene, const char *list,
                             struct arena *a, struct diag *d)
 {
     char name[SCENE_TEXT];
     scene_listed(list, 0, name);
-    const struct probe_body first = find_body(s, name);
+    const struct probe_body first = find_body(scene, name);
     pr->kind = first.kind;
     pr->body = first.body;
     while (scene_listed(list, 1 + pr->n_more, name)) pr->n_more++;
     pr->more = arena_alloc(a, (size_t)pr->n_more, sizeof *pr->more, "probe", d);
     if (!pr->more) return ERR_MEMORY;
     for (int k = 0; k < pr->n_more && scene_listed(list, 1 + k, name); k++)
-        pr->more[k] = find_body(s, name);
+        pr->more[k] = find_body(scene, name);
     return ERR_OK;
 }
 
 /* The body that carries a point or a line of the fluid. */
-static enum err ride(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
+static enum err ride(struct probe *pr, const struct scene_probe *sp, const struct simulation *sim,
                      struct arena *a, struct diag *d)
 {
-    const struct probe_body on = find_body(s->scene, sp->on);
+    const struct probe_body on = find_body(sim->scene, sp->on);
     if (on.kind == KIND_WALL) {
-        pr->motion = scene_find_motion(s->scene, s->scene->wall[on.body].motion);
+        pr->motion = scene_find_motion(sim->scene, sim->scene->wall[on.body].motion);
         return ERR_OK;
     }
     pr->body = on.body;
-    return attach(pr, sp, s, a, d);
+    return attach(pr, sp, sim, a, d);
 }
 
 static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
-                             const struct simulation *s, struct arena *a, struct diag *d)
+                             const struct simulation *sim, struct arena *a, struct diag *d)
 {
     *pr = (struct probe){.quantity = sp->quantity,
                          .target = scene_probe_target(sp),
@@ -160,13 +163,13 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
     pr->average = sp->average;
     pr->motion = -1;
     pr->kind = KIND_SOLID;
-    pr->body = scene_find_solid(s->scene, sp->body);
-    if (pr->target == TARGET_BODY) return find_bodies(pr, s->scene, sp->body, a, d);
-    if (*sp->on) return ride(pr, sp, s, a, d);
-    return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, s, a, d) : ERR_OK;
+    pr->body = scene_find_solid(sim->scene, sp->body);
+    if (pr->target == TARGET_BODY) return find_bodies(pr, sim->scene, sp->body, a, d);
+    if (*sp->on) return ride(pr, sp, sim, a, d);
+    return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, sim, a, d) : ERR_OK;
 }
 
-static enum err create_means(struct probes *p, struct simulation *s, struct arena *a,
+static enum err create_means(struct probes *p, struct simulation *sim, struct arena *a,
                              struct diag *d)
 {
     int n = 0;
@@ -174,8 +177,8 @@ static enum err create_means(struct probes *p, struct simulation *s, struct aren
     if (n == 0) return ERR_OK;
     struct probe_mean *mean = arena_alloc(a, (size_t)n, sizeof *mean, "means of probes", d);
     if (!mean) return ERR_MEMORY;
-    s->carried.n = n * (int64_t)(sizeof *mean / sizeof(double));
-    s->carried.value = &mean->row;
+    sim->carried.n = n * (int64_t)(sizeof *mean / sizeof(double));
+    sim->carried.value = &mean->row;
     for (int k = 0; k < p->n; k++) {
         if (!(p->probe[k].average > 0)) continue;
         p->probe[k].mean = mean;
@@ -207,7 +210,8 @@ static size_t name_columns(char *header, size_t size, size_t at, const struct sc
     return at;
 }
 
-/* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`. */
+/* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`.
+ */
 static enum err create_file(struct probes *p, const struct scene *scene, int only, struct arena *a,
                             struct diag *d)
 {
@@ -233,15 +237,15 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
     return ERR_OK;
 }
 
-enum err probes_create(struct probes *p, struct simulation *s, struct arena *a, struct diag *d)
+enum err probes_create(struct probes *p, struct simulation *sim, struct arena *a, struct diag *d)
 {
-    const struct scene *scene = s->scene;
+    const struct scene *scene = sim->scene;
     *p = (struct probes){.n = scene->n_probe};
     p->probe = arena_alloc(a, (size_t)p->n, sizeof *p->probe, "probes", d);
     p->file = arena_alloc(a, (size_t)p->n + 1, sizeof *p->file, "probes", d);
     if (!p->probe || !p->file) return ERR_MEMORY;
-    for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], s, a, d));
-    TRY(create_means(p, s, a, d));
+    for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], sim, a, d));
+    TRY(create_means(p, sim, a, d));
     TRY(create_file(p, scene, -1, a, d));
     for (int k = 0; k < p->n; k++)
         if (scene->probe[k].interval > 0) TRY(create_file(p, scene, k, a, d));
@@ -259,25 +263,26 @@ static void weighted_sum(const struct probe *pr, const double *fx, const double 
     }
 }
 
-static void stress(const struct probe *pr, const struct simulation *s, double out[5])
+static void stress(const struct probe *pr, const struct simulation *sim, double out[5])
 {
     double mean[4] = {0};
     for (int k = 0; k < pr->n; k++) {
         double sigma[4], det;
-        solid_cauchy(&s->solid, &s->kind[KIND_SOLID], pr->particle[k], sigma, &det);
+        solid_cauchy(&sim->solid, &sim->kind[KIND_SOLID], pr->particle[k], sigma, &det);
         for (int c = 0; c < 4; c++) mean[c] += pr->weight[k] * sigma[c];
     }
     out[0] = mean[0], out[1] = mean[1], out[2] = mean[3], out[3] = mean[2];
     out[4] = solid_von_mises(mean);
 }
 
-static void strain(const struct probe *pr, const struct simulation *s, double out[3])
+static void strain(const struct probe *pr, const struct simulation *sim, double out[3])
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     out[0] = out[1] = out[2] = 0;
     for (int k = 0; k < pr->n; k++) {
         const int32_t i = pr->particle[k];
-        const double xx = p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = p->Uyy[i];
+        const double xx = particles->Uxx[i], xy = particles->Uxy[i], yx = particles->Uyx[i],
+                     yy = particles->Uyy[i];
         out[0] += pr->weight[k] * (xx + 0.5 * (xx * xx + yx * yx));
         out[1] += pr->weight[k] * (yy + 0.5 * (xy * xy + yy * yy));
         out[2] += pr->weight[k] * 0.5 * (xy + yx + xx * xy + yx * yy);
@@ -285,61 +290,62 @@ static void strain(const struct probe *pr, const struct simulation *s, double ou
 }
 
 /* Adds the forces fx, fy on the particles of a body, and their moment about the probe's point. */
-static void add_forces(const struct probe *pr, const struct particles *p, int body,
+static void add_forces(const struct probe *pr, const struct particles *particles, int body,
                        const double *fx, const double *fy, double out[3])
 {
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != body) continue;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->body[i] != body) continue;
         out[0] += fx[i];
         out[1] += fy[i];
-        out[2] += (p->x[i] - pr->point[0]) * fy[i] - (p->y[i] - pr->point[1]) * fx[i];
+        out[2] +=
+            (particles->x[i] - pr->point[0]) * fy[i] - (particles->y[i] - pr->point[1]) * fx[i];
     }
 }
 
-static void force(const struct probe *pr, const struct simulation *s, double out[3])
+static void force(const struct probe *pr, const struct simulation *sim, double out[3])
 {
-    const struct particles *p = &s->kind[pr->kind];
+    const struct particles *particles = &sim->kind[pr->kind];
     out[0] = out[1] = out[2] = 0;
-    add_forces(pr, p, pr->body, p->fx, p->fy, out);
+    add_forces(pr, particles, pr->body, particles->fx, particles->fy, out);
     for (int k = 0; k < pr->n_more; k++) {
-        p = &s->kind[pr->more[k].kind];
-        add_forces(pr, p, pr->more[k].body, p->fx, p->fy, out);
+        particles = &sim->kind[pr->more[k].kind];
+        add_forces(pr, particles, pr->more[k].body, particles->fx, particles->fy, out);
     }
 }
 
-static void acceleration(const struct probe *pr, struct simulation *s, double out[2])
+static void acceleration(const struct probe *pr, struct simulation *sim, double out[2])
 {
     const struct solid_forces_now now =
-        solid_forces_now(&s->solid, &s->kind[KIND_SOLID], s->state.time);
+        solid_forces_now(&sim->solid, &sim->kind[KIND_SOLID], sim->state.time);
     weighted_sum(pr, now.ax, now.ay, out);
 }
 
-static void reaction(const struct probe *pr, struct simulation *s, double out[3])
+static void reaction(const struct probe *pr, struct simulation *sim, double out[3])
 {
-    struct particles *const p = &s->kind[KIND_SOLID];
-    const struct solid_forces_now now = solid_forces_now(&s->solid, p, s->state.time);
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct solid_forces_now now = solid_forces_now(&sim->solid, particles, sim->state.time);
     out[0] = out[1] = out[2] = 0;
-    add_forces(pr, p, pr->body, now.clamp_x, now.clamp_y, out);
+    add_forces(pr, particles, pr->body, now.clamp_x, now.clamp_y, out);
 }
 
 /* T-75: the particles of a body have equal masses. */
-static void pose(const struct probe *pr, const struct simulation *s, double out[3])
+static void pose(const struct probe *pr, const struct simulation *sim, double out[3])
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     double X = 0, Y = 0, ux = 0, uy = 0, across = 0, along = 0, n = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != pr->body) continue;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->body[i] != pr->body) continue;
         n++;
-        X += p->X[i];
-        Y += p->Y[i];
-        ux += p->ux[i];
-        uy += p->uy[i];
+        X += particles->X[i];
+        Y += particles->Y[i];
+        ux += particles->ux[i];
+        uy += particles->uy[i];
     }
     X /= n, Y /= n, ux /= n, uy /= n;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != pr->body) continue;
-        const double a = p->X[i] - X, b = p->Y[i] - Y;
-        const double x = a + (p->ux[i] - ux), y = b + (p->uy[i] - uy);
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->body[i] != pr->body) continue;
+        const double a = particles->X[i] - X, b = particles->Y[i] - Y;
+        const double x = a + (particles->ux[i] - ux), y = b + (particles->uy[i] - uy);
         across += a * y - b * x;
         along += a * x + b * y;
     }
@@ -348,83 +354,84 @@ static void pose(const struct probe *pr, const struct simulation *s, double out[
     out[2] = elementary_atan2(across, along);
 }
 
-static void energy(const struct probe *pr, const struct simulation *s, double out[3])
+static void energy(const struct probe *pr, const struct simulation *sim, double out[3])
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     double det, sum = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->body[i] == pr->body) sum += square(p->vx[i]) + square(p->vy[i]);
-    out[0] = 0.5 * s->solid.body[pr->body].mass * sum;
-    solid_energy(&s->solid, p, pr->body, &out[1], &out[2], &det);
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->body[i] == pr->body)
+            sum += square(particles->vx[i]) + square(particles->vy[i]);
+    out[0] = 0.5 * sim->solid.body[pr->body].mass * sum;
+    solid_energy(&sim->solid, particles, pr->body, &out[1], &out[2], &det);
 }
 
 /* Where a point of a wall is now. */
-static void move_with_wall(const struct probe *pr, const struct simulation *s, double at[2])
+static void move_with_wall(const struct probe *pr, const struct simulation *sim, double at[2])
 {
     if (pr->motion < 0) return;
-    const struct motion_state m = motion_at(s->scene, pr->motion, s->state.time);
+    const struct motion_state m = motion_at(sim->scene, pr->motion, sim->state.time);
     memcpy(at, motion_of_point(&m, at[0], at[1]).x, 2 * sizeof *at);
 }
 
 /* Where a point of the fluid is now. */
-static void place(const struct probe *pr, const struct simulation *s, double at[2])
+static void place(const struct probe *pr, const struct simulation *sim, double at[2])
 {
     memcpy(at, pr->point, sizeof pr->point);
-    move_with_wall(pr, s, at);
+    move_with_wall(pr, sim, at);
     if (pr->n > 0) {
-        const struct particles *const p = &s->kind[KIND_SOLID];
+        const struct particles *const particles = &sim->kind[KIND_SOLID];
         double u[2];
-        weighted_sum(pr, p->ux, p->uy, u);
+        weighted_sum(pr, particles->ux, particles->uy, u);
         at[0] += u[0];
         at[1] += u[1];
     }
 }
 
-static void surface_pressure(const struct probe *pr, const struct simulation *s, double out[3])
+static void surface_pressure(const struct probe *pr, const struct simulation *sim, double out[3])
 {
     double from[2] = {pr->point[0], pr->point[1]}, to[2] = {pr->to[0], pr->to[1]};
-    move_with_wall(pr, s, from);
-    move_with_wall(pr, s, to);
-    fluid_pressure_on(s, from, to, out);
+    move_with_wall(pr, sim, from);
+    move_with_wall(pr, sim, to);
+    fluid_pressure_on(sim, from, to, out);
 }
 
-static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
+static void fluid_velocity(const struct probe *pr, const struct simulation *sim, double out[2])
 {
     double x[2];
-    place(pr, s, x);
-    const struct sample at = fluid_sample(s, x[0], x[1]);
+    place(pr, sim, x);
+    const struct sample at = fluid_sample(sim, x[0], x[1]);
     out[0] = at.vx;
     out[1] = at.vy;
 }
 
-static void velocity(const struct probe *pr, const struct simulation *s, double out[2])
+static void velocity(const struct probe *pr, const struct simulation *sim, double out[2])
 {
     if (pr->target == TARGET_SOLID_POINT)
-        weighted_sum(pr, s->kind[KIND_SOLID].vx, s->kind[KIND_SOLID].vy, out);
+        weighted_sum(pr, sim->kind[KIND_SOLID].vx, sim->kind[KIND_SOLID].vy, out);
     else
-        fluid_velocity(pr, s, out);
+        fluid_velocity(pr, sim, out);
 }
 
-static void values(const struct probe *pr, struct simulation *s, double *row)
+static void values(const struct probe *pr, struct simulation *sim, double *row)
 {
-    const struct particles *const solid = &s->kind[KIND_SOLID];
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
     double at[2] = {0};
-    if (pr->target == TARGET_FLUID_POINT) place(pr, s, at);
+    if (pr->target == TARGET_FLUID_POINT) place(pr, sim, at);
     switch ((enum probe_quantity)pr->quantity) {
     case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
-    case PROBE_VELOCITY: velocity(pr, s, row); break;
-    case PROBE_PRESSURE: *row = fluid_pressure_at(s, at[0], at[1]); break;
-    case PROBE_STRESS: stress(pr, s, row); break;
-    case PROBE_LEVEL: *row = fluid_level(s, at[0], at[1]); break;
-    case PROBE_FORCE: force(pr, s, row); break;
-    case PROBE_FRONT: *row = fluid_front(s, pr->direction); break;
-    case PROBE_ENERGY: energy(pr, s, row); break;
-    case PROBE_FLUX: *row = fluid_flux(s, pr->point, pr->to); break;
-    case PROBE_STRAIN: strain(pr, s, row); break;
-    case PROBE_ACCELERATION: acceleration(pr, s, row); break;
-    case PROBE_POSE: pose(pr, s, row); break;
-    case PROBE_REACTION: reaction(pr, s, row); break;
-    case PROBE_SURFACE_PRESSURE: surface_pressure(pr, s, row); break;
+    case PROBE_VELOCITY: velocity(pr, sim, row); break;
+    case PROBE_PRESSURE: *row = fluid_pressure_at(sim, at[0], at[1]); break;
+    case PROBE_STRESS: stress(pr, sim, row); break;
+    case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
+    case PROBE_FORCE: force(pr, sim, row); break;
+    case PROBE_FRONT: *row = fluid_front(sim, pr->direction); break;
+    case PROBE_ENERGY: energy(pr, sim, row); break;
+    case PROBE_FLUX: *row = fluid_flux(sim, pr->point, pr->to); break;
+    case PROBE_STRAIN: strain(pr, sim, row); break;
+    case PROBE_ACCELERATION: acceleration(pr, sim, row); break;
+    case PROBE_POSE: pose(pr, sim, row); break;
+    case PROBE_REACTION: reaction(pr, sim, row); break;
+    case PROBE_SURFACE_PRESSURE: surface_pressure(pr, sim, row); break;
     case PROBE_QUANTITIES: break;
     }
 }
@@ -439,8 +446,8 @@ static double next_row(const struct probes *p, const struct probe *pr, double ti
     return row;
 }
 
-/* T-76: the trapezoidal rule. What lies before the first value within the mean, less than a step, has that
- * value. */
+/* T-76: the trapezoidal rule. What lies before the first value within the mean, less than a step,
+ * has that value. */
 static void add_to_mean(const struct probe *pr, double row, double begin, double time, double dt,
                         const double *now)
 {
@@ -460,46 +467,46 @@ static void add_to_mean(const struct probe *pr, double row, double begin, double
     m->time = time;
 }
 
-void probes_follow(const struct probes *p, struct simulation *s)
+void probes_follow(const struct probes *p, struct simulation *sim)
 {
-    const double time = s->state.time;
+    const double time = sim->state.time;
     for (int k = 0; k < p->n; k++) {
         const struct probe *const pr = &p->probe[k];
         double begin, now[PROBE_MAX_COLUMNS] = {0};
         if (!pr->mean) continue;
         const double row = next_row(p, pr, time, &begin);
         if (time < begin || (pr->mean->row >= 0 && time <= pr->mean->time)) continue;
-        if (needs_refresh(pr->quantity)) simulation_refresh(s);
-        values(pr, s, now);
-        add_to_mean(pr, row, begin, time, s->state.dt, now);
+        if (needs_refresh(pr->quantity)) simulation_refresh(sim);
+        values(pr, sim, now);
+        add_to_mean(pr, row, begin, time, sim->state.dt, now);
     }
 }
 
 /* The mean, or the value now where none has been begun. */
-static void present(const struct probe *pr, struct simulation *s, double *row)
+static void present(const struct probe *pr, struct simulation *sim, double *row)
 {
     const struct probe_mean *const m = pr->mean;
-    if (!m || m->row < 0 || m->time != s->state.time) {
-        values(pr, s, row);
+    if (!m || m->row < 0 || m->time != sim->state.time) {
+        values(pr, sim, row);
         return;
     }
     for (int c = 0; c < pr->columns; c++)
         row[c] = m->time > m->begin ? m->sum[c] / (m->time - m->begin) : m->last[c];
 }
 
-void probes_sample(const struct probes *p, struct simulation *s, int file, double *row)
+void probes_sample(const struct probes *p, struct simulation *sim, int file, double *row)
 {
-    if (p->file[file].refresh) simulation_refresh(s);
-    *row++ = s->state.time;
+    if (p->file[file].refresh) simulation_refresh(sim);
+    *row++ = sim->state.time;
     for (int k = 0; k < p->n; k++) {
         if (p->probe[k].file != file) continue;
-        present(&p->probe[k], s, row);
+        present(&p->probe[k], sim, row);
         row += p->probe[k].columns;
     }
 }
 
-void probes_values(const struct probes *p, struct simulation *s, int probe, double *row)
+void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row)
 {
-    if (needs_refresh(p->probe[probe].quantity)) simulation_refresh(s);
-    present(&p->probe[probe], s, row);
+    if (needs_refresh(p->probe[probe].quantity)) simulation_refresh(sim);
+    present(&p->probe[probe], sim, row);
 }

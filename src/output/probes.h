@@ -10,7 +10,8 @@ struct probe_body {
     int body; /* index of its section */
 };
 
-/* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as they are. */
+/* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as
+ * they are. */
 struct probe_mean {
     double row;             /* number of the row that it is for; -1: none yet */
     double begin;           /* s, of the mean */
@@ -54,21 +55,22 @@ struct probes {
 
 enum { PROBE_MAX_COLUMNS = 5, PROBE_COLUMN_TEXT = SCENE_NAME + 24 };
 
-/* Finds the particles and weights of each probe, and the columns of each file; the arena owns the memory.
- * ERR_INPUT: a probe is too far from its body. */
-enum err probes_create(struct probes *p, struct simulation *s, struct arena *a, struct diag *d)
+/* Finds the particles and weights of each probe, and the columns of each file; the arena owns the
+ * memory. ERR_INPUT: a probe is too far from its body. */
+enum err probes_create(struct probes *p, struct simulation *sim, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Adds the present to the means; at the start of a run and after each step. The state stays as it is. */
-void probes_follow(const struct probes *p, struct simulation *s);
+/* Adds the present to the means; at the start of a run and after each step. The state stays as it
+ * is. */
+void probes_follow(const struct probes *p, struct simulation *sim);
 
 /* One row of a file: the time, then the values of its probes. */
-void probes_sample(const struct probes *p, struct simulation *s, int file, double *row);
+void probes_sample(const struct probes *p, struct simulation *sim, int file, double *row);
 
 /* Name of a column of a probe, <probe>_<quantity>_<unit>; false: it has no such column. */
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size);
 
 /* The values of one probe now, as many as it has columns. */
-void probes_values(const struct probes *p, struct simulation *s, int probe, double *row);
+void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row);
 
 #endif

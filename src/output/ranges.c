@@ -14,16 +14,16 @@ enum err range_check(const char *name, double value, double low, double high, st
                      name, value, low, high);
 }
 
-static enum err check_state(const struct simulation *s, struct diag *d)
+static enum err check_state(const struct simulation *sim, struct diag *d)
 {
-    const struct state *const st = &s->state;
+    const struct state *const st = &sim->state;
 #define STATE(type, name, low, high, unit, meaning) \
     TRY(range_check(#name, (double)st->name, low, high, d));
 #include "time/state.def"
 #undef STATE
     for (int k = 0; k < BOUND_COUNT; k++)
         TRY(range_check("bound_steps", (double)st->bound_steps[k], 0, COUNTS, d));
-    if (!(s->effects & FX_SOLID)) return ERR_OK;
+    if (!(sim->effects & FX_SOLID)) return ERR_OK;
     /* The solid's step is divided and multiplied by them. */
     TRY(range_check("solid_stiffening", st->solid_stiffening, 1e-9, 1e9, d));
     return range_check("solid_slowing", st->solid_slowing, 1e-9, 1e9, d);
@@ -39,13 +39,13 @@ static enum err check_energy(const struct energy_account *account, struct diag *
     return ERR_OK;
 }
 
-static enum err check_fields(const struct particles *p, enum kind kind, struct diag *d)
+static enum err check_fields(const struct particles *particles, enum kind kind, struct diag *d)
 {
     for (int f = 0; f < field_count; f++) {
         const struct field_info *const info = &field_table[f];
-        const double *const data = field_array(p, info);
+        const double *const data = field_array(particles, info);
         if (!data || info->keep != KEEP_STATE || strcmp(info->type, "double") != 0) continue;
-        for (int64_t i = 0; i < p->n; i++)
+        for (int64_t i = 0; i < particles->n; i++)
             if (!(fabs(data[i]) <= FINITE))
                 return diag_fail(d, ERR_INPUT,
                                  "checkpoint: block %s holds %g for %s particle %" PRId64
@@ -56,16 +56,16 @@ static enum err check_fields(const struct particles *p, enum kind kind, struct d
 }
 
 /* Numbers that serve as an index. */
-static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
+static enum err check_bodies(const struct simulation *sim, enum kind kind, struct diag *d)
 {
-    const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
-    const struct particles *p = &s->kind[kind];
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->body[i] < 0 || p->body[i] >= bodies[kind])
+    const int bodies[KIND_COUNT] = {sim->scene->n_fluid, sim->scene->n_wall, sim->scene->n_solid};
+    const struct particles *particles = &sim->kind[kind];
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->body[i] < 0 || particles->body[i] >= bodies[kind])
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64 " belongs to section %d, but the "
                              "case has sections 0 to %d",
-                             kind_names[kind], i, p->body[i], bodies[kind] - 1);
+                             kind_names[kind], i, particles->body[i], bodies[kind] - 1);
     return ERR_OK;
 }
 
@@ -82,13 +82,13 @@ static enum err check_open(const struct open *o, struct diag *d)
     return range_check("open_next_id", (double)o->next_id, 0, COUNTS, d);
 }
 
-enum err ranges_check(const struct simulation *s, struct diag *d)
+enum err ranges_check(const struct simulation *sim, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
-        TRY(check_bodies(s, (enum kind)k, d));
-        TRY(check_fields(&s->kind[k], (enum kind)k, d));
+        TRY(check_bodies(sim, (enum kind)k, d));
+        TRY(check_fields(&sim->kind[k], (enum kind)k, d));
     }
-    TRY(check_open(&s->open, d));
-    TRY(check_state(s, d));
-    return check_energy(&s->state.energy, d);
+    TRY(check_open(&sim->open, d));
+    TRY(check_state(sim, d));
+    return check_energy(&sim->state.energy, d);
 }

@@ -15,6 +15,6 @@ enum err range_check(const char *name, double value, double low, double high, st
     SPHFSI_CHECKED;
 
 /* The same for all that a simulation carries from step to step. */
-enum err ranges_check(const struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err ranges_check(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -70,7 +70,7 @@ static bool has_column(struct reference *r, int file, const char *header, struct
     return false;
 }
 
-static enum err find_column(struct reference *r, const struct scene *s, int n,
+static enum err find_column(struct reference *r, const struct scene *scene, int n,
                             const char *const *header, struct diag *d)
 {
     struct nearest near = {0};
@@ -80,23 +80,23 @@ static enum err find_column(struct reference *r, const struct scene *s, int n,
         if (has_column(r, k, header[k], &near, names, &n_names)) return ERR_OK;
     for (int k = 0; k < n_names; k++)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? "," : "", names[k]);
-    scene_location(s, r->from->common.line, place);
+    scene_location(scene, r->from->common.line, place);
     return diag_fail(d, ERR_INPUT,
                      "%s: [reference %s] probe = %.80s: no such column; there are %s%s%s", place,
                      r->from->common.name, r->from->probe, list,
                      near.name ? "; the nearest is " : "", near.name ? near.name : "");
 }
 
-enum err references_open(struct references *r, const struct scene *s, int n,
+enum err references_open(struct references *r, const struct scene *scene, int n,
                          const char *const *header, struct arena *a, struct diag *d)
 {
-    r->n = s->n_reference;
+    r->n = scene->n_reference;
     r->item = arena_alloc(a, (size_t)r->n, sizeof *r->item, "references", d);
     if (!r->item) return ERR_MEMORY;
     for (int k = 0; k < r->n; k++) {
-        r->item[k] = (struct reference){.from = &s->reference[k]};
-        TRY(find_column(&r->item[k], s, n, header, d));
-        if (*s->reference[k].file) TRY(read_file(&r->item[k], s, a, d));
+        r->item[k] = (struct reference){.from = &scene->reference[k]};
+        TRY(find_column(&r->item[k], scene, n, header, d));
+        if (*scene->reference[k].file) TRY(read_file(&r->item[k], scene, a, d));
     }
     return ERR_OK;
 }
@@ -135,8 +135,9 @@ static double at_time(const struct curve *curve, double t)
     return curve->value[k - 1] + fraction * (curve->value[k] - curve->value[k - 1]);
 }
 
-/* The first local extremum within 0.5 % of the largest magnitude, as in python/sphfsi/draw_probes.py. Of an
- * oscillation this is always the same cycle, where round-off would decide which one is the highest. */
+/* The first local extremum within 0.5 % of the largest magnitude, as in
+ * python/sphfsi/draw_probes.py. Of an oscillation this is always the same cycle, where round-off
+ * would decide which one is the highest. */
 static void find_peak(const struct curve *v, double from, double until, double *peak, double *when)
 {
     double top = 0;

@@ -19,8 +19,8 @@ struct references {
     struct reference *item;
 };
 
-/* Deviation of a probe from a reference, in units of the column. A peak is the first local extremum within
- * 2 % of the largest magnitude; NAN: none. */
+/* Deviation of a probe from a reference, in units of the column. A peak is the first local extremum
+ * within 2 % of the largest magnitude; NAN: none. */
 struct score {
     int points;                /* compared; 0: the times of run and reference do not overlap */
     double rms, largest, mean; /* of probe - reference; largest: of its magnitude */
@@ -30,13 +30,15 @@ struct score {
     double scale; /* largest magnitude of the reference */
 };
 
-/* Reads the files of the scene's references, and finds the column of each in the headers of the n files of
- * probes. ERR_INPUT: a file is missing or malformed, or no such column exists. The arena owns the memory. */
-enum err references_open(struct references *r, const struct scene *s, int n,
+/* Reads the files of the scene's references, and finds the column of each in the headers of the n
+ * files of probes. ERR_INPUT: a file is missing or malformed, or no such column exists. The arena
+ * owns the memory. */
+enum err references_open(struct references *r, const struct scene *scene, int n,
                          const char *const *header, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Compares one file of probes with the references to its columns. A reference with several rows is compared
- * at its times, the probe being interpolated linearly; a constant or a formula at the times of the probe. */
+/* Compares one file of probes with the references to its columns. A reference with several rows is
+ * compared at its times, the probe being interpolated linearly; a constant or a formula at the
+ * times of the probe. */
 enum err references_score(const struct references *r, int file, const char *probes_csv,
                           struct score *score, struct diag *d) SPHFSI_CHECKED;
 

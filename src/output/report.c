@@ -27,34 +27,35 @@ static void write_shapes(struct json *j, const char *key, const struct shape_lis
     json_close(j, ']');
 }
 
-static void write_expressions(struct json *j, const struct param *p, const struct scene_expr *value)
+static void write_expressions(struct json *j, const struct param *param,
+                              const struct scene_expr *value)
 {
-    json_open(j, p->key, '[');
-    for (int k = 0; k < p->count; k++)
+    json_open(j, param->key, '[');
+    for (int k = 0; k < param->count; k++)
         if (value->e[k]) json_text(j, NULL, expr_source(value->e[k]));
     json_close(j, ']');
 }
 
-static void write_value(struct json *j, const struct param *p, const void *value)
+static void write_value(struct json *j, const struct param *param, const void *value)
 {
     char name[SCENE_NAME];
-    switch (p->type) {
-    case PARAM_REAL: json_number(j, p->key, *(const double *)value); break;
-    case PARAM_INTEGER: json_integer(j, p->key, *(const int *)value); break;
+    switch (param->type) {
+    case PARAM_REAL: json_number(j, param->key, *(const double *)value); break;
+    case PARAM_INTEGER: json_integer(j, param->key, *(const int *)value); break;
     case PARAM_CHOICE:
-        param_choice_name(p, *(const int *)value, name);
-        json_text(j, p->key, name);
+        param_choice_name(param, *(const int *)value, name);
+        json_text(j, param->key, name);
         break;
-    case PARAM_TEXT: json_text(j, p->key, value); break;
+    case PARAM_TEXT: json_text(j, param->key, value); break;
     case PARAM_VECTOR:
-    case PARAM_TIME_VECTOR: json_numbers(j, p->key, value, 2); break;
+    case PARAM_TIME_VECTOR: json_numbers(j, param->key, value, 2); break;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: write_expressions(j, p, value); break;
-    case PARAM_SHAPES: write_shapes(j, p->key, value); break;
+    case PARAM_FLOW_EXPR: write_expressions(j, param, value); break;
+    case PARAM_SHAPES: write_shapes(j, param->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;
-        json_numbers(j, p->key, list->value, list->n);
+        json_numbers(j, param->key, list->value, list->n);
         break;
     }
     }
@@ -99,29 +100,30 @@ void report_derived(struct json *j, const struct scene *scene)
     json_close(j, '}');
 }
 
-void report_effects(struct json *j, const struct simulation *s)
+void report_effects(struct json *j, const struct simulation *sim)
 {
     json_open(j, "effects", '[');
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (s->effects & EFFECT_BIT(k)) json_text(j, NULL, effect_table[k].name);
+        if (sim->effects & EFFECT_BIT(k)) json_text(j, NULL, effect_table[k].name);
     json_close(j, ']');
     json_open(j, "effects_called_by", '{');
     for (int k = 0; k < EFFECT_COUNT; k++) {
         struct effect_caller by;
         char text[EFFECT_CALLER_TEXT] = "decided at the start";
-        if (!(s->effects & EFFECT_BIT(k))) continue;
-        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        if (!(sim->effects & EFFECT_BIT(k))) continue;
+        if (effect_called(sim->scene, (enum effect)k, &by))
+            effect_caller_text(sim->scene, &by, text);
         json_text(j, effect_table[k].name, text);
     }
     json_close(j, '}');
 }
 
-enum bound report_binding(const struct simulation *s)
+enum bound report_binding(const struct simulation *sim)
 {
     int best = BOUND_COUNT;
     int64_t most = 0;
     for (int k = 0; k < BOUND_COUNT; k++)
-        if (s->state.bound_steps[k] > most) best = k, most = s->state.bound_steps[k];
+        if (sim->state.bound_steps[k] > most) best = k, most = sim->state.bound_steps[k];
     return (enum bound)best;
 }
 
@@ -130,17 +132,17 @@ static void number_if(struct json *j, bool known, const char *name, double value
     json_number(j, name, known ? value : (double)NAN);
 }
 
-static void write_time_step(struct json *j, const struct simulation *s)
+static void write_time_step(struct json *j, const struct simulation *sim)
 {
-    const struct state *st = &s->state;
+    const struct state *st = &sim->state;
     json_open(j, "time_step", '{');
     json_number(j, "last", st->dt);
     number_if(j, st->steps, "smallest", st->dt_min);
     number_if(j, st->steps, "largest", st->dt_max);
     number_if(j, st->steps, "mean", st->time / (double)st->steps);
-    number_if(j, s->dt_solid > 0, "solid", s->dt_solid);
-    json_integer(j, "substeps", s->substeps);
-    const enum bound b = report_binding(s);
+    number_if(j, sim->dt_solid > 0, "solid", sim->dt_solid);
+    json_integer(j, "substeps", sim->substeps);
+    const enum bound b = report_binding(sim);
     json_text(j, "bound", b < BOUND_COUNT ? bound_names[b] : "none");
     json_open(j, "bound_steps", '{');
     for (int k = 0; k < BOUND_COUNT; k++) json_integer(j, bound_names[k], st->bound_steps[k]);
@@ -163,17 +165,17 @@ static double energy(const struct ledger *l)
 }
 
 /* The most that a region has gained by each term of the account (T-46). */
-static void write_gains(struct json *j, const struct simulation *s)
+static void write_gains(struct json *j, const struct simulation *sim)
 {
     static const char *const names[ENERGY_TERMS] = {
         [TERM_FLUID] = "fluid", [TERM_DISSIPATION] = "dissipation", [TERM_INTERFACE] = "interface",
         [TERM_SOLID] = "solid", [TERM_RESTARTS] = "restarts",       [TERM_ALL] = "boundaries",
     };
-    const struct energy_account *const account = &s->state.energy;
+    const struct energy_account *const account = &sim->state.energy;
     const double available = account->largest_available;
-    const bool known = s->effects & FX_ENERGY_ACCOUNT;
-    number_if(j, known, "gain", s->state.gain);
-    number_if(j, known, "gain_over_available_energy", s->state.gain_share);
+    const bool known = sim->effects & FX_ENERGY_ACCOUNT;
+    number_if(j, known, "gain", sim->state.gain);
+    number_if(j, known, "gain_over_available_energy", sim->state.gain_share);
     json_open(j, "gains_by_term", '{');
     for (int t = 0; t < ENERGY_TERMS; t++) {
         json_open(j, names[t], '{');
@@ -186,7 +188,7 @@ static void write_gains(struct json *j, const struct simulation *s)
 
 /* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the
  * changes of the others. */
-static void write_drift(struct json *j, const struct simulation *s, const struct record *r)
+static void write_drift(struct json *j, const struct simulation *sim, const struct record *r)
 {
     const struct ledger *a = &r->first, *b = &r->last;
     const double moved = fabs(b->potential - a->potential) + fabs(b->internal - a->internal) +
@@ -194,10 +196,10 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_open(j, "drift", '{');
     json_number(j, "energy_start", energy(a));
     json_number(j, "energy_end", energy(b));
-    json_number(j, "wall_work", s->state.wall_work);
-    json_number(j, "energy_lost_with_particles", s->state.lost_energy);
+    json_number(j, "wall_work", sim->state.wall_work);
+    json_number(j, "energy_lost_with_particles", sim->state.lost_energy);
     json_number(j, "dissipated", b->dissipated);
-    write_gains(j, s);
+    write_gains(j, sim);
     number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
     json_number(j, "momentum_x", b->momentum_x - a->momentum_x);
     json_number(j, "momentum_y", b->momentum_y - a->momentum_y);
@@ -205,43 +207,43 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_close(j, '}');
 }
 
-static void write_extremes(struct json *j, const struct simulation *s)
+static void write_extremes(struct json *j, const struct simulation *sim)
 {
-    const bool fluid = s->kind[KIND_FLUID].n > 0, solid = s->kind[KIND_SOLID].n > 0;
+    const bool fluid = sim->kind[KIND_FLUID].n > 0, solid = sim->kind[KIND_SOLID].n > 0;
     json_open(j, "extremes", '{');
-    number_if(j, fluid, "density_lowest", s->state.dens_low);
-    number_if(j, fluid, "density_highest", s->state.dens_high);
-    number_if(j, fluid, "speed_highest", s->state.speed_high);
-    number_if(j, solid, "det_F_lowest", s->state.det_low);
+    number_if(j, fluid, "density_lowest", sim->state.dens_low);
+    number_if(j, fluid, "density_highest", sim->state.dens_high);
+    number_if(j, fluid, "speed_highest", sim->state.speed_high);
+    number_if(j, solid, "det_F_lowest", sim->state.det_low);
     json_close(j, '}');
 }
 
-double report_rate(const struct simulation *s, const struct record *r)
+double report_rate(const struct simulation *sim, const struct record *r)
 {
-    const double steps = (double)(s->state.particle_steps - r->start_particle_steps);
+    const double steps = (double)(sim->state.particle_steps - r->start_particle_steps);
     return r->wall_seconds > 0 ? steps / r->wall_seconds : 0;
 }
 
-static void write_cost(struct json *j, const struct simulation *s, const struct record *r)
+static void write_cost(struct json *j, const struct simulation *sim, const struct record *r)
 {
-    json_integer(j, "steps", s->state.steps);
-    json_integer(j, "solid_substeps", s->state.solid_substeps);
+    json_integer(j, "steps", sim->state.steps);
+    json_integer(j, "solid_substeps", sim->state.solid_substeps);
     json_number(j, "wall_seconds", r->wall_seconds);
     json_open(j, "phase_seconds", '{');
     for (int k = 0; k < PHASE_COUNT; k++)
-        if (phase_runs((enum phase)k, s->effects))
-            json_number(j, phase_table[k].name, s->phase_seconds[k]);
+        if (phase_runs((enum phase)k, sim->effects))
+            json_number(j, phase_table[k].name, sim->phase_seconds[k]);
     json_close(j, '}');
-    json_number(j, "particle_steps_per_second", report_rate(s, r));
+    json_number(j, "particle_steps_per_second", report_rate(sim, r));
     json_integer(j, "threads", r->threads);
-    json_integer(j, "memory_bytes", (int64_t)s->arena.bytes);
+    json_integer(j, "memory_bytes", (int64_t)sim->arena.bytes);
 }
 
 /* Mass, momentum and energy that open boundaries have brought in, less what has left through
  * them. */
-static void write_open(struct json *j, const struct simulation *s)
+static void write_open(struct json *j, const struct simulation *sim)
 {
-    const struct open *const o = &s->open;
+    const struct open *const o = &sim->open;
     if (o->n == 0) return;
     json_open(j, "open_boundaries", '{');
     for (int k = 0; k < o->n; k++) {
@@ -249,7 +251,7 @@ static void write_open(struct json *j, const struct simulation *s)
         json_open(j, o->boundary[k].common->name, '{');
         json_integer(j, "particles_made", entered);
         json_integer(j, "particles_ended", left);
-        json_number(j, "mass", s->fluid.k.mass * (double)(entered - left));
+        json_number(j, "mass", sim->fluid.k.mass * (double)(entered - left));
         json_number(j, "momentum_x", o->sum[k][OPEN_MOMENTUM_X]);
         json_number(j, "momentum_y", o->sum[k][OPEN_MOMENTUM_Y]);
         json_number(j, "energy", o->sum[k][OPEN_ENERGY]);
@@ -271,48 +273,48 @@ static void write_counters(struct json *j, const struct state *st)
     json_close(j, '}');
 }
 
-static void write_head(struct json *j, const struct simulation *s, const struct record *r)
+static void write_head(struct json *j, const struct simulation *sim, const struct record *r)
 {
-    json_text(j, "title", s->scene->top.title);
-    json_text(j, "case", s->scene->path);
+    json_text(j, "title", sim->scene->top.title);
+    json_text(j, "case", sim->scene->path);
     json_text(j, "version", r->version);
     json_text(j, "exit_reason", r->exit_reason);
     json_text(j, "message", r->message);
-    json_number(j, "time", s->state.time);
-    json_number(j, "end_time", s->scene->top.end_time);
+    json_number(j, "time", sim->state.time);
+    json_number(j, "end_time", sim->scene->top.end_time);
     json_number(j, "start_time", r->start_time);
     json_text(j, "restarted_from", r->restarted_from);
     json_text(j, "forked_from", r->forked_from);
     json_integer(j, "snapshots_missed", r->snapshots_missed);
 }
 
-enum err report_summary(const char *folder, struct simulation *s, const struct record *r,
+enum err report_summary(const char *folder, struct simulation *sim, const struct record *r,
                         struct diag *d)
 {
     struct atomic_file out;
     TRY(atomic_file_open(&out, folder, "summary.json", d));
     struct json j = {.file = out.file};
     json_open(&j, NULL, '{');
-    write_head(&j, s, r);
+    write_head(&j, sim, r);
     json_open(&j, "particles", '{');
-    for (int k = 0; k < KIND_COUNT; k++) json_integer(&j, kind_names[k], s->kind[k].n);
+    for (int k = 0; k < KIND_COUNT; k++) json_integer(&j, kind_names[k], sim->kind[k].n);
     json_close(&j, '}');
-    json_integer(&j, "fluid_left_domain", s->state.lost);
-    write_cost(&j, s, r);
-    report_effects(&j, s);
-    write_time_step(&j, s);
-    write_extremes(&j, s);
-    write_drift(&j, s, r);
-    write_open(&j, s);
+    json_integer(&j, "fluid_left_domain", sim->state.lost);
+    write_cost(&j, sim, r);
+    report_effects(&j, sim);
+    write_time_step(&j, sim);
+    write_extremes(&j, sim);
+    write_drift(&j, sim, r);
+    write_open(&j, sim);
     write_ledger(&j, "ledger_start", &r->first);
     write_ledger(&j, "ledger_end", &r->last);
-    write_counters(&j, &s->state);
+    write_counters(&j, &sim->state);
     char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(s));
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(sim));
     json_text(&j, "state_hash", hash);
     if (r->score) references_write(&j, r->references, r->score);
-    report_derived(&j, s->scene);
-    report_parameters(&j, s->scene);
+    report_derived(&j, sim->scene);
+    report_parameters(&j, sim->scene);
     json_close(&j, '}');
     return atomic_file_commit(&out, d);
 }

@@ -25,18 +25,19 @@ struct record {
 };
 
 /* Writes summary.json to the folder of the run, atomically. */
-enum err report_summary(const char *folder, struct simulation *s, const struct record *r,
+enum err report_summary(const char *folder, struct simulation *sim, const struct record *r,
                         struct diag *d) SPHFSI_CHECKED;
 
-/* Parts of the summary: every value in effect; effects and the keys that call for them; derived values. */
+/* Parts of the summary: every value in effect; effects and the keys that call for them; derived
+ * values. */
 void report_parameters(struct json *j, const struct scene *scene);
-void report_effects(struct json *j, const struct simulation *s);
+void report_effects(struct json *j, const struct simulation *sim);
 void report_derived(struct json *j, const struct scene *scene);
 
 /* Particle steps (fluid and solid) per second of wall time of this process. */
-double report_rate(const struct simulation *s, const struct record *r);
+double report_rate(const struct simulation *sim, const struct record *r);
 
 /* The bound that limited the most steps; BOUND_COUNT before the first step. */
-enum bound report_binding(const struct simulation *s);
+enum bound report_binding(const struct simulation *sim);
 
 #endif

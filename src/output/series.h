@@ -17,9 +17,9 @@ enum { SERIES_NUMBER = 32, SERIES_MAX_COLUMNS = 256 };
 enum err series_create(struct series *s, const char *folder, const char *name, const char *header,
                        struct diag *d) SPHFSI_CHECKED;
 
-/* Continues a file of an earlier run: keeps the rows up to `time` and drops later and incomplete ones. The
- * header must be the same. `first` (or NULL) receives the values of the first row, `last` the time of the
- * last row kept, or -1. */
+/* Continues a file of an earlier run: keeps the rows up to `time` and drops later and incomplete
+ * ones. The header must be the same. `first` (or NULL) receives the values of the first row, `last`
+ * the time of the last row kept, or -1. */
 enum err series_resume(struct series *s, const char *folder, const char *name, const char *header,
                        double time, double *first, double *last, struct diag *d) SPHFSI_CHECKED;
 
@@ -31,7 +31,8 @@ enum err series_sync(const struct series *s, struct diag *d) SPHFSI_CHECKED;
 
 void series_close(struct series *s);
 
-/* Writes the number with 9 digits, or as many as give back the same bits; "nan" and "inf" as in C. */
+/* Writes the number with 9 digits, or as many as give back the same bits; "nan" and "inf" as in C.
+ */
 int series_number(char text[SERIES_NUMBER], double value);
 
 #endif

@@ -16,12 +16,13 @@ enum { VTK_VERTEX = 1 };
 
 /* --- a snapshot --- */
 
-static int64_t integer_value(enum data what, const struct simulation *s, enum kind kind, int64_t i)
+static int64_t integer_value(enum data what, const struct simulation *sim, enum kind kind,
+                             int64_t i)
 {
     switch (what) {
     case D_KIND: return kind;
-    case D_ID: return s->kind[kind].id[i];
-    case D_BODY: return s->kind[kind].body[i];
+    case D_ID: return sim->kind[kind].id[i];
+    case D_BODY: return sim->kind[kind].body[i];
     default: return VTK_VERTEX;
     }
 }
@@ -69,32 +70,34 @@ static bool append_step_rows(hid_t root, double time, int64_t n, int64_t steps, 
            snapshot_file_append(root, D_IDS_BEFORE, &before);
 }
 
-static int64_t count_points(const struct simulation *s)
+static int64_t count_points(const struct simulation *sim)
 {
     int64_t n = 0;
-    for (int k = 0; k < KIND_COUNT; k++) n += s->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++) n += sim->kind[k].n;
     return n;
 }
 
 /* The most points of any snapshot. */
-static int64_t count_capacity(const struct simulation *s)
+static int64_t count_capacity(const struct simulation *sim)
 {
     int64_t n = 0;
-    for (int k = 0; k < KIND_COUNT; k++) n += s->kind[k].capacity;
+    for (int k = 0; k < KIND_COUNT; k++) n += sim->kind[k].capacity;
     return n;
 }
 
-static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, struct simulation *s)
+static bool append_snapshot(const struct snapshot_layout *layout, hid_t file,
+                            struct simulation *sim)
 {
     int64_t rows[D_COUNT];
-    const int64_t n = count_points(s), steps = snapshot_file_steps(file);
-    /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits below
-     * carry no information, and would take as long to compress as all other fields together. */
-    const double unit = layout->doubles ? 0 : ldexp(1, ilogb(s->scene->top.dp) - 20);
-    const struct source source = {s, unit};
+    const int64_t n = count_points(sim), steps = snapshot_file_steps(file);
+    /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
+     * below carry no information, and would take as long to compress as all other fields together.
+     */
+    const double unit = layout->doubles ? 0 : ldexp(1, ilogb(sim->scene->top.dp) - 20);
+    const struct source source = {sim, unit};
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
     const bool ok = root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
-                    append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]) &&
+                    append_step_rows(root, sim->state.time, n, steps, rows[D_POINTS]) &&
                     snapshot_file_append_points(root, layout, n, values_of, &source);
     H5Gclose(root);
     return ok && snapshot_file_set_steps(file, steps + 1);
@@ -102,8 +105,8 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, st
 
 /* --- files --- */
 
-/* Opens the spare, or creates a new one: if there is none, if it is damaged, or if a reader that opened it
- * under the final name still locks it. */
+/* Opens the spare, or creates a new one: if there is none, if it is damaged, or if a reader that
+ * opened it under the final name still locks it. */
 static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points, hid_t named)
 {
     hid_t file = access(w->spare, F_OK) == 0 ? H5Fopen(w->spare, H5F_ACC_RDWR, H5P_DEFAULT) : -1;
@@ -126,8 +129,8 @@ static int64_t file_bytes(const char *path)
     return stat(path, &info) == 0 ? (int64_t)info.st_size : 0;
 }
 
-/* Reserves the disk space that the spare can need: after a failed write HDF5 crashes at the end of the
- * program. HDF5 truncates the file to its real size when it closes it. */
+/* Reserves the disk space that the spare can need: after a failed write HDF5 crashes at the end of
+ * the program. HDF5 truncates the file to its real size when it closes it. */
 static bool reserve_space(const struct snapshots *w, int64_t points)
 {
 #if _POSIX_ADVISORY_INFO > 0
@@ -143,11 +146,11 @@ static bool reserve_space(const struct snapshots *w, int64_t points)
 #endif
 }
 
-/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they are
- * missing there; then appends a snapshot of `s`, unless that is NULL. */
-static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *s)
+/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they
+ * are missing there; then appends a snapshot of `s`, unless that is NULL. */
+static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *sim)
 {
-    const int64_t points = s ? count_points(s) : 0, most = s ? count_capacity(s) : 0;
+    const int64_t points = sim ? count_points(sim) : 0, most = sim ? count_capacity(sim) : 0;
     struct stat info;
     if (lstat(w->spare, &info) == 0 && !S_ISREG(info.st_mode)) unlink(w->spare);
     if (!reserve_space(w, most)) return false;
@@ -157,15 +160,17 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
     const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points, named) : -1;
     const bool ok = file >= 0 &&
                     (named < 0 || snapshot_file_copy_missing(&w->layout, named, file, steps)) &&
-                    (!s || append_snapshot(&w->layout, file, s));
+                    (!sim || append_snapshot(&w->layout, file, sim));
     if (named >= 0) H5Fclose(named);
     return (file < 0 || H5Fclose(file) >= 0) && ok;
 }
 
-/* HDF5 is seldom built thread-safe: simulations in several threads of a program exclude each other. */
+/* HDF5 is seldom built thread-safe: simulations in several threads of a program exclude each other.
+ */
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-/* Turns off HDF5's own error messages. The setting is global and may be the user's, so it is restored. */
+/* Turns off HDF5's own error messages. The setting is global and may be the user's, so it is
+ * restored. */
 struct quiet {
     H5E_auto2_t report;
     void *context;
@@ -194,8 +199,9 @@ static bool sync_file(const char *path)
     return ok;
 }
 
-/* Swaps the names of both files. The spare is synced before and the folder after the swap, so that a power
- * failure leaves a complete file. On a file system without hard links the old file is deleted. */
+/* Swaps the names of both files. The spare is synced before and the folder after the swap, so that
+ * a power failure leaves a complete file. On a file system without hard links the old file is
+ * deleted. */
 static enum err swap_with_spare(const struct snapshots *w, struct diag *d)
 {
     char old[PATH_BYTES];
@@ -210,11 +216,11 @@ static enum err swap_with_spare(const struct snapshots *w, struct diag *d)
 }
 
 /* Fills the spare and swaps it with the named file. */
-static enum err update(struct snapshots *w, int64_t steps, struct simulation *s, struct diag *d)
+static enum err update(struct snapshots *w, int64_t steps, struct simulation *sim, struct diag *d)
 {
     const struct quiet q = quiet_begin();
     errno = 0;
-    const bool filled = fill_spare(w, steps, s);
+    const bool filled = fill_spare(w, steps, sim);
     const int why = errno;
     quiet_end(q);
     if (!filled) {
@@ -239,8 +245,8 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
     return path_join(w->spare, folder, "fields.vtkhdf.spare", d);
 }
 
-/* Counts the snapshots of the named file, and those up to `time`; `last`: the time of the last of these.
- * errno is ENOMEM if memory is missing. */
+/* Counts the snapshots of the named file, and those up to `time`; `last`: the time of the last of
+ * these. errno is ENOMEM if memory is missing. */
 static bool count_snapshots(const struct snapshots *w, double time, int64_t *all, int64_t *keep,
                             double *last)
 {
@@ -284,10 +290,10 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     return ERR_OK;
 }
 
-enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d)
+enum err snapshots_write(struct snapshots *w, struct simulation *sim, struct diag *d)
 {
-    simulation_refresh(s);
-    return update(w, -1, s, d);
+    simulation_refresh(sim);
+    return update(w, -1, sim, d);
 }
 
 void snapshots_close(struct snapshots *w)

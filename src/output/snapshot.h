@@ -7,8 +7,9 @@
 #include "time/simulation.h"
 #include "output/snapshot_file.h"
 
-/* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the spare
- * file, then the two swap names. The spare is one snapshot older and is brought up to date first. */
+/* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the
+ * spare file, then the two swap names. The spare is one snapshot older and is brought up to date
+ * first. */
 struct snapshots {
     char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;
@@ -16,8 +17,8 @@ struct snapshots {
     const char *version; /* of the program */
 };
 
-/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or
- * -1. */
+/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last
+ * one or -1. */
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, struct diag *d) SPHFSI_CHECKED;
 enum err snapshots_resume(struct snapshots *w, const char *folder, const struct scene *scene,
@@ -25,7 +26,8 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     SPHFSI_CHECKED;
 
 /* Appends a snapshot and waits until it is on the disk. */
-enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err snapshots_write(struct snapshots *w, struct simulation *sim, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Removes the spare. */
 void snapshots_close(struct snapshots *w);

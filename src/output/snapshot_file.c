@@ -10,7 +10,8 @@ enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
 enum item { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
 
-/* The datasets below /VTKHDF. In memory their values are double (floating types) or int64; HDF5 converts. */
+/* The datasets below /VTKHDF. In memory their values are double (floating types) or int64; HDF5
+ * converts. */
 static const struct column {
     const char *name;
     enum growth growth;
@@ -80,8 +81,9 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 
 /* --- one dataset --- */
 
-/* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds POINT_CHUNK_MOST. Chunks
- * that two snapshots share would be compressed twice, so a number of parts that divides the rows is sought.
+/* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds
+ * POINT_CHUNK_MOST. Chunks that two snapshots share would be compressed twice, so a number of parts
+ * that divides the rows is sought.
  */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
@@ -104,8 +106,8 @@ static bool size_of_chunk(hid_t set, hsize_t size[2])
     return ok;
 }
 
-/* Creation properties of a dataset for snapshots of about n points. Each component has its own chunks, since
- * values of one component compress better than interleaved ones. */
+/* Creation properties of a dataset for snapshots of about n points. Each component has its own
+ * chunks, since values of one component compress better than interleaved ones. */
 static hid_t layout_of(const struct snapshot_layout *layout, const struct column *c, int64_t n)
 {
     const hsize_t chunk[2] = {(hsize_t)chunk_rows(c, n), 1};
@@ -118,8 +120,8 @@ static hid_t layout_of(const struct snapshot_layout *layout, const struct column
     return how;
 }
 
-/* Creation properties of the dataset in another file, including filters, so that compressed chunks can be
- * copied. Negative: no such file. */
+/* Creation properties of the dataset in another file, including filters, so that compressed chunks
+ * can be copied. Negative: no such file. */
 static hid_t layout_in(hid_t file, const struct column *c)
 {
     char name[96];
@@ -201,8 +203,8 @@ bool snapshot_file_append(hid_t root, enum data what, void *value)
 
 /* --- rows of points --- */
 
-/* Converts values in place to their type in the file; HDF5 would allocate and clear a buffer for each
- * column. An item is not larger than its value in memory. */
+/* Converts values in place to their type in the file; HDF5 would allocate and clear a buffer for
+ * each column. An item is not larger than its value in memory. */
 static void narrow(char *values, int64_t n, enum item item, bool doubles)
 {
     for (int64_t i = 0; i < n; i++) {
@@ -395,8 +397,8 @@ static bool copy_chunk(hid_t source, hid_t target, hsize_t row, hsize_t column,
            H5Dwrite_chunk(target, H5P_DEFAULT, filters, at, bytes, b->bytes) >= 0;
 }
 
-/* Appends to `target` the rows it lacks of the first `until` of `source`. A chunk that is partly filled in
- * `target` is replaced. */
+/* Appends to `target` the rows it lacks of the first `until` of `source`. A chunk that is partly
+ * filled in `target` is replaced. */
 static bool copy_rows(hid_t source, hid_t target, int64_t width, int64_t until,
                       struct chunk_buffer *b)
 {

@@ -16,8 +16,9 @@ struct snapshot_layout {
 };
 struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
-/* Creates the groups and empty datasets of a new file for snapshots of about n points. Chunks and filters are
- * those of the file `like`, so that its chunks can be copied; negative: no such file. */
+/* Creates the groups and empty datasets of a new file for snapshots of about n points. Chunks and
+ * filters are those of the file `like`, so that its chunks can be copied; negative: no such file.
+ */
 bool snapshot_file_create(hid_t file, const struct scene *scene, const char *version, int64_t n,
                           hid_t like);
 
@@ -32,7 +33,8 @@ bool snapshot_file_set_steps(hid_t file, int64_t n);
 /* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
 bool snapshot_file_append(hid_t root, enum data what, void *value);
 
-/* A callback that writes the n values of a snapshot in one column: double or int64_t (snapshot_file_real). */
+/* A callback that writes the n values of a snapshot in one column: double or int64_t
+ * (snapshot_file_real). */
 typedef void snapshot_values(const void *context, enum data what, int column, int64_t n,
                              void *values);
 

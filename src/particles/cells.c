@@ -16,19 +16,20 @@ enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS };
 /* All threads or one: libgomp would end and restart threads if teams changed in size. */
 static int sort_threads(void) { return thread_count() <= CELLS_SORT_THREADS ? thread_count() : 1; }
 
-static enum err list_create(struct cell_list *list, struct arena *a, const struct cells *c,
-                            const struct particles *p, bool keep_order, struct diag *d)
+static enum err list_create(struct cell_list *list, struct arena *a, const struct cells *cells,
+                            const struct particles *particles, bool keep_order, struct diag *d)
 {
     char what[80];
-    snprintf(what, sizeof what, "cell list of the [domain], %d x %d cells", c->nx, c->ny);
-    const size_t n_cells = (size_t)c->nx * (size_t)c->ny;
+    snprintf(what, sizeof what, "cell list of the [domain], %d x %d cells", cells->nx, cells->ny);
+    const size_t n_cells = (size_t)cells->nx * (size_t)cells->ny;
     list->start = arena_alloc(a, n_cells, sizeof *list->start, what, d);
     list->count = arena_alloc(a, n_cells, sizeof *list->count, what, d);
     list->cluster = arena_alloc(a, n_cells, sizeof *list->cluster, what, d);
-    list->active = arena_alloc(a, (size_t)p->capacity, sizeof *list->active, "cell list", d);
+    list->active =
+        arena_alloc(a, (size_t)particles->capacity, sizeof *list->active, "cell list", d);
     if (!list->start || !list->count || !list->cluster || !list->active) return ERR_MEMORY;
     if (!keep_order) return ERR_OK;
-    list->order = arena_alloc(a, (size_t)p->capacity, sizeof *list->order, "cell list", d);
+    list->order = arena_alloc(a, (size_t)particles->capacity, sizeof *list->order, "cell list", d);
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
@@ -37,15 +38,15 @@ static enum err list_create(struct cell_list *list, struct arena *a, const struc
 #define SIDE 1.6
 #define LEAST_SIDE 1.05
 
-enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
+enum err cells_create(struct cells *cells, struct arena *a, const double lower[2],
                       const double upper[2], double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d)
 {
-    memset(c, 0, sizeof *c);
-    c->skin = skin;
+    memset(cells, 0, sizeof *cells);
+    cells->skin = skin;
     double n[2];
     for (int k = 0; k < 2; k++) {
-        c->lower[k] = lower[k];
+        cells->lower[k] = lower[k];
         const double width = upper[k] - lower[k], wide = floor(width / (SIDE * reach)),
                      narrow = floor(width / (LEAST_SIDE * reach));
         n[k] = max2(1, max2(wide, min2(3, narrow)));
@@ -55,61 +56,65 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                 "the domain is %.6g m in %c, more than %d cells of %.3g m; make [domain] "
                 "smaller or dp larger",
                 upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
-        c->side[k] = (upper[k] - lower[k]) / n[k];
-        c->skin = min2(c->skin, max2(0, 0.5 * (c->side[k] - reach)));
+        cells->side[k] = (upper[k] - lower[k]) / n[k];
+        cells->skin = min2(cells->skin, max2(0, 0.5 * (cells->side[k] - reach)));
     }
-    c->nx = (int)n[0];
-    c->ny = (int)n[1];
+    cells->nx = (int)n[0];
+    cells->ny = (int)n[1];
     if (n[0] * n[1] > INT32_MAX)
         return diag_fail(d, ERR_INPUT,
                          "the domain has %d x %d cells, more than %d; make [domain] smaller or dp "
                          "larger",
-                         c->nx, c->ny, INT32_MAX);
+                         cells->nx, cells->ny, INT32_MAX);
 
     int64_t most = 0;
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         if (kinds[k].capacity > most) most = kinds[k].capacity;
-        TRY(list_create(&c->kind[k], a, c, &kinds[k], k != KIND_FLUID, d));
+        TRY(list_create(&cells->kind[k], a, cells, &kinds[k], k != KIND_FLUID, d));
     }
-    c->pair_a = arena_alloc(a, (size_t)most, sizeof *c->pair_a, "sorting", d);
-    c->pair_b = arena_alloc(a, (size_t)most, sizeof *c->pair_b, "sorting", d);
-    c->permutation = arena_alloc(a, (size_t)most, sizeof *c->permutation, "sorting", d);
-    c->scratch = arena_alloc(a, (size_t)most, 8, "sorting", d);
-    c->sort_threads = sort_threads();
-    c->histogram = arena_alloc(a, (size_t)c->sort_threads, sizeof *c->histogram, "sorting", d);
-    return c->pair_a && c->pair_b && c->permutation && c->scratch && c->histogram ? ERR_OK
-                                                                                  : ERR_MEMORY;
+    cells->pair_a = arena_alloc(a, (size_t)most, sizeof *cells->pair_a, "sorting", d);
+    cells->pair_b = arena_alloc(a, (size_t)most, sizeof *cells->pair_b, "sorting", d);
+    cells->permutation = arena_alloc(a, (size_t)most, sizeof *cells->permutation, "sorting", d);
+    cells->scratch = arena_alloc(a, (size_t)most, 8, "sorting", d);
+    cells->sort_threads = sort_threads();
+    cells->histogram =
+        arena_alloc(a, (size_t)cells->sort_threads, sizeof *cells->histogram, "sorting", d);
+    return cells->pair_a && cells->pair_b && cells->permutation && cells->scratch &&
+                   cells->histogram
+               ? ERR_OK
+               : ERR_MEMORY;
 }
 
-enum err cells_make_periodic(struct cells *c, int axis, double reach, struct diag *d)
+enum err cells_make_periodic(struct cells *cells, int axis, double reach, struct diag *d)
 {
-    const int n = axis ? c->ny : c->nx;
+    const int n = axis ? cells->ny : cells->nx;
     if (n < 3)
         return diag_fail(
             d, ERR_INPUT,
             "[domain] is periodic in %c and only %.6g m wide there; at least %.6g m is "
             "needed, so that no particle interacts twice with another",
-            "xy"[axis], n * c -> side[axis], 3 * LEAST_SIDE * reach);
-    c->periodic[axis] = true;
+            "xy"[axis], n * cells -> side[axis], 3 * LEAST_SIDE * reach);
+    cells->periodic[axis] = true;
     return ERR_OK;
 }
 
 /* Coordinate along an axis in units of cells, wrapped if the axis is periodic. */
-static double cells_along(const struct cells *c, int axis, double x)
+static double cells_along(const struct cells *cells, int axis, double x)
 {
-    double at = (x - c->lower[axis]) / c->side[axis];
-    if (!c->periodic[axis]) return at;
-    const double n = axis ? c->ny : c->nx;
+    double at = (x - cells->lower[axis]) / cells->side[axis];
+    if (!cells->periodic[axis]) return at;
+    const double n = axis ? cells->ny : cells->nx;
     at -= n * floor(at / n);
     return at < n ? at : 0; /* just below the lower side rounding gives n */
 }
 
 /* Wraps coordinates into the periodic domain; returns the number of crossings of the upper side,
  * less those of the lower. */
-static int64_t wrap_positions(const struct cells *c, int axis, double *x, int64_t n)
+static int64_t wrap_positions(const struct cells *cells, int axis, double *x, int64_t n)
 {
-    const double lower = c->lower[axis], period = c->side[axis] * (axis ? c->ny : c->nx);
+    const double lower = cells->lower[axis],
+                 period = cells->side[axis] * (axis ? cells->ny : cells->nx);
     int64_t crossings = 0;
 #pragma omp parallel for schedule(static) reduction(+ : crossings)
     for (int64_t k = 0; k < n; k++) {
@@ -122,24 +127,24 @@ static int64_t wrap_positions(const struct cells *c, int axis, double *x, int64_
     return crossings;
 }
 
-static int32_t cell_of(const struct cells *c, double x, double y)
+static int32_t cell_of(const struct cells *cells, double x, double y)
 {
-    const double fx = cells_along(c, 0, x), fy = cells_along(c, 1, y);
-    if (!(fx >= 0 && fx < c->nx && fy >= 0 && fy < c->ny)) return OUTSIDE;
-    return (int32_t)fy * c->nx + (int32_t)fx;
+    const double fx = cells_along(cells, 0, x), fy = cells_along(cells, 1, y);
+    if (!(fx >= 0 && fx < cells->nx && fy >= 0 && fy < cells->ny)) return OUTSIDE;
+    return (int32_t)fy * cells->nx + (int32_t)fx;
 }
 
-static uint32_t key_of(const struct cells *c, int32_t cell)
+static uint32_t key_of(const struct cells *cells, int32_t cell)
 {
     if (cell == OUTSIDE) return OUTSIDE_KEY;
-    return morton_key((uint32_t)cell_x(c, cell), (uint32_t)cell_y(c, cell));
+    return morton_key((uint32_t)cell_x(cells, cell), (uint32_t)cell_y(cells, cell));
 }
 
 /* Significant bits of the keys in use, and one more so that OUTSIDE_KEY stays last. */
-static int key_bits(const struct cells *c)
+static int key_bits(const struct cells *cells)
 {
     int bits = 1;
-    while ((1 << bits) < c->nx || (1 << bits) < c->ny) bits++;
+    while ((1 << bits) < cells->nx || (1 << bits) < cells->ny) bits++;
     return 2 * bits + 1;
 }
 
@@ -170,17 +175,17 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
 
 /* Sorts c->pair_a by key and then into clusters; returns the sorted array, c->pair_a or
  * c->pair_b. The result does not depend on the number of threads. */
-static const uint64_t *sort_pairs(struct cells *c, int64_t n, const struct particles *p)
+static const uint64_t *sort_pairs(struct cells *cells, int64_t n, const struct particles *particles)
 {
-    const int threads = c->sort_threads < sort_threads() ? c->sort_threads : sort_threads();
-    uint64_t *from = c->pair_a, *to = c->pair_b;
-    for (int shift = 32; shift < 32 + key_bits(c); shift += DIGIT_BITS) {
-        radix_pass(from, to, n, shift, c->histogram, threads);
+    const int threads = cells->sort_threads < sort_threads() ? cells->sort_threads : sort_threads();
+    uint64_t *from = cells->pair_a, *to = cells->pair_b;
+    for (int shift = 32; shift < 32 + key_bits(cells); shift += DIGIT_BITS) {
+        radix_pass(from, to, n, shift, cells->histogram, threads);
         uint64_t *const swap = from;
         from = to;
         to = swap;
     }
-    cells_order(from, n, p, threads);
+    cells_order(from, n, particles, threads);
     return from;
 }
 
@@ -245,57 +250,61 @@ static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 }
 
 /* Whether the list holds each particle inside the grid once, by cells in Morton order. */
-__attribute__((unused)) static bool
-list_is_sound(const struct cells *c, const struct cell_list *list, const struct particles *p)
+__attribute__((unused)) static bool list_is_sound(const struct cells *cells,
+                                                  const struct cell_list *list,
+                                                  const struct particles *particles)
 {
     int64_t k = 0;
     int32_t cluster = 0;
     for (int32_t m = 0; m < list->n_active; m++) {
         const int32_t cell = list->active[m];
-        if (m > 0 && key_of(c, list->active[m - 1]) >= key_of(c, cell)) return false;
+        if (m > 0 && key_of(cells, list->active[m - 1]) >= key_of(cells, cell)) return false;
         if (list->count[cell] < 1 || list->start[cell] != k || list->cluster[cell] != cluster)
             return false;
         for (const int64_t end = k + list->count[cell]; k < end; k++)
-            if (kth_cell(list, p->cell, p->n, k) != cell) return false;
+            if (kth_cell(list, particles->cell, particles->n, k) != cell) return false;
         cluster += clusters_in(list, cell);
     }
-    return kth_cell(list, p->cell, p->n, k) == OUTSIDE;
+    return kth_cell(list, particles->cell, particles->n, k) == OUTSIDE;
 }
 
-int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
+int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *particles)
 {
-    struct cell_list *list = &c->kind[kind];
-    const int64_t n = p->n;
+    struct cell_list *list = &cells->kind[kind];
+    const int64_t n = particles->n;
     if (n == 0) return 0;
     for (int axis = 0; axis < 2 && kind == KIND_FLUID; axis++)
-        c->crossings[axis] = c->periodic[axis] ? wrap_positions(c, axis, axis ? p->y : p->x, n) : 0;
+        cells->crossings[axis] =
+            cells->periodic[axis]
+                ? wrap_positions(cells, axis, axis ? particles->y : particles->x, n)
+                : 0;
     int64_t outside = 0;
 #pragma omp parallel for schedule(static) reduction(+ : outside)
     for (int64_t k = 0; k < n; k++) {
-        p->cell[k] = cell_of(c, p->x[k], p->y[k]);
-        c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
-        outside += p->cell[k] == OUTSIDE;
+        particles->cell[k] = cell_of(cells, particles->x[k], particles->y[k]);
+        cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
+        outside += particles->cell[k] == OUTSIDE;
     }
-    const uint64_t *const sorted = sort_pairs(c, n, p);
-    int32_t *const order = list->order ? list->order : c->permutation;
+    const uint64_t *const sorted = sort_pairs(cells, n, particles);
+    int32_t *const order = list->order ? list->order : cells->permutation;
 #pragma omp parallel for schedule(static)
     for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
-    if (!list->order) particles_permute(p, order, n, c->scratch);
-    list_fill(list, p->cell, n);
-    ASSERT(list_is_sound(c, list, p));
-    cells_measure_overhang(c, kind, p);
+    if (!list->order) particles_permute(particles, order, n, cells->scratch);
+    list_fill(list, particles->cell, n);
+    ASSERT(list_is_sound(cells, list, particles));
+    cells_measure_overhang(cells, kind, particles);
     return outside;
 }
 
-void cells_rebuild(struct cells *c, enum kind kind, struct particles *p)
+void cells_rebuild(struct cells *cells, enum kind kind, struct particles *particles)
 {
-    struct cell_list *list = &c->kind[kind];
+    struct cell_list *list = &cells->kind[kind];
     if (list->order) {
-        for (int64_t k = 0; k < p->n; k++)
-            c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
-        const uint64_t *const sorted = sort_pairs(c, p->n, p);
-        for (int64_t k = 0; k < p->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
+        for (int64_t k = 0; k < particles->n; k++)
+            cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
+        const uint64_t *const sorted = sort_pairs(cells, particles->n, particles);
+        for (int64_t k = 0; k < particles->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
-    list_fill(list, p->cell, p->n);
-    cells_measure_overhang(c, kind, p);
+    list_fill(list, particles->cell, particles->n);
+    cells_measure_overhang(cells, kind, particles);
 }

@@ -51,60 +51,60 @@ struct cells {
 
 /* Creates the grid over [lower, upper) for interactions within `reach`, and allocates lists for the
  * capacities of the kinds. `skin` is reduced where the domain is too narrow for it. */
-enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
+enum err cells_create(struct cells *cells, struct arena *a, const double lower[2],
                       const double upper[2], double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
 
 /* Makes an axis periodic. It needs three cells, so that no two cells are neighbours twice. */
-enum err cells_make_periodic(struct cells *c, int axis, double reach, struct diag *d)
+enum err cells_make_periodic(struct cells *cells, int axis, double reach, struct diag *d)
     SPHFSI_CHECKED;
 
 /* Sorts the particles of one kind by the Morton key of their cell, then into clusters of close
  * particles (particles/cells_order.c), and builds the cell list. Fluid is permuted in memory.
  * Returns the number of particles outside the grid (or at a non-finite position): they come
  * last, by id, in no cell, and p->n still counts them. */
-int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p);
+int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *particles);
 
 /* Builds the cell list of particles that are already sorted, from their `cell` fields (restart). */
-void cells_rebuild(struct cells *c, enum kind kind, struct particles *p);
+void cells_rebuild(struct cells *cells, enum kind kind, struct particles *particles);
 
 /* Orders the particles of each cell into clusters. `pair` holds (Morton key, particle), sorted
  * by key. */
-void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads);
+void cells_order(uint64_t *pair, int64_t n, const struct particles *particles, int threads);
 
 /* Measures the present overhang of a kind. */
-void cells_measure_overhang(struct cells *c, enum kind kind, const struct particles *p);
+void cells_measure_overhang(struct cells *cells, enum kind kind, const struct particles *particles);
 
 /* How far, m, a fluid particle and another may move, both together, from where they were
  * measured, until they can come within `reach` without being in neighbouring cells. 0 or less:
  * sort now. */
-double cells_skin_left(const struct cells *c, double reach);
+double cells_skin_left(const struct cells *cells, double reach);
 
-SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
-SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }
+SPHFSI_INLINE int cell_x(const struct cells *cells, int32_t cell) { return cell % cells->nx; }
+SPHFSI_INLINE int cell_y(const struct cells *cells, int32_t cell) { return cell / cells->nx; }
 
 /* A column (axis 0) or row, up to one step outside the grid, wrapped if periodic; -1: none. */
-SPHFSI_INLINE int cells_wrap(const struct cells *c, int axis, int index)
+SPHFSI_INLINE int cells_wrap(const struct cells *cells, int axis, int index)
 {
-    const int n = axis ? c->ny : c->nx;
+    const int n = axis ? cells->ny : cells->nx;
     ASSERT(index >= -1 && index <= n);
     if (index >= 0 && index < n) return index;
-    if (!c->periodic[axis]) return -1;
+    if (!cells->periodic[axis]) return -1;
     return index < 0 ? index + n : index - n;
 }
 
 /* The cell at (cx, cy), up to one step outside the grid; -1: none. */
-SPHFSI_INLINE int32_t cell_at(const struct cells *c, int cx, int cy)
+SPHFSI_INLINE int32_t cell_at(const struct cells *cells, int cx, int cy)
 {
-    const int x = cells_wrap(c, 0, cx), y = cells_wrap(c, 1, cy);
-    return x < 0 || y < 0 ? -1 : y * c->nx + x;
+    const int x = cells_wrap(cells, 0, cx), y = cells_wrap(cells, 1, cy);
+    return x < 0 || y < 0 ? -1 : y * cells->nx + x;
 }
 
 /* Most clusters of one kind that n particles can fill. */
-SPHFSI_INLINE int64_t cells_clusters(const struct cells *c, int64_t n)
+SPHFSI_INLINE int64_t cells_clusters(const struct cells *cells, int64_t n)
 {
-    const int64_t cells = (int64_t)c->nx * c->ny;
-    return n / CLUSTER + (n < cells ? n : cells);
+    const int64_t most = (int64_t)cells->nx * cells->ny;
+    return n / CLUSTER + (n < most ? n : most);
 }
 
 /* Clusters of one kind in a cell; the last one may be partly filled. */
@@ -114,29 +114,31 @@ SPHFSI_INLINE int32_t clusters_in(const struct cell_list *list, int32_t cell)
 }
 
 /* Minimum image: the smallest difference of positions along an axis, if it is periodic. */
-SPHFSI_INLINE double cells_minimum_image(const struct cells *c, int axis, double difference)
+SPHFSI_INLINE double cells_minimum_image(const struct cells *cells, int axis, double difference)
 {
-    if (!c->periodic[axis]) return difference;
-    const double period = c->side[axis] * (axis ? c->ny : c->nx);
+    if (!cells->periodic[axis]) return difference;
+    const double period = cells->side[axis] * (axis ? cells->ny : cells->nx);
     return difference - period * __builtin_floor(difference / period + 0.5);
 }
 
 /* Centre of a cell. */
-SPHFSI_INLINE double cell_centre_x(const struct cells *c, int32_t cell)
+SPHFSI_INLINE double cell_centre_x(const struct cells *cells, int32_t cell)
 {
-    return c->lower[0] + ((double)cell_x(c, cell) + 0.5) * c->side[0];
+    return cells->lower[0] + ((double)cell_x(cells, cell) + 0.5) * cells->side[0];
 }
-SPHFSI_INLINE double cell_centre_y(const struct cells *c, int32_t cell)
+SPHFSI_INLINE double cell_centre_y(const struct cells *cells, int32_t cell)
 {
-    return c->lower[1] + ((double)cell_y(c, cell) + 0.5) * c->side[1];
+    return cells->lower[1] + ((double)cell_y(cells, cell) + 0.5) * cells->side[1];
 }
 
 /* Whether a position is at most half a side outside a cell; no particle moves further between
  * sorts. */
-SPHFSI_INLINE bool cells_is_near(const struct cells *c, int32_t cell, double x, double y)
+SPHFSI_INLINE bool cells_is_near(const struct cells *cells, int32_t cell, double x, double y)
 {
-    const double dx = cells_minimum_image(c, 0, x - cell_centre_x(c, cell)) / c->side[0],
-                 dy = cells_minimum_image(c, 1, y - cell_centre_y(c, cell)) / c->side[1];
+    const double dx =
+                     cells_minimum_image(cells, 0, x - cell_centre_x(cells, cell)) / cells->side[0],
+                 dy =
+                     cells_minimum_image(cells, 1, y - cell_centre_y(cells, cell)) / cells->side[1];
     return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
@@ -145,27 +147,27 @@ typedef void cells_visitor(void *context, int64_t i, double x, double y, double 
 
 /* Visits the particles p of a kind that are nearer to a point than `distance`, although they may
  * have moved by the skin since they were sorted. */
-SPHFSI_INLINE void cells_each_near(const struct cells *c, enum kind kind, const struct particles *p,
-                                   const double at[2], double distance, cells_visitor *visit,
-                                   void *context)
+SPHFSI_INLINE void cells_each_near(const struct cells *cells, enum kind kind,
+                                   const struct particles *particles, const double at[2],
+                                   double distance, cells_visitor *visit, void *context)
 {
-    const struct cell_list *const list = &c->kind[kind];
+    const struct cell_list *const list = &cells->kind[kind];
     int first[2], n[2];
     for (int axis = 0; axis < 2; axis++) {
-        const int cells = axis ? c->ny : c->nx;
-        const double place = (at[axis] - c->lower[axis]) / c->side[axis],
-                     part = (distance + c->skin) / c->side[axis];
-        first[axis] = (int)max2(-1, min2(cells, __builtin_floor(place - part)));
-        n[axis] = (int)max2(-1, min2(cells, __builtin_floor(place + part))) - first[axis] + 1;
-        if (c->periodic[axis] && n[axis] > cells) n[axis] = cells;
+        const int count = axis ? cells->ny : cells->nx;
+        const double place = (at[axis] - cells->lower[axis]) / cells->side[axis],
+                     part = (distance + cells->skin) / cells->side[axis];
+        first[axis] = (int)max2(-1, min2(count, __builtin_floor(place - part)));
+        n[axis] = (int)max2(-1, min2(count, __builtin_floor(place + part))) - first[axis] + 1;
+        if (cells->periodic[axis] && n[axis] > count) n[axis] = count;
     }
     for (int m = 0; m < n[0] * n[1]; m++) {
-        const int32_t cell = cell_at(c, first[0] + m % n[0], first[1] + m / n[0]);
+        const int32_t cell = cell_at(cells, first[0] + m % n[0], first[1] + m / n[0]);
         if (cell < 0) continue;
         for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
             const int64_t i = list->order ? list->order[k] : k;
-            const double x = cells_minimum_image(c, 0, p->x[i] - at[0]);
-            const double y = cells_minimum_image(c, 1, p->y[i] - at[1]);
+            const double x = cells_minimum_image(cells, 0, particles->x[i] - at[0]);
+            const double y = cells_minimum_image(cells, 1, particles->y[i] - at[1]);
             const double r2 = square(x) + square(y);
             if (r2 < square(distance)) visit(context, i, x, y, __builtin_sqrt(r2));
         }

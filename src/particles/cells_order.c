@@ -79,20 +79,23 @@ static void split(const struct points *s, uint16_t *point, int n)
 }
 
 /* Orders the n particles of one cell. */
-static void order_cell(uint64_t *pair, int n, const struct particles *p)
+static void order_cell(uint64_t *pair, int n, const struct particles *particles)
 {
     struct points s;
     uint16_t point[CELL_CAPACITY];
     uint32_t particle[CELL_CAPACITY];
-    const double *const x = p->X ? p->X : p->x, *const y = p->Y ? p->Y : p->y;
+    const double *const x = particles->X ? particles->X : particles->x, *const y =
+                                                                            particles->Y
+                                                                                ? particles->Y
+                                                                                : particles->y;
     ASSERT(n <= CELL_CAPACITY);
     if (n <= CLUSTER) return;
     for (int k = 0; k < n; k++) {
         const uint32_t i = (uint32_t)pair[k];
-        ASSERT(i < p->n);
+        ASSERT(i < particles->n);
         s.key[0][k] = key_of(s.at[0][k] = x[i]);
         s.key[1][k] = key_of(s.at[1][k] = y[i]);
-        s.id[k] = p->id[i];
+        s.id[k] = particles->id[i];
         particle[k] = i;
         point[k] = (uint16_t)k;
     }
@@ -122,7 +125,7 @@ static int64_t end_of_cell(const uint64_t *pair, int64_t n, int64_t k)
 
 /* Each thread orders whole cells. Where its range starts is found first, since ordering changes
  * `pair`. */
-void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads)
+void cells_order(uint64_t *pair, int64_t n, const struct particles *particles, int threads)
 {
     int64_t first[CELLS_SORT_THREADS + 1] = {0};
     for (int t = 1; t <= threads; t++) {
@@ -134,9 +137,9 @@ void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threa
         for (int64_t k = first[t], end; k < first[t + 1]; k = end) {
             end = end_of_cell(pair, first[t + 1], k);
             if (pair[k] >> 32 == UINT32_MAX || end - k > CELL_CAPACITY)
-                order_by_id(&pair[k], end - k, p->id);
+                order_by_id(&pair[k], end - k, particles->id);
             else
-                order_cell(&pair[k], (int)(end - k), p);
+                order_cell(&pair[k], (int)(end - k), particles);
         }
     }
 }

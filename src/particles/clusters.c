@@ -24,16 +24,17 @@ struct cell_code {
 };
 
 /* The cells of the 3 x 3 around `cell` that hold particles. */
-SPHFSI_INLINE int cells_around(struct cell_code code[9], const struct cells *c,
+SPHFSI_INLINE int cells_around(struct cell_code code[9], const struct cells *cells,
                                const struct cell_list *list, int32_t cell)
 {
-    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
     int columns[3], n = 0;
-    for (int column = 0; column < 3; column++) columns[column] = cells_wrap(c, 0, cx + column - 1);
+    for (int column = 0; column < 3; column++)
+        columns[column] = cells_wrap(cells, 0, cx + column - 1);
     for (int row = 0; row < 3; row++) {
-        const int y = cells_wrap(c, 1, cy + row - 1);
+        const int y = cells_wrap(cells, 1, cy + row - 1);
         for (int column = 0; column < 3 && y >= 0; column++) {
-            const int32_t other = y * c->nx + columns[column];
+            const int32_t other = y * cells->nx + columns[column];
             if (columns[column] < 0 || list->count[other] == 0) continue;
             code[n++] = (struct cell_code){other, column, row};
         }
@@ -46,9 +47,9 @@ struct sides {
     float x, y;
 };
 
-SPHFSI_INLINE struct sides sides_of(const struct cells *c, double h)
+SPHFSI_INLINE struct sides sides_of(const struct cells *cells, double h)
 {
-    return (struct sides){(float)(c->side[0] / h), (float)(c->side[1] / h)};
+    return (struct sides){(float)(cells->side[0] / h), (float)(cells->side[1] / h)};
 }
 
 /* Appends the clusters of a cell; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a
@@ -80,26 +81,26 @@ SPHFSI_INLINE void pad_boxes(struct neighbour_clusters *s)
 }
 
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
-                                const struct cells *c, enum kind kind, int32_t cell, double h)
+                                const struct cells *cells, enum kind kind, int32_t cell, double h)
 {
-    const struct cell_list *const list = &c->kind[kind];
-    const struct sides sides = sides_of(c, h);
+    const struct cell_list *const list = &cells->kind[kind];
+    const struct sides sides = sides_of(cells, h);
     struct cell_code code[9];
-    const int n = cells_around(code, c, list, cell);
+    const int n = cells_around(code, cells, list, cell);
     s->n = 0;
     for (int k = 0; k < n; k++) append(s, boxes, list, sides, code[k], 0);
     pad_boxes(s);
 }
 
 void neighbour_clusters_collect_half(struct neighbour_clusters *s,
-                                     const struct cluster_boxes *boxes, const struct cells *c,
+                                     const struct cluster_boxes *boxes, const struct cells *cells,
                                      enum kind kind, int32_t cell, double h,
                                      struct cluster_range range)
 {
-    const struct cell_list *const list = &c->kind[kind];
-    const struct sides sides = sides_of(c, h);
+    const struct cell_list *const list = &cells->kind[kind];
+    const struct sides sides = sides_of(cells, h);
     struct cell_code code[9];
-    const int n = cells_around(code, c, list, cell);
+    const int n = cells_around(code, cells, list, cell);
     s->n = 0;
     for (int k = 0; k < n; k++) {
         const int32_t first = list->cluster[code[k].cell];

@@ -70,7 +70,7 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
 
 /* Collects the clusters of the 3 x 3 cells around `cell`. */
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
-                                const struct cells *c, enum kind kind, int32_t cell, double h);
+                                const struct cells *cells, enum kind kind, int32_t cell, double h);
 
 /* Lists the collected clusters within reach (2h) of the box of `cluster`. */
 void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
@@ -81,7 +81,7 @@ void cluster_list_build(struct cluster_list *near, const struct neighbour_cluste
  * without the flag. After collecting, each call of cluster_list_build_half serves the next
  * cluster of the cell, the last one first: first itself (no flag), then its neighbours. */
 void neighbour_clusters_collect_half(struct neighbour_clusters *s,
-                                     const struct cluster_boxes *boxes, const struct cells *c,
+                                     const struct cluster_boxes *boxes, const struct cells *cells,
                                      enum kind kind, int32_t cell, double h,
                                      struct cluster_range range);
 void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,

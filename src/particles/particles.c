@@ -20,24 +20,24 @@ const struct field_info field_table[] = {
 };
 const int field_count = COUNT_OF(field_table);
 
-void *field_array(const struct particles *p, const struct field_info *f)
+void *field_array(const struct particles *particles, const struct field_info *f)
 {
-    return *(void *const *)(const void *)((const unsigned char *)p + f->offset);
+    return *(void *const *)(const void *)((const unsigned char *)particles + f->offset);
 }
 
-enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
-                          const char *what, struct diag *d)
+enum err particles_create(struct particles *particles, struct arena *a, int64_t capacity,
+                          unsigned groups, const char *what, struct diag *d)
 {
-    memset(p, 0, sizeof *p);
-    p->capacity = capacity;
-    p->groups = groups;
+    memset(particles, 0, sizeof *particles);
+    particles->capacity = capacity;
+    particles->groups = groups;
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         if (!(f->group & groups)) continue;
         void *memory = arena_alloc(a, (size_t)capacity, f->size, what, d);
         if (!memory) return ERR_MEMORY;
         ASSERT((uintptr_t)memory % ARENA_ALIGN == 0);
-        memcpy((unsigned char *)p + f->offset, &memory, sizeof memory);
+        memcpy((unsigned char *)particles + f->offset, &memory, sizeof memory);
     }
     return ERR_OK;
 }
@@ -62,12 +62,12 @@ static void permute_4(bits32 *values, const int32_t *order, int64_t n, bits32 *s
     for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
 }
 
-void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch)
+void particles_permute(struct particles *particles, const int32_t *order, int64_t n, void *scratch)
 {
-    ASSERT(n <= p->n && p->n <= p->capacity);
+    ASSERT(n <= particles->n && particles->n <= particles->capacity);
     for (int64_t k = 0; k < n; k++) ASSERT(order[k] >= 0 && order[k] < n);
     for (int k = 0; k < field_count; k++) {
-        void *values = field_array(p, &field_table[k]);
+        void *values = field_array(particles, &field_table[k]);
         if (!values || field_table[k].keep != KEEP_STATE) continue;
         if (field_table[k].size == 8)
             permute_8(values, order, n, scratch);
@@ -76,31 +76,32 @@ void particles_permute(struct particles *p, const int32_t *order, int64_t n, voi
     }
 }
 
-void particles_copy(struct particles *p, int64_t from, int64_t to)
+void particles_copy(struct particles *particles, int64_t from, int64_t to)
 {
     for (int k = 0; k < field_count; k++) {
-        unsigned char *const values = field_array(p, &field_table[k]);
+        unsigned char *const values = field_array(particles, &field_table[k]);
         const size_t size = field_table[k].size;
         if (!values || field_table[k].keep != KEEP_STATE) continue;
         memcpy(values + (size_t)to * size, values + (size_t)from * size, size);
     }
 }
 
-uint64_t particles_hash(const struct particles *p, uint64_t seed)
+uint64_t particles_hash(const struct particles *particles, uint64_t seed)
 {
     uint64_t h = seed;
     for (int k = 0; k < field_count; k++) {
-        const void *values = field_array(p, &field_table[k]);
+        const void *values = field_array(particles, &field_table[k]);
         if (values && field_table[k].keep == KEEP_STATE)
-            h = hash_bytes(h, values, (size_t)p->n * field_table[k].size);
+            h = hash_bytes(h, values, (size_t)particles->n * field_table[k].size);
     }
     return h;
 }
 
-size_t particles_bytes(const struct particles *p)
+size_t particles_bytes(const struct particles *particles)
 {
     size_t bytes = 0;
     for (int k = 0; k < field_count; k++)
-        if (field_array(p, &field_table[k])) bytes += (size_t)p->capacity * field_table[k].size;
+        if (field_array(particles, &field_table[k]))
+            bytes += (size_t)particles->capacity * field_table[k].size;
     return bytes;
 }

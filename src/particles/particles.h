@@ -49,23 +49,23 @@ extern const struct field_info field_table[];
 extern const int field_count;
 
 /* The array of a field, or NULL while its group is off. */
-void *field_array(const struct particles *p, const struct field_info *f);
+void *field_array(const struct particles *particles, const struct field_info *f);
 
 /* Allocates the arrays of the named groups for `capacity` particles. */
-enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
-                          const char *what, struct diag *d) SPHFSI_CHECKED;
+enum err particles_create(struct particles *particles, struct arena *a, int64_t capacity,
+                          unsigned groups, const char *what, struct diag *d) SPHFSI_CHECKED;
 
 /* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
-void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch);
+void particles_permute(struct particles *particles, const int32_t *order, int64_t n, void *scratch);
 
 /* Copies every active STATE field of one particle. */
-void particles_copy(struct particles *p, int64_t from, int64_t to);
+void particles_copy(struct particles *particles, int64_t from, int64_t to);
 
 /* Hash of every STATE field, in array order, continued from `seed` (base/hash.h). */
-uint64_t particles_hash(const struct particles *p, uint64_t seed);
+uint64_t particles_hash(const struct particles *particles, uint64_t seed);
 
 /* Bytes of all arrays of p. */
-size_t particles_bytes(const struct particles *p);
+size_t particles_bytes(const struct particles *particles);
 
 /* Sets a field of n particles to zero; NULL: there is none. */
 SPHFSI_INLINE void particles_clear(double *field, int64_t n)

@@ -5,30 +5,30 @@
 #include "solid/material_energy.h"
 
 /* The displacement gradient of a particle, in all SIMD lanes. */
-static struct vtensor2 gradient_at(const struct particles *p, int64_t i)
+static struct vtensor2 gradient_at(const struct particles *particles, int64_t i)
 {
-    return (struct vtensor2){vset_double(p->Uxx[i]), vset_double(p->Uxy[i]), vset_double(p->Uyx[i]),
-                             vset_double(p->Uyy[i])};
+    return (struct vtensor2){vset_double(particles->Uxx[i]), vset_double(particles->Uxy[i]),
+                             vset_double(particles->Uyx[i]), vset_double(particles->Uyy[i])};
 }
 
 /* Those of `count` particles, in the first lanes; the others have none. */
-static struct vtensor2 gradients_at(const struct particles *p, int64_t i, int count)
+static struct vtensor2 gradients_at(const struct particles *particles, int64_t i, int count)
 {
     struct vtensor2 U = {{0}, {0}, {0}, {0}};
     for (int l = 0; l < count; l++) {
-        U.xx[l] = p->Uxx[i + l];
-        U.xy[l] = p->Uxy[i + l];
-        U.yx[l] = p->Uyx[i + l];
-        U.yy[l] = p->Uyy[i + l];
+        U.xx[l] = particles->Uxx[i + l];
+        U.xy[l] = particles->Uxy[i + l];
+        U.yx[l] = particles->Uyx[i + l];
+        U.yy[l] = particles->Uyy[i + l];
     }
     return U;
 }
 
-void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
-                  double *det)
+void solid_cauchy(const struct solid *solid, const struct particles *particles, int64_t i,
+                  double sigma[4], double *det)
 {
-    const struct solid_body *const b = &s->body[p->body[i]];
-    const struct vtensor2 U = gradient_at(p, i), F = deformation(U);
+    const struct solid_body *const b = &solid->body[particles->body[i]];
+    const struct vtensor2 U = gradient_at(particles, i), F = deformation(U);
     double thickness, sigma_zz;
     material_across(b, U, &thickness, &sigma_zz);
     const struct vtensor2 PF = vtensor2_mul_t(material_pk1(b, U), F);
@@ -46,21 +46,21 @@ double solid_von_mises(const double sigma[4])
     return sqrt(0.5 * (square(xx - yy) + square(yy - zz) + square(zz - xx)) + 3 * square(xy));
 }
 
-void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
-                  double *hourglass, double *det_low)
+void solid_energy(const struct solid *solid, const struct particles *particles, int body,
+                  double *elastic, double *hourglass, double *det_low)
 {
     *elastic = *hourglass = 0;
     *det_low = INFINITY;
-    for (int64_t k = 0; k < s->n_packs; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
+    for (int64_t k = 0; k < solid->n_packs; k++) {
+        const struct solid_pack *const pack = &solid->pack[k];
         if (body != SOLID_ALL && pack->body != body) continue;
-        const struct solid_body *const b = &s->body[pack->body];
+        const struct solid_body *const b = &solid->body[pack->body];
         double locked[LANES_FLOAT] = {0};
-        if (b->kappa > 0) s->sweeps->hourglass(s, pack, locked);
+        if (b->kappa > 0) solid->sweeps->hourglass(solid, pack, locked);
         for (int first = 0; first < pack->lanes; first += LANES_DOUBLE) {
             const int count =
                 pack->lanes - first < LANES_DOUBLE ? pack->lanes - first : LANES_DOUBLE;
-            const struct vtensor2 U = gradients_at(p, pack->i + first, count);
+            const struct vtensor2 U = gradients_at(particles, pack->i + first, count);
             const vdouble psi = material_energy(b, U), det = vtensor2_det(deformation(U));
             for (int l = 0; l < count; l++) {
                 *elastic += psi[l] * square(b->dp);

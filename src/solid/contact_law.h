@@ -22,21 +22,21 @@ struct contact_constants {
     double tangential_damping; /* of the spring of friction, N s/m */
 };
 
-SPHFSI_INLINE double contact_mass(const struct contact *c, int body)
+SPHFSI_INLINE double contact_mass(const struct contact *contact, int body)
 {
-    return body < c->n_solids ? c->solid->body[body].mass : (double)INFINITY;
+    return body < contact->n_solids ? contact->solid->body[body].mass : (double)INFINITY;
 }
 
 /* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
  * mass m of the pair, m_a m_b/(m_a + m_b). */
-SPHFSI_INLINE struct contact_constants contact_constants_of(const struct contact *c,
+SPHFSI_INLINE struct contact_constants contact_constants_of(const struct contact *contact,
                                                             const struct contact_law *law,
                                                             int32_t point, int32_t edge,
                                                             double min_reach)
 {
-    const int a = c->body[point], b = c->body[c->edge[edge].a];
-    const double k = law->stiffness * c->width[point] / law->spacing;
-    const double mass = 1 / (1 / contact_mass(c, a) + 1 / contact_mass(c, b)),
+    const int a = contact->body[point], b = contact->body[contact->edge[edge].a];
+    const double k = law->stiffness * contact->width[point] / law->spacing;
+    const double mass = 1 / (1 / contact_mass(contact, a) + 1 / contact_mass(contact, b)),
                  critical = 2 * sqrt(k * mass);
     return (struct contact_constants){
         .min_reach = min_reach,
@@ -73,36 +73,37 @@ SPHFSI_INLINE double across(const double n[2], const double v[2], int k)
 }
 
 /* Velocity of a point relative to the nearest place on an edge. */
-SPHFSI_INLINE void relative_velocity(const struct contact *c, int32_t point, int32_t edge, double s,
-                                     double v[2])
+SPHFSI_INLINE void relative_velocity(const struct contact *contact, int32_t point, int32_t edge,
+                                     double s, double v[2])
 {
-    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
-    v[0] = c->vx[point] - ((1 - s) * c->vx[a] + s * c->vx[b]);
-    v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
+    const int32_t a = contact->edge[edge].a, b = contact->edge[edge].b;
+    v[0] = contact->vx[point] - ((1 - s) * contact->vx[a] + s * contact->vx[b]);
+    v[1] = contact->vy[point] - ((1 - s) * contact->vy[a] + s * contact->vy[b]);
 }
 
 /* To a solid's particle, or to the power of moving walls. */
-SPHFSI_INLINE void contact_add_force(struct contact *c, struct particles *p, int32_t point,
-                                     const double f[2])
+SPHFSI_INLINE void contact_add_force(struct contact *contact, struct particles *particles,
+                                     int32_t point, const double f[2])
 {
-    if (point >= c->n_solid_points) {
-        c->power -= f[0] * c->vx[point] + f[1] * c->vy[point];
+    if (point >= contact->n_solid_points) {
+        contact->power -= f[0] * contact->vx[point] + f[1] * contact->vy[point];
         return;
     }
-    const int32_t i = c->index[point];
-    const double per_mass = p->free[i] / c->solid->body[c->body[point]].mass;
-    p->sx[i] += f[0] * per_mass;
-    p->sy[i] += f[1] * per_mass;
+    const int32_t i = contact->index[point];
+    const double per_mass = particles->free[i] / contact->solid->body[contact->body[point]].mass;
+    particles->sx[i] += f[0] * per_mass;
+    particles->sy[i] += f[1] * per_mass;
 }
 
 /* A part of the rows of T-62a, of a point of a solid. */
-SPHFSI_INLINE void contact_add_row(struct contact *c, const struct particles *p, int32_t point,
-                                   double weight, double stiffness, double damping)
+SPHFSI_INLINE void contact_add_row(struct contact *contact, const struct particles *particles,
+                                   int32_t point, double weight, double stiffness, double damping)
 {
-    if (point >= c->n_solid_points) return;
-    const double per_mass = p->free[c->index[point]] / c->solid->body[c->body[point]].mass;
-    c->row[point] += weight * stiffness * per_mass;
-    c->row_damping[point] += weight * damping * per_mass;
+    if (point >= contact->n_solid_points) return;
+    const double per_mass =
+        particles->free[contact->index[point]] / contact->solid->body[contact->body[point]].mass;
+    contact->row[point] += weight * stiffness * per_mass;
+    contact->row_damping[point] += weight * damping * per_mass;
 }
 
 #endif

@@ -107,46 +107,50 @@ static enum err find_links(const struct cloud *of, struct arena *temp, struct li
 
 /* Numbers the particles at the surface of groups from `first` to before `end` on from
  * c->n_points. */
-static void number_points(struct contact *c, const struct cloud *of, int32_t first, int32_t end)
+static void number_points(struct contact *contact, const struct cloud *of, int32_t first,
+                          int32_t end)
 {
     for (int64_t i = 0; i < of->n; i++) {
         if (of->point[i] < 0 || of->group[i] < first || of->group[i] >= end) continue;
-        const int64_t k = of->point[i] = (int32_t)c->n_points++;
-        c->index[k] = (int32_t)i;
-        c->body[k] = of->body[i];
-        c->group[k] = of->group[i];
-        c->X[k] = c->x[k] = of->x[i];
-        c->Y[k] = c->y[k] = of->y[i];
+        const int64_t k = of->point[i] = (int32_t)contact->n_points++;
+        contact->index[k] = (int32_t)i;
+        contact->body[k] = of->body[i];
+        contact->group[k] = of->group[i];
+        contact->X[k] = contact->x[k] = of->x[i];
+        contact->Y[k] = contact->y[k] = of->y[i];
     }
 }
 
-static void add_edges(struct contact *c, const struct cloud *of, const struct link *link,
+static void add_edges(struct contact *contact, const struct cloud *of, const struct link *link,
                       int64_t n_links)
 {
     for (int64_t k = 0; k < n_links; k++) {
         const int32_t a = of->point[link[k].a], b = of->point[link[k].b];
-        c->edge[c->n_edges++] = (struct contact_edge){a, b, link[k].sided};
-        c->share[a]++;
-        c->share[b]++;
+        contact->edge[contact->n_edges++] = (struct contact_edge){a, b, link[k].sided};
+        contact->share[a]++;
+        contact->share[b]++;
     }
 }
 
 /* Converts the number of edges at each point to its weight (T-61a); 0 edges count as 1. */
-static void set_shares(struct contact *c)
+static void set_shares(struct contact *contact)
 {
-    for (int64_t k = 0; k < c->n_points; k++) {
-        if (c->share[k] == 0)
-            c->edge[c->n_edges++] = (struct contact_edge){(int32_t)k, (int32_t)k, false};
+    for (int64_t k = 0; k < contact->n_points; k++) {
+        if (contact->share[k] == 0)
+            contact->edge[contact->n_edges++] =
+                (struct contact_edge){(int32_t)k, (int32_t)k, false};
         else
-            c->share[k] = (c->share[k] - 1) / c->share[k];
+            contact->share[k] = (contact->share[k] - 1) / contact->share[k];
     }
 }
 
-static enum err points_create(struct contact *c, struct arena *a, size_t n, struct diag *d)
+static enum err points_create(struct contact *contact, struct arena *a, size_t n, struct diag *d)
 {
-    int32_t **const number[] = {&c->index, &c->body, &c->group, &c->initial_group};
-    double **const place[] = {&c->X,    &c->Y,    &c->x,       &c->y,     &c->vx,    &c->vy,
-                              &c->at_x, &c->at_y, &c->initial, &c->share, &c->outer, &c->width};
+    int32_t **const number[] = {&contact->index, &contact->body, &contact->group,
+                                &contact->initial_group};
+    double **const place[] = {&contact->X,       &contact->Y,     &contact->x,     &contact->y,
+                              &contact->vx,      &contact->vy,    &contact->at_x,  &contact->at_y,
+                              &contact->initial, &contact->share, &contact->outer, &contact->width};
     for (size_t k = 0; k < COUNT_OF(number); k++)
         if (!(*number[k] = arena_alloc(a, n, sizeof(int32_t), "contact", d))) return ERR_MEMORY;
     for (size_t k = 0; k < COUNT_OF(place); k++)
@@ -166,53 +170,56 @@ static enum err cloud_create(struct cloud *of, struct arena *temp, int64_t n, do
 }
 
 /* Bonded solids form one group; so do walls that move together or are at rest. */
-static enum err make_clouds(struct contact *c, const struct particles *solid, struct cloud of[2],
-                            struct arena *temp, struct diag *d)
+static enum err make_clouds(struct contact *contact, const struct particles *solid,
+                            struct cloud of[2], struct arena *temp, struct diag *d)
 {
-    const struct scene *const scene = c->scene;
+    const struct scene *const scene = contact->scene;
     const struct scene_points *const wall = &scene->points[KIND_WALL];
     TRY(cloud_create(&of[0], temp, solid->n, solid->X, solid->Y, d));
-    TRY(cloud_create(&of[1], temp, c->n_walls ? wall->n : 0, wall->x, wall->y, d));
+    TRY(cloud_create(&of[1], temp, contact->n_walls ? wall->n : 0, wall->x, wall->y, d));
     for (int64_t i = 0; i < of[0].n; i++) {
         of[0].body[i] = solid->body[i];
-        of[0].group[i] = c->solid->body[solid->body[i]].bond;
-        of[0].dp[i] = c->solid->body[solid->body[i]].dp;
+        of[0].group[i] = contact->solid->body[solid->body[i]].bond;
+        of[0].dp[i] = contact->solid->body[solid->body[i]].dp;
     }
     for (int64_t i = 0; i < of[1].n; i++) {
         const int motion = scene_find_motion(scene, scene->wall[wall->body[i]].motion);
-        of[1].body[i] = c->n_solids + wall->body[i];
-        of[1].group[i] = c->n_solids + 1 + motion;
+        of[1].body[i] = contact->n_solids + wall->body[i];
+        of[1].group[i] = contact->n_solids + 1 + motion;
         of[1].dp[i] = scene->top.dp;
     }
     return ERR_OK;
 }
 
 /* Marks the points near clamps. */
-static enum err find_clamps(struct contact *c, struct arena *a, const struct particles *solid,
+static enum err find_clamps(struct contact *contact, struct arena *a, const struct particles *solid,
                             struct arena *temp, struct diag *d)
 {
     struct point_grid g;
     double side = 0;
-    for (int k = 0; k < c->n_solids; k++) side = max2(side, KERNEL_REACH * c->solid->body[k].h);
+    for (int k = 0; k < contact->n_solids; k++)
+        side = max2(side, KERNEL_REACH * contact->solid->body[k].h);
     TRY(grid_of(&g, side, solid->n, solid->X, solid->Y, solid->free, temp, d));
-    c->near_clamp = arena_alloc(a, (size_t)c->n_points, sizeof *c->near_clamp, "contact", d);
-    if (!c->near_clamp) return ERR_MEMORY;
-    for (int64_t k = 0; k < c->n_solid_points; k++) {
-        const double reach = KERNEL_REACH * c->solid->body[c->body[k]].h;
-        struct point_visit v = point_grid_visit(&g, c->X[k], c->Y[k], reach);
+    contact->near_clamp =
+        arena_alloc(a, (size_t)contact->n_points, sizeof *contact->near_clamp, "contact", d);
+    if (!contact->near_clamp) return ERR_MEMORY;
+    for (int64_t k = 0; k < contact->n_solid_points; k++) {
+        const double reach = KERNEL_REACH * contact->solid->body[contact->body[k]].h;
+        struct point_visit v = point_grid_visit(&g, contact->X[k], contact->Y[k], reach);
         while (point_grid_next(&g, &v))
-            c->near_clamp[k] |= c->solid->body[solid->body[v.k]].bond == c->group[k];
+            contact->near_clamp[k] |=
+                contact->solid->body[solid->body[v.k]].bond == contact->group[k];
     }
     return ERR_OK;
 }
 
-static enum err find_surface(struct contact *c, struct arena *a, const struct particles *solid,
-                             struct arena *temp, struct diag *d)
+static enum err find_surface(struct contact *contact, struct arena *a,
+                             const struct particles *solid, struct arena *temp, struct diag *d)
 {
     struct cloud of[2];
     struct link *link[2];
     int64_t n_links[2], n = 0;
-    TRY(make_clouds(c, solid, of, temp, d));
+    TRY(make_clouds(contact, solid, of, temp, d));
     for (int k = 0; k < 2; k++) {
         /* A planar graph of n points has fewer than 3 n edges. */
         link[k] = arena_alloc(temp, 3 * (size_t)of[k].n + 1, sizeof *link[k], "contact", d);
@@ -221,20 +228,22 @@ static enum err find_surface(struct contact *c, struct arena *a, const struct pa
         TRY(find_links(&of[k], temp, link[k], &n_links[k], d));
         for (int64_t i = 0; i < of[k].n; i++) n += of[k].point[i] >= 0;
     }
-    TRY(points_create(c, a, (size_t)n, d));
-    c->edge = arena_alloc(a, (size_t)(n_links[0] + n_links[1] + n), sizeof *c->edge, "contact", d);
-    c->wall_point = arena_alloc(a, (size_t)of[1].n, sizeof *c->wall_point, "contact", d);
-    if (!c->edge || !c->wall_point) return ERR_MEMORY;
+    TRY(points_create(contact, a, (size_t)n, d));
+    contact->edge =
+        arena_alloc(a, (size_t)(n_links[0] + n_links[1] + n), sizeof *contact->edge, "contact", d);
+    contact->wall_point =
+        arena_alloc(a, (size_t)of[1].n, sizeof *contact->wall_point, "contact", d);
+    if (!contact->edge || !contact->wall_point) return ERR_MEMORY;
     /* Solids, walls that move, walls at rest. */
-    number_points(c, &of[0], 0, c->n_solids);
-    c->n_solid_points = c->n_points;
-    number_points(c, &of[1], c->n_solids + 1, c->n_groups);
-    c->n_moving_points = c->n_points;
-    number_points(c, &of[1], c->n_solids, c->n_solids + 1);
-    for (int k = 0; k < 2; k++) add_edges(c, &of[k], link[k], n_links[k]);
-    set_shares(c);
-    for (int64_t i = 0; i < of[1].n; i++) c->wall_point[i] = of[1].point[i];
-    return find_clamps(c, a, solid, temp, d);
+    number_points(contact, &of[0], 0, contact->n_solids);
+    contact->n_solid_points = contact->n_points;
+    number_points(contact, &of[1], contact->n_solids + 1, contact->n_groups);
+    contact->n_moving_points = contact->n_points;
+    number_points(contact, &of[1], contact->n_solids, contact->n_solids + 1);
+    for (int k = 0; k < 2; k++) add_edges(contact, &of[k], link[k], n_links[k]);
+    set_shares(contact);
+    for (int64_t i = 0; i < of[1].n; i++) contact->wall_point[i] = of[1].point[i];
+    return find_clamps(contact, a, solid, temp, d);
 }
 
 /* --- how far surface points lie inside the outlines of the shapes that they sample (T-61b) --- */
@@ -261,18 +270,21 @@ static enum err add_region(struct regions *r, const struct scene *scene, int gro
     return outlines_of(&to->minus, scene, minus, a, d);
 }
 
-static enum err regions_create(struct regions *r, const struct contact *c, struct arena *a,
+static enum err regions_create(struct regions *r, const struct contact *contact, struct arena *a,
                                struct diag *d)
 {
-    const struct scene *const s = c->scene;
+    const struct scene *const scene = contact->scene;
     *r = (struct regions){0};
-    r->item = arena_alloc(a, (size_t)(c->n_solids + c->n_walls), sizeof *r->item, "contact", d);
+    r->item = arena_alloc(a, (size_t)(contact->n_solids + contact->n_walls), sizeof *r->item,
+                          "contact", d);
     if (!r->item) return ERR_MEMORY;
-    for (int k = 0; k < c->n_solids; k++)
-        TRY(add_region(r, s, c->solid->body[k].bond, &s->solid[k].shape, &s->solid[k].minus, a, d));
-    for (int k = 0; k < c->n_walls; k++)
-        TRY(add_region(r, s, c->n_solids + 1 + scene_find_motion(s, s->wall[k].motion),
-                       &s->wall[k].shape, &s->wall[k].minus, a, d));
+    for (int k = 0; k < contact->n_solids; k++)
+        TRY(add_region(r, scene, contact->solid->body[k].bond, &scene->solid[k].shape,
+                       &scene->solid[k].minus, a, d));
+    for (int k = 0; k < contact->n_walls; k++)
+        TRY(add_region(r, scene,
+                       contact->n_solids + 1 + scene_find_motion(scene, scene->wall[k].motion),
+                       &scene->wall[k].shape, &scene->wall[k].minus, a, d));
     int most = 2;
     for (int k = 0; k < r->n; k++) {
         const int add = outlines_capacity(&r->item[k].add);
@@ -360,40 +372,42 @@ static double outer_of(const struct regions *r, int group, double x, double y, d
 /* The length of outline that each point stands for: half of both edges, as seen from the
  * outline. At the end of a line it is a whole edge, for a single point a spacing. On a lattice
  * that fits it is the spacing, but for round-off. */
-static void find_width(struct contact *c)
+static void find_width(struct contact *contact)
 {
-    for (int64_t k = 0; k < c->n_edges; k++) {
-        const int32_t a = c->edge[k].a, b = c->edge[k].b;
-        const double length2 = square(c->X[b] - c->X[a]) + square(c->Y[b] - c->Y[a]);
-        const double along = sqrt(max2(0, length2 - square(c->outer[b] - c->outer[a])));
-        c->width[a] += (1 - c->share[a]) * along;
-        c->width[b] += (1 - c->share[b]) * along;
+    for (int64_t k = 0; k < contact->n_edges; k++) {
+        const int32_t a = contact->edge[k].a, b = contact->edge[k].b;
+        const double length2 =
+            square(contact->X[b] - contact->X[a]) + square(contact->Y[b] - contact->Y[a]);
+        const double along = sqrt(max2(0, length2 - square(contact->outer[b] - contact->outer[a])));
+        contact->width[a] += (1 - contact->share[a]) * along;
+        contact->width[b] += (1 - contact->share[b]) * along;
     }
-    for (int64_t k = 0; k < c->n_points; k++) {
-        const double dp = contact_dp(c, c->body[k]);
-        if (c->width[k] == 0 || fabs(c->width[k] - dp) < 1e-6 * dp) c->width[k] = dp;
+    for (int64_t k = 0; k < contact->n_points; k++) {
+        const double dp = contact_dp(contact, contact->body[k]);
+        if (contact->width[k] == 0 || fabs(contact->width[k] - dp) < 1e-6 * dp)
+            contact->width[k] = dp;
     }
 }
 
-static enum err find_outlines(struct contact *c, struct arena *temp, struct diag *d)
+static enum err find_outlines(struct contact *contact, struct arena *temp, struct diag *d)
 {
     struct regions r;
-    TRY(regions_create(&r, c, temp, d));
-    for (int64_t k = 0; k < c->n_points; k++) {
-        const double dp = contact_dp(c, c->body[k]);
-        c->outer[k] = outer_of(&r, c->group[k], c->X[k], c->Y[k], dp);
-        c->max_outer = max2(c->max_outer, c->outer[k]);
+    TRY(regions_create(&r, contact, temp, d));
+    for (int64_t k = 0; k < contact->n_points; k++) {
+        const double dp = contact_dp(contact, contact->body[k]);
+        contact->outer[k] = outer_of(&r, contact->group[k], contact->X[k], contact->Y[k], dp);
+        contact->max_outer = max2(contact->max_outer, contact->outer[k]);
     }
-    find_width(c);
+    find_width(contact);
     return ERR_OK;
 }
 
-enum err contact_surface_create(struct contact *c, struct arena *a, const struct particles *solid,
-                                struct diag *d)
+enum err contact_surface_create(struct contact *contact, struct arena *a,
+                                const struct particles *solid, struct diag *d)
 {
     struct arena temp = {.limit = a->limit};
-    enum err e = find_surface(c, a, solid, &temp, d);
-    if (!e) e = find_outlines(c, &temp, d);
+    enum err e = find_surface(contact, a, solid, &temp, d);
+    if (!e) e = find_outlines(contact, &temp, d);
     arena_free(&temp);
     return e;
 }

@@ -7,13 +7,13 @@
 
 /* Finds the surfaces, and how much further than half a spacing the outlines of the shapes are
  * from their points (T-61b). */
-enum err contact_surface_create(struct contact *c, struct arena *a, const struct particles *solid,
-                                struct diag *d) SPHFSI_CHECKED;
+enum err contact_surface_create(struct contact *contact, struct arena *a,
+                                const struct particles *solid, struct diag *d) SPHFSI_CHECKED;
 
 /* The spacing of a solid or wall, m. */
-SPHFSI_INLINE double contact_dp(const struct contact *c, int body)
+SPHFSI_INLINE double contact_dp(const struct contact *contact, int body)
 {
-    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
+    return body < contact->n_solids ? contact->solid->body[body].dp : contact->scene->top.dp;
 }
 
 #endif

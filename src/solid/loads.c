@@ -13,27 +13,27 @@ static int moving_clamp(const struct scene *scene, int body)
     return scene_find_motion(scene, scene->solid[body].clamp_motion);
 }
 
-static enum err find_held(struct loads *v, struct arena *a, const struct particles *p,
+static enum err find_held(struct loads *v, struct arena *a, const struct particles *particles,
                           struct diag *d)
 {
-    for (int64_t i = 0; i < p->n; i++)
-        v->n_held += p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0;
+    for (int64_t i = 0; i < particles->n; i++)
+        v->n_held += particles->free[i] == 0 && moving_clamp(v->scene, particles->body[i]) >= 0;
     v->held = arena_alloc(a, (size_t)v->n_held, sizeof *v->held, "moving clamps", d);
     v->held_power = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_power, "moving clamps", d);
     v->held_rise = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_rise, "moving clamps", d);
     v->motion = arena_alloc(a, (size_t)v->scene->n_solid, sizeof *v->motion, "moving clamps", d);
     if (!v->held || !v->held_power || !v->held_rise || !v->motion) return ERR_MEMORY;
     v->n_held = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0)
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->free[i] == 0 && moving_clamp(v->scene, particles->body[i]) >= 0)
             v->held[v->n_held++] = (int32_t)i;
     return ERR_OK;
 }
 
 /* Appends the particles of a load. A centre on an edge counts as above and to the right of it, as
  * in the sampling of bodies. */
-static enum err find_loaded(struct loads *v, struct load_region *load, const struct particles *p,
-                            struct arena *temp, struct diag *d)
+static enum err find_loaded(struct loads *v, struct load_region *load,
+                            const struct particles *particles, struct arena *temp, struct diag *d)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
     const int body = scene_find_solid(v->scene, from->body);
@@ -44,11 +44,11 @@ static enum err find_loaded(struct loads *v, struct load_region *load, const str
     if (!scratch) return ERR_MEMORY;
     load->first = v->n_loaded;
     const double nudge = 1e-6 * v->scene->top.dp;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         bool inside = false;
-        for (int k = 0; k < o.n && p->body[i] == body && !inside; k++)
-            inside =
-                outline_contains(&o.item[k], p->X[i] + nudge, p->Y[i] + 0.618 * nudge, scratch);
+        for (int k = 0; k < o.n && particles->body[i] == body && !inside; k++)
+            inside = outline_contains(&o.item[k], particles->X[i] + nudge,
+                                      particles->Y[i] + 0.618 * nudge, scratch);
         if (inside) v->loaded[v->n_loaded++] = (int32_t)i;
     }
     load->end = v->n_loaded;
@@ -65,13 +65,13 @@ static enum err find_loaded(struct loads *v, struct load_region *load, const str
 /* The length of surface that each particle of a row represents: the lattice spacing along the
  * longer axis of the row. */
 static double row_spacing(const struct loads *v, const struct load_region *load, int body,
-                          const struct particles *p)
+                          const struct particles *particles)
 {
     const struct scene_lattice *const l = &v->scene->solid_lattice[body];
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int64_t k = load->first; k < load->end; k++) {
         double at[2];
-        lattice_place(l, p->X[v->loaded[k]], p->Y[v->loaded[k]], at);
+        lattice_place(l, particles->X[v->loaded[k]], particles->Y[v->loaded[k]], at);
         for (int c = 0; c < 2; c++) {
             low[c] = min2(low[c], at[c]);
             high[c] = max2(high[c], at[c]);
@@ -82,39 +82,41 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
 
 /* Each particle's part of the force, or the traction times the length of surface that it
  * represents. */
-static void set_forces(struct loads *v, const struct load_region *load, const struct particles *p,
-                       double time)
+static void set_forces(struct loads *v, const struct load_region *load,
+                       const struct particles *particles, double time)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
     const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
     for (int64_t k = load->first; k < load->end; k++) {
         const int32_t i = v->loaded[k];
-        v->fx[k] = load->share * scene_expr_at_time(value->e[0], p->X[i], p->Y[i], time);
-        v->fy[k] = load->share * scene_expr_at_time(value->e[1], p->X[i], p->Y[i], time);
+        v->fx[k] =
+            load->share * scene_expr_at_time(value->e[0], particles->X[i], particles->Y[i], time);
+        v->fy[k] =
+            load->share * scene_expr_at_time(value->e[1], particles->X[i], particles->Y[i], time);
     }
 }
 
-static void begin_load(struct loads *v, struct load_region *load, const struct particles *p)
+static void begin_load(struct loads *v, struct load_region *load, const struct particles *particles)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
     const bool traction = from->traction.e[0] != NULL;
     const struct scene_expr *const value = traction ? &from->traction : &from->force;
-    load->share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), p)
+    load->share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), particles)
                            : 1 / (double)(load->end - load->first);
     load->varies = expr_varies(value->e[0]) || expr_varies(value->e[1]);
-    set_forces(v, load, p, 0);
+    set_forces(v, load, particles, 0);
 }
 
-static enum err find_loads(struct loads *v, struct arena *a, const struct particles *p,
+static enum err find_loads(struct loads *v, struct arena *a, const struct particles *particles,
                            struct arena *temp, struct diag *d)
 {
     v->load = arena_alloc(a, (size_t)v->n_loads, sizeof *v->load, "loads", d);
-    const size_t most = (size_t)v->n_loads * (size_t)p->n;
+    const size_t most = (size_t)v->n_loads * (size_t)particles->n;
     v->loaded = arena_alloc(temp, most, sizeof *v->loaded, "loads", d);
     if (!v->load || !v->loaded) return ERR_MEMORY;
     for (int k = 0; k < v->n_loads; k++) {
         v->load[k].section = k;
-        TRY(find_loaded(v, &v->load[k], p, temp, d));
+        TRY(find_loaded(v, &v->load[k], particles, temp, d));
     }
     const size_t n = (size_t)v->n_loaded;
     const int32_t *const found = v->loaded;
@@ -124,21 +126,21 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
     v->factor = arena_alloc(a, (size_t)v->n_loads, sizeof *v->factor, "loads", d);
     if (!v->loaded || !v->fx || !v->fy || !v->factor) return ERR_MEMORY;
     for (size_t k = 0; k < n; k++) v->loaded[k] = found[k];
-    for (int k = 0; k < v->n_loads; k++) begin_load(v, &v->load[k], p);
+    for (int k = 0; k < v->n_loads; k++) begin_load(v, &v->load[k], particles);
     return ERR_OK;
 }
 
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
-                      struct particles *p, struct diag *d)
+                      struct particles *particles, struct diag *d)
 {
     *v = (struct loads){.scene = scene, .n_loads = scene->n_load};
-    TRY(find_held(v, a, p, d));
+    TRY(find_held(v, a, particles, d));
     struct arena temp = {.limit = a->limit};
-    const enum err e = find_loads(v, a, p, &temp, d);
+    const enum err e = find_loads(v, a, particles, &temp, d);
     arena_free(&temp);
     if (e) return e;
-    for (int64_t k = 0; k < v->n_held; k++) p->free[v->held[k]] = 1;
-    loads_place_clamps(v, p, 0);
+    for (int64_t k = 0; k < v->n_held; k++) particles->free[v->held[k]] = 1;
+    loads_place_clamps(v, particles, 0);
     return ERR_OK;
 }
 
@@ -150,64 +152,69 @@ static void move(struct loads *v, double time)
         v->motion[b] = motion_at(v->scene, moving_clamp(v->scene, b), time);
 }
 
-void loads_place_clamps(struct loads *v, struct particles *p, double time)
+void loads_place_clamps(struct loads *v, struct particles *particles, double time)
 {
     move(v, time);
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];
-        const struct motion_point at = motion_of_point(&v->motion[p->body[i]], p->X[i], p->Y[i]);
-        p->ux[i] = at.x[0] - p->X[i];
-        p->uy[i] = at.x[1] - p->Y[i];
-        p->vx[i] = at.v[0];
-        p->vy[i] = at.v[1];
+        const struct motion_point at =
+            motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
+        particles->ux[i] = at.x[0] - particles->X[i];
+        particles->uy[i] = at.x[1] - particles->Y[i];
+        particles->vx[i] = at.v[0];
+        particles->vy[i] = at.v[1];
     }
 }
 
 /* Dead loads: their direction is constant and does not follow the surface. */
-void loads_forces(struct loads *v, const struct solid *s, struct particles *p, double time)
+void loads_forces(struct loads *v, const struct solid *solid, struct particles *particles,
+                  double time)
 {
     for (int n = 0; n < v->n_loads; n++) {
         const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
         const double factor = v->factor[n] = history ? scene_expr_at(history, max2(time, 0), 0) : 1;
-        if (v->load[n].varies) set_forces(v, &v->load[n], p, max2(time, 0));
+        if (v->load[n].varies) set_forces(v, &v->load[n], particles, max2(time, 0));
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];
-            const double per_mass = factor * p->free[i] / s->body[p->body[i]].mass;
-            p->sx[i] += v->fx[k] * per_mass;
-            p->sy[i] += v->fy[k] * per_mass;
+            const double per_mass =
+                factor * particles->free[i] / solid->body[particles->body[i]].mass;
+            particles->sx[i] += v->fx[k] * per_mass;
+            particles->sy[i] += v->fy[k] * per_mass;
         }
     }
     if (v->released) return;
     move(v, time);
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];
-        const struct motion_point at = motion_of_point(&v->motion[p->body[i]], p->X[i], p->Y[i]);
-        const double mass = s->body[p->body[i]].mass;
-        const double fx = mass * (at.a[0] - p->sx[i]), fy = mass * (at.a[1] - p->sy[i]);
+        const struct motion_point at =
+            motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
+        const double mass = solid->body[particles->body[i]].mass;
+        const double fx = mass * (at.a[0] - particles->sx[i]),
+                     fy = mass * (at.a[1] - particles->sy[i]);
         v->held_power[k] = fx * at.v[0] + fy * at.v[1];
         v->held_rise[k] = fx * at.a[0] + fy * at.a[1];
-        p->sx[i] = at.a[0];
-        p->sy[i] = at.a[1];
+        particles->sx[i] = at.a[0];
+        particles->sy[i] = at.a[1];
     }
 }
 
-double loads_work(const struct loads *v, const struct particles *p, const double *vx,
+double loads_work(const struct loads *v, const struct particles *particles, const double *vx,
                   const double *vy, double dt, double *on)
 {
     double work = 0;
     for (int n = 0; n < v->n_loads; n++)
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];
-            const double done = v->factor[n] * p->free[i] * dt *
-                                (v->fx[k] * (vx[i] + 0.5 * dt * p->sx[i]) +
-                                 v->fy[k] * (vy[i] + 0.5 * dt * p->sy[i]));
+            const double done = v->factor[n] * particles->free[i] * dt *
+                                (v->fx[k] * (vx[i] + 0.5 * dt * particles->sx[i]) +
+                                 v->fy[k] * (vy[i] + 0.5 * dt * particles->sy[i]));
             work += done;
-            on[p->body[i]] += done;
+            on[particles->body[i]] += done;
         }
     for (int64_t k = 0; k < v->n_held; k++) {
         const double done = dt * (v->held_power[k] + 0.5 * dt * v->held_rise[k]);
         work += done;
-        on[p->body[v->held[k]]] += done;
+        on[particles->body[v->held[k]]] += done;
     }
     return work;
 }

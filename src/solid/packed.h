@@ -6,23 +6,23 @@
 #include "solid/solid.h"
 
 /* Element of an array in the precision of the sweeps, such as a packed field or the weights. */
-SPHFSI_INLINE void solid_set(const struct solid *s, void *array, int64_t i, double value)
+SPHFSI_INLINE void solid_set(const struct solid *solid, void *array, int64_t i, double value)
 {
-    if (s->sweeps->size == sizeof(double))
+    if (solid->sweeps->size == sizeof(double))
         ((double *)array)[i] = value;
     else
         ((float *)array)[i] = (float)value;
 }
 
-SPHFSI_INLINE double solid_get(const struct solid *s, const void *array, int64_t i)
+SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int64_t i)
 {
-    return s->sweeps->size == sizeof(double) ? ((const double *)array)[i]
-                                             : (double)((const float *)array)[i];
+    return solid->sweeps->size == sizeof(double) ? ((const double *)array)[i]
+                                                 : (double)((const float *)array)[i];
 }
 
 /* The packed fields that the scene needs, for the particles p. Sweeps in double precision use the
  * particle fields themselves where these exist. s->body, sweeps and variational are set. */
-enum err solid_packed_create(struct solid *s, struct arena *a, const struct particles *p,
-                             struct diag *d) SPHFSI_CHECKED;
+enum err solid_packed_create(struct solid *solid, struct arena *a,
+                             const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 #endif

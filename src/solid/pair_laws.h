@@ -15,10 +15,10 @@
 /* NOLINTNEXTLINE(misc-redundant-expression): compiled for both precisions */
 enum { SPLIT = sizeof(real) < sizeof(double) };
 
-SPHFSI_INLINE struct vtensor2 load_gradient(const struct solid *s, int64_t i)
+SPHFSI_INLINE struct vtensor2 load_gradient(const struct solid *solid, int64_t i)
 {
-    return (struct vtensor2){lane_of(s, S_UXX, i), lane_of(s, S_UXY, i), lane_of(s, S_UYX, i),
-                             lane_of(s, S_UYY, i)};
+    return (struct vtensor2){lane_of(solid, S_UXX, i), lane_of(solid, S_UXY, i),
+                             lane_of(solid, S_UYX, i), lane_of(solid, S_UYY, i)};
 }
 
 struct vvector2 {
@@ -30,28 +30,29 @@ struct placed {
     struct vvector2 u, low;
 };
 
-SPHFSI_INLINE struct placed placed_at(const struct solid *s, int64_t i)
+SPHFSI_INLINE struct placed placed_at(const struct solid *solid, int64_t i)
 {
-    struct placed at = {.u = {lane_of(s, S_UX, i), lane_of(s, S_UY, i)}};
-    if (SPLIT) at.low = (struct vvector2){lane_of(s, S_LOW_X, i), lane_of(s, S_LOW_Y, i)};
+    struct placed at = {.u = {lane_of(solid, S_UX, i), lane_of(solid, S_UY, i)}};
+    if (SPLIT) at.low = (struct vvector2){lane_of(solid, S_LOW_X, i), lane_of(solid, S_LOW_Y, i)};
     return at;
 }
 
 /* u_ab: the two parts are subtracted separately, since near neighbours have equal leading
  * digits. */
-SPHFSI_INLINE struct vvector2 displacement_between(const struct solid *s, const struct placed *a,
-                                                   int64_t j)
+SPHFSI_INLINE struct vvector2 displacement_between(const struct solid *solid,
+                                                   const struct placed *a, int64_t j)
 {
-    const struct placed b = placed_at(s, j);
+    const struct placed b = placed_at(solid, j);
     if (!SPLIT) return (struct vvector2){a->u.x - b.u.x, a->u.y - b.u.y};
     return (struct vvector2){(a->u.x - b.u.x) + (a->low.x - b.low.x),
                              (a->u.y - b.u.y) + (a->low.y - b.low.y)};
 }
 
 /* v_ab. */
-SPHFSI_INLINE struct vvector2 velocity_between(const struct solid *s, struct vvector2 a, int64_t j)
+SPHFSI_INLINE struct vvector2 velocity_between(const struct solid *solid, struct vvector2 a,
+                                               int64_t j)
 {
-    return (struct vvector2){a.x - lane_of(s, S_VX, j), a.y - lane_of(s, S_VY, j)};
+    return (struct vvector2){a.x - lane_of(solid, S_VX, j), a.y - lane_of(solid, S_VY, j)};
 }
 
 /* Particles a of a pack: what the pair laws use. */
@@ -61,11 +62,11 @@ struct solid_receiver {
     struct vtensor2 U;
 };
 
-SPHFSI_INLINE struct solid_receiver receiver_of(const struct solid *s, int64_t i)
+SPHFSI_INLINE struct solid_receiver receiver_of(const struct solid *solid, int64_t i)
 {
-    return (struct solid_receiver){placed_at(s, i),
-                                   {lane_of(s, S_VX, i), lane_of(s, S_VY, i)},
-                                   load_gradient(s, i)};
+    return (struct solid_receiver){placed_at(solid, i),
+                                   {lane_of(solid, S_VX, i), lane_of(solid, S_VY, i)},
+                                   load_gradient(solid, i)};
 }
 
 /* One slot's pairs: neighbours b and geometry. */
@@ -77,7 +78,7 @@ struct solid_pair {
     struct vtensor2 U_b;
 };
 
-SPHFSI_INLINE struct solid_pair pair_of(const struct solid *s, const real *slot, int64_t j,
+SPHFSI_INLINE struct solid_pair pair_of(const struct solid *solid, const real *slot, int64_t j,
                                         const struct solid_receiver *a)
 {
     struct solid_pair q = {.slot = slot, .j = j};
@@ -85,7 +86,7 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid *s, const real *slot,
     q.Y = weight_of(slot, W_Y);
     vhold(q.X);
     vhold(q.Y);
-    q.u = displacement_between(s, &a->at, j);
+    q.u = displacement_between(solid, &a->at, j);
     q.x = q.X + q.u.x;
     q.y = q.Y + q.u.y;
     return q;
@@ -101,31 +102,31 @@ struct solid_sums {
 };
 
 /* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
-SPHFSI_INLINE void stress_force(const struct solid *s, const real *slot, int64_t j,
+SPHFSI_INLINE void stress_force(const struct solid *solid, const real *slot, int64_t j,
                                 struct solid_sums *sums)
 {
     const vreal Hx = weight_of(slot, W_HX), Hy = weight_of(slot, W_HY);
-    sums->stress_x = vfma(lane_of(s, S_PXX, j), Hx, sums->stress_x);
-    sums->stress_x = vfma(lane_of(s, S_PXY, j), Hy, sums->stress_x);
-    sums->stress_y = vfma(lane_of(s, S_PYX, j), Hx, sums->stress_y);
-    sums->stress_y = vfma(lane_of(s, S_PYY, j), Hy, sums->stress_y);
+    sums->stress_x = vfma(lane_of(solid, S_PXX, j), Hx, sums->stress_x);
+    sums->stress_x = vfma(lane_of(solid, S_PXY, j), Hy, sums->stress_x);
+    sums->stress_y = vfma(lane_of(solid, S_PYX, j), Hx, sums->stress_y);
+    sums->stress_y = vfma(lane_of(solid, S_PYY, j), Hy, sums->stress_y);
 }
 
 /* Eq. 14b over rho0 alpha_s c_s h, for approaching pairs: v.x/(x^2 + 0.01 h^2), 1/s. */
-SPHFSI_INLINE vreal viscous_pressure(const struct solid *s, const struct solid_pair *q,
+SPHFSI_INLINE vreal viscous_pressure(const struct solid *solid, const struct solid_pair *q,
                                      const struct solid_receiver *a, vreal eta2)
 {
-    const struct vvector2 v = velocity_between(s, a->v, q->j);
+    const struct vvector2 v = velocity_between(solid, a->v, q->j);
     const vreal approach = vmin(vfma(v.x, q->x, v.y * q->y), vset(0));
     return approach / vfma(q->x, q->x, vfma(q->y, q->y, eta2));
 }
 
 /* For joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that
  * Pi is the same for both particles. */
-SPHFSI_INLINE vreal mean_viscosity(const struct solid *s, int64_t i, int64_t j,
+SPHFSI_INLINE vreal mean_viscosity(const struct solid *solid, int64_t i, int64_t j,
                                    const struct solid_body *body)
 {
-    return (lane_of(s, S_DRAG, i) + lane_of(s, S_DRAG, j)) * (real)(0.5 / body->density);
+    return (lane_of(solid, S_DRAG, i) + lane_of(solid, S_DRAG, j)) * (real)(0.5 / body->density);
 }
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. The symmetric form, half of it and half of

@@ -7,67 +7,69 @@
 #include "solid/solid.h"
 
 /* All forces but those of clamps, as accelerations into sx, sy, with every particle free. */
-static void forces_without_clamps(struct solid *s, struct particles *p, double time)
+static void forces_without_clamps(struct solid *solid, struct particles *particles, double time)
 {
-    struct contact *const contact = s->contact;
+    struct contact *const contact = solid->contact;
     const double power = contact ? contact->power : 0, seconds = contact ? contact->seconds : 0;
-    const double at = s->time;
-    for (int64_t i = 0; i < p->n; i++) p->free[i] = 1;
-    if (s->loads) s->loads->released = true;
-    s->time = time;
-    solid_forces(s, p);
-    s->time = at;
-    if (s->loads) s->loads->released = false;
+    const double at = solid->time;
+    for (int64_t i = 0; i < particles->n; i++) particles->free[i] = 1;
+    if (solid->loads) solid->loads->released = true;
+    solid->time = time;
+    solid_forces(solid, particles);
+    solid->time = at;
+    if (solid->loads) solid->loads->released = false;
     if (contact) contact->power = power, contact->seconds = seconds;
 }
 
 /* What a clamp gives particle i: its prescribed acceleration, and the force that this takes
  * beside the others (T-74). */
-static void hold(const struct solid *s, const struct particles *p, int64_t i, const double to[2])
+static void hold(const struct solid *solid, const struct particles *particles, int64_t i,
+                 const double to[2])
 {
-    double *const *const now = s->scratch;
-    const double mass = s->body[p->body[i]].mass;
+    double *const *const now = solid->scratch;
+    const double mass = solid->body[particles->body[i]].mass;
     now[2][i] = mass * (to[0] - now[0][i]);
     now[3][i] = mass * (to[1] - now[1][i]);
     now[0][i] = to[0];
     now[1][i] = to[1];
 }
 
-static void hold_moving(const struct solid *s, const struct particles *p, double time)
+static void hold_moving(const struct solid *solid, const struct particles *particles, double time)
 {
-    const struct loads *const v = s->loads;
+    const struct loads *const v = solid->loads;
     struct motion_state motion = {0};
     int body = -1;
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];
-        if (p->body[i] != body) {
-            body = p->body[i];
+        if (particles->body[i] != body) {
+            body = particles->body[i];
             motion =
                 motion_at(v->scene, scene_find_motion(v->scene, v->scene->solid[body].clamp_motion),
                           time);
         }
-        hold(s, p, i, motion_of_point(&motion, p->X[i], p->Y[i]).a);
+        hold(solid, particles, i, motion_of_point(&motion, particles->X[i], particles->Y[i]).a);
     }
 }
 
-struct solid_forces_now solid_forces_now(struct solid *s, struct particles *p, double time)
+struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
+                                         double time)
 {
     static const double rest[2] = {0, 0};
-    const size_t bytes = (size_t)p->n * sizeof *p->sx;
-    double *const *const now = s->scratch;
-    memcpy(now[2], p->free, bytes);
-    memcpy(now[4], p->sx, bytes);
-    memcpy(now[5], p->sy, bytes);
-    forces_without_clamps(s, p, time);
-    memcpy(now[0], p->sx, bytes);
-    memcpy(now[1], p->sy, bytes);
-    memcpy(p->free, now[2], bytes);
-    memcpy(p->sx, now[4], bytes);
-    memcpy(p->sy, now[5], bytes);
+    const size_t bytes = (size_t)particles->n * sizeof *particles->sx;
+    double *const *const now = solid->scratch;
+    memcpy(now[2], particles->free, bytes);
+    memcpy(now[4], particles->sx, bytes);
+    memcpy(now[5], particles->sy, bytes);
+    forces_without_clamps(solid, particles, time);
+    memcpy(now[0], particles->sx, bytes);
+    memcpy(now[1], particles->sy, bytes);
+    memcpy(particles->free, now[2], bytes);
+    memcpy(particles->sx, now[4], bytes);
+    memcpy(particles->sy, now[5], bytes);
     memset(now[2], 0, bytes);
     memset(now[3], 0, bytes);
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->free[i] == 0) hold(s, p, i, rest);
-    if (s->loads) hold_moving(s, p, time);
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->free[i] == 0) hold(solid, particles, i, rest);
+    if (solid->loads) hold_moving(solid, particles, time);
     return (struct solid_forces_now){now[0], now[1], now[2], now[3]};
 }

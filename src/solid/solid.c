@@ -41,21 +41,22 @@ static struct solid_body body_of(const struct scene *scene, int k)
 }
 
 /* Bodies joined directly or through others get the number of the first of them. */
-static void join_bodies(struct solid *s, const struct scene *scene)
+static void join_bodies(struct solid *solid, const struct scene *scene)
 {
-    for (int k = 0; k < s->n_bodies; k++) s->body[k].bond = k;
-    for (int k = 0; k < s->n_bodies; k++) {
+    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].bond = k;
+    for (int k = 0; k < solid->n_bodies; k++) {
         if (!scene->solid[k].joined[0]) continue;
-        const int a = s->body[k].bond,
-                  b = s->body[scene_find_solid(scene, scene->solid[k].joined)].bond;
-        for (int j = 0; j < s->n_bodies; j++)
-            if (s->body[j].bond == a || s->body[j].bond == b) s->body[j].bond = a < b ? a : b;
+        const int a = solid->body[k].bond,
+                  b = solid->body[scene_find_solid(scene, scene->solid[k].joined)].bond;
+        for (int j = 0; j < solid->n_bodies; j++)
+            if (solid->body[j].bond == a || solid->body[j].bond == b)
+                solid->body[j].bond = a < b ? a : b;
     }
-    for (int k = 0; k < s->n_bodies; k++)
-        for (int j = 0; j < s->n_bodies; j++)
-            s->body[k].mixed |=
-                s->body[j].bond == s->body[k].bond && s->body[j].density * s->body[j].viscosity !=
-                                                          s->body[k].density * s->body[k].viscosity;
+    for (int k = 0; k < solid->n_bodies; k++)
+        for (int j = 0; j < solid->n_bodies; j++)
+            solid->body[k].mixed |= solid->body[j].bond == solid->body[k].bond &&
+                                    solid->body[j].density * solid->body[j].viscosity !=
+                                        solid->body[k].density * solid->body[k].viscosity;
 }
 
 /* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
@@ -64,30 +65,31 @@ static void join_bodies(struct solid *s, const struct scene *scene)
 #define DAMPED 0.01
 
 /* The name of a body for which float is not sufficient; NULL: none. */
-static const char *needs_double(const struct solid *s, const struct scene *scene,
-                                const struct particles *p)
+static const char *needs_double(const struct solid *solid, const struct scene *scene,
+                                const struct particles *particles)
 {
     /* NOLINTNEXTLINE(clang-analyzer-core.VLASize): a solid has bodies */
-    bool held[s->n_bodies];
+    bool held[solid->n_bodies];
     memset(held, 0, sizeof held);
-    for (int64_t i = 0; i < p->n; i++) {
-        const int k = p->body[i];
-        if (p->free[i] == 0 && scene_find_motion(scene, scene->solid[k].clamp_motion) < 0)
-            held[s->body[k].bond] = true;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const int k = particles->body[i];
+        if (particles->free[i] == 0 && scene_find_motion(scene, scene->solid[k].clamp_motion) < 0)
+            held[solid->body[k].bond] = true;
     }
-    for (int k = 0; k < s->n_bodies; k++)
-        if (!held[s->body[k].bond] || scene->solid[k].artificial_viscosity < DAMPED)
+    for (int k = 0; k < solid->n_bodies; k++)
+        if (!held[solid->body[k].bond] || scene->solid[k].artificial_viscosity < DAMPED)
             return scene->solid[k].common.name;
     return NULL;
 }
 
-static const struct solid_sweeps *choose_sweeps(const struct solid *s, const struct scene *scene,
-                                                const struct particles *p, struct diag *d)
+static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
+                                                const struct scene *scene,
+                                                const struct particles *particles, struct diag *d)
 {
     const int choice = scene->numerics.solid_precision;
     if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE)
         return &solid_sweeps_double;
-    const char *const name = needs_double(s, scene, p);
+    const char *const name = needs_double(solid, scene, particles);
     if (!name) return &solid_sweeps_mixed;
     if (choice == SOLID_PRECISION_AUTO) return &solid_sweeps_double;
     char place[LOCATION_TEXT];
@@ -100,37 +102,39 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     return &solid_sweeps_mixed;
 }
 
-enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
-                      struct particles *p, struct diag *d)
+enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
+                      struct particles *particles, struct diag *d)
 {
-    memset(s, 0, sizeof *s);
-    s->n_bodies = scene->n_solid;
-    s->dp = INFINITY;
-    s->coupled = p->groups & G_COUPLED;
-    s->kick = solid_free_kick;
-    s->body = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->body, "bodies", d);
-    if (!s->body) return ERR_MEMORY;
-    s->paper_step = INFINITY;
-    for (int k = 0; k < s->n_bodies; k++) {
-        s->body[k] = body_of(scene, k);
-        s->variational |= s->body[k].variational;
-        s->kelvin_voigt |= s->body[k].damping_time > 0;
-        s->mass_damped |= s->body[k].mass_damping > 0;
-        s->paper_step =
-            min2(s->paper_step, 0.6 * s->body[k].h / s->body[k].sound_speed); /* Eq. 29 */
-        s->dp = min2(s->dp, s->body[k].dp);
+    memset(solid, 0, sizeof *solid);
+    solid->n_bodies = scene->n_solid;
+    solid->dp = INFINITY;
+    solid->coupled = particles->groups & G_COUPLED;
+    solid->kick = solid_free_kick;
+    solid->body = arena_alloc(a, (size_t)solid->n_bodies, sizeof *solid->body, "bodies", d);
+    if (!solid->body) return ERR_MEMORY;
+    solid->paper_step = INFINITY;
+    for (int k = 0; k < solid->n_bodies; k++) {
+        solid->body[k] = body_of(scene, k);
+        solid->variational |= solid->body[k].variational;
+        solid->kelvin_voigt |= solid->body[k].damping_time > 0;
+        solid->mass_damped |= solid->body[k].mass_damping > 0;
+        solid->paper_step = min2(solid->paper_step,
+                                 0.6 * solid->body[k].h / solid->body[k].sound_speed); /* Eq. 29 */
+        solid->dp = min2(solid->dp, solid->body[k].dp);
     }
-    join_bodies(s, scene);
-    s->sweeps = choose_sweeps(s, scene, p, d);
-    TRY(solid_packed_create(s, a, p, d));
-    TRY(solid_stencil_create(s, a, p, d));
-    for (int k = 0; k < (int)COUNT_OF(s->scratch); k++) {
-        s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
-        if (!s->scratch[k]) return ERR_MEMORY;
+    join_bodies(solid, scene);
+    solid->sweeps = choose_sweeps(solid, scene, particles, d);
+    TRY(solid_packed_create(solid, a, particles, d));
+    TRY(solid_stencil_create(solid, a, particles, d));
+    for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {
+        solid->scratch[k] =
+            arena_alloc(a, (size_t)particles->n, sizeof(double), "search of the step", d);
+        if (!solid->scratch[k]) return ERR_MEMORY;
     }
-    s->work_on = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->work_on, "work on bodies", d);
-    s->threads = p->n < SOLID_PARALLEL ? 1 : thread_count();
-    return s->work_on ? ERR_OK : ERR_MEMORY;
+    solid->work_on =
+        arena_alloc(a, (size_t)solid->n_bodies, sizeof *solid->work_on, "work on bodies", d);
+    solid->threads = particles->n < SOLID_PARALLEL ? 1 : thread_count();
+    return solid->work_on ? ERR_OK : ERR_MEMORY;
 }
 
 /* The packs of a thread in a parallel region. Each particle is written by one thread and sums over
@@ -141,10 +145,11 @@ struct chunk {
     int64_t first, last;
 };
 
-static struct chunk chunk_of(const struct solid *s, struct particles *p)
+static struct chunk chunk_of(const struct solid *solid, struct particles *particles)
 {
     const int64_t threads = thread_team(), me = thread_index();
-    return (struct chunk){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads};
+    return (struct chunk){solid, particles, solid->n_packs * me / threads,
+                          solid->n_packs * (me + 1) / threads};
 }
 
 static void sweep(const struct chunk *own, solid_sweep *f)
@@ -154,13 +159,13 @@ static void sweep(const struct chunk *own, solid_sweep *f)
 
 static void stress_sweeps(const struct chunk *own, bool displaced)
 {
-    const struct solid *const s = own->s;
-    if (displaced || s->kelvin_voigt) sweep(own, s->sweeps->stress);
-    if (s->variational) {
+    const struct solid *const solid = own->s;
+    if (displaced || solid->kelvin_voigt) sweep(own, solid->sweeps->stress);
+    if (solid->variational) {
 #pragma omp barrier
-        sweep(own, s->sweeps->pairs);
+        sweep(own, solid->sweeps->pairs);
     }
-    if (s->kelvin_voigt) sweep(own, s->sweeps->damping);
+    if (solid->kelvin_voigt) sweep(own, solid->sweeps->damping);
 #pragma omp barrier
 }
 
@@ -170,25 +175,26 @@ struct run {
     int64_t first, end;
 };
 
-static struct run next_run(const struct solid *s, int64_t *pack, int64_t last)
+static struct run next_run(const struct solid *solid, int64_t *pack, int64_t last)
 {
-    const struct solid_pack *const from = &s->pack[*pack], *to = from;
-    while (++*pack < last && s->pack[*pack].body == from->body) to = &s->pack[*pack];
-    return (struct run){&s->body[from->body], from->i, to->i + to->lanes};
+    const struct solid_pack *const from = &solid->pack[*pack], *to = from;
+    while (++*pack < last && solid->pack[*pack].body == from->body) to = &solid->pack[*pack];
+    return (struct run){&solid->body[from->body], from->i, to->i + to->lanes};
 }
 
 /* Forces other than those of neighbours; clamped particles do not move. */
-static void add_own_forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void add_own_forces(const struct solid *solid, struct particles *particles, int64_t first,
+                           int64_t last)
 {
-    double *const sx = p->sx, *const sy = p->sy, *const free = p->free;
-    const double *const *const external = s->external;
+    double *const sx = particles->sx, *const sy = particles->sy, *const free = particles->free;
+    const double *const *const external = solid->external;
     for (int64_t k = first; k < last;) {
-        const struct run run = next_run(s, &k, last);
+        const struct run run = next_run(solid, &k, last);
         const double per_mass = 1 / run.body->mass;
         const double gx = run.body->gravity[0], gy = run.body->gravity[1];
-        for (int64_t i = run.first; i < run.end && s->coupled; i++) {
-            sx[i] += p->fx[i] * per_mass;
-            sy[i] += p->fy[i] * per_mass;
+        for (int64_t i = run.first; i < run.end && solid->coupled; i++) {
+            sx[i] += particles->fx[i] * per_mass;
+            sy[i] += particles->fy[i] * per_mass;
         }
         for (int64_t i = run.first; i < run.end && external[0]; i++) {
             sx[i] += external[0][i];
@@ -203,15 +209,15 @@ static void add_own_forces(const struct solid *s, struct particles *p, int64_t f
 }
 
 /* T-77: acceleration by mass-proportional damping. */
-static void add_mass_damping(const struct solid *s, struct particles *p, int64_t first,
+static void add_mass_damping(const struct solid *solid, struct particles *particles, int64_t first,
                              int64_t last)
 {
     for (int64_t k = first; k < last;) {
-        const struct run run = next_run(s, &k, last);
+        const struct run run = next_run(solid, &k, last);
         const double beta = run.body->mass_damping;
         for (int64_t i = run.first; i < run.end; i++) {
-            p->sx[i] += p->free[i] * (-beta * p->vx[i]);
-            p->sy[i] += p->free[i] * (-beta * p->vy[i]);
+            particles->sx[i] += particles->free[i] * (-beta * particles->vx[i]);
+            particles->sy[i] += particles->free[i] * (-beta * particles->vy[i]);
         }
     }
 }
@@ -225,39 +231,40 @@ static void force_sweeps(const struct chunk *own)
 }
 
 /* By all threads together. */
-static void vary_gravity(const struct solid *s, struct particles *p, double time)
+static void vary_gravity(const struct solid *solid, struct particles *particles, double time)
 {
     double g[2];
-    scene_gravity_at(s->gravity, time, g);
-    const double more[2] = {g[0] - s->gravity->top.gravity[0], g[1] - s->gravity->top.gravity[1]};
+    scene_gravity_at(solid->gravity, time, g);
+    const double more[2] = {g[0] - solid->gravity->top.gravity[0],
+                            g[1] - solid->gravity->top.gravity[1]};
 #pragma omp for schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        const double on = s->gravity->solid[p->body[i]].gravity * p->free[i];
-        p->sx[i] += on * more[0];
-        p->sy[i] += on * more[1];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double on = solid->gravity->solid[particles->body[i]].gravity * particles->free[i];
+        particles->sx[i] += on * more[0];
+        particles->sy[i] += on * more[1];
     }
 }
 
 /* Whether prescribed motion may call a function of the program, which belongs to the calling
  * thread. */
-SPHFSI_INLINE bool calls_program(const struct solid *s)
+SPHFSI_INLINE bool calls_program(const struct solid *solid)
 {
-    return s->calls_out && (s->contact || s->loads);
+    return solid->calls_out && (solid->contact || solid->loads);
 }
 
 /* Actions from outside the solid, each a pass of its own. */
-static void outer_forces(const struct solid *s, struct particles *p, double time)
+static void outer_forces(const struct solid *solid, struct particles *particles, double time)
 {
-    if (s->contact) {
+    if (solid->contact) {
         const double start = wall_clock();
-        contact_forces(s->contact, p, time);
+        contact_forces(solid->contact, particles, time);
 #pragma omp master
-        s->contact->seconds += wall_clock() - start;
+        solid->contact->seconds += wall_clock() - start;
     }
-    if (s->gravity) vary_gravity(s, p, time);
-    if (s->loads) {
+    if (solid->gravity) vary_gravity(solid, particles, time);
+    if (solid->loads) {
 #pragma omp single
-        loads_forces(s->loads, s, p, time);
+        loads_forces(solid->loads, solid, particles, time);
     }
 }
 
@@ -268,139 +275,141 @@ static void pack_motion(const struct chunk *own)
 #pragma omp barrier
 }
 
-void solid_free_kick(const struct particles *p, int64_t first, int64_t end, double kick,
+void solid_free_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
                      double drift)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
-        p->vx[i] += kick * p->sx[i];
-        p->vy[i] += kick * p->sy[i];
-        p->ux[i] += drift * p->vx[i];
-        p->uy[i] += drift * p->vy[i];
+        particles->vx[i] += kick * particles->sx[i];
+        particles->vy[i] += kick * particles->sy[i];
+        particles->ux[i] += drift * particles->vx[i];
+        particles->uy[i] += drift * particles->vy[i];
     }
 }
 
 static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, double drift)
 {
-    const struct particles *const p = own->p;
+    const struct particles *const particles = own->p;
     const struct solid_pack *const pack = own->s->pack;
-    const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : p->n;
+    const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : particles->n;
     const int64_t first = own->first < own->last ? pack[own->first].i : end;
-    f(p, first, end, kick, drift);
+    f(particles, first, end, kick, drift);
     pack_motion(own);
 }
 
-void solid_stress(struct solid *s, struct particles *p)
+void solid_stress(struct solid *solid, struct particles *particles)
 {
-#pragma omp parallel num_threads(s->threads)
+#pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(s, p);
+        const struct chunk own = chunk_of(solid, particles);
         pack_motion(&own);
         stress_sweeps(&own, true);
-        sweep(&own, s->sweeps->write_stress);
+        sweep(&own, solid->sweeps->write_stress);
     }
 }
 
-void solid_operator(struct solid *s, struct particles *p, bool displaced)
+void solid_operator(struct solid *solid, struct particles *particles, bool displaced)
 {
-#pragma omp parallel num_threads(s->threads)
+#pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(s, p);
+        const struct chunk own = chunk_of(solid, particles);
         pack_motion(&own);
         stress_sweeps(&own, displaced);
-        sweep(&own, s->sweeps->forces);
+        sweep(&own, solid->sweeps->forces);
 #pragma omp barrier
 #pragma omp for schedule(static)
-        for (int64_t i = 0; i < p->n; i++) {
-            p->sx[i] *= p->free[i];
-            p->sy[i] *= p->free[i];
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->sx[i] *= particles->free[i];
+            particles->sy[i] *= particles->free[i];
         }
     }
 }
 
-void solid_forces(const struct solid *s, struct particles *p)
+void solid_forces(const struct solid *solid, struct particles *particles)
 {
-#pragma omp parallel num_threads(s->threads) if (!calls_program(s))
+#pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     {
-        const struct chunk own = chunk_of(s, p);
+        const struct chunk own = chunk_of(solid, particles);
         force_sweeps(&own);
-        outer_forces(s, p, s->time);
+        outer_forces(solid, particles, solid->time);
     }
 }
 
-void solid_book_work(struct solid *s, struct particles *p, const double *vx, const double *vy,
-                     double dt)
+void solid_book_work(struct solid *solid, struct particles *particles, const double *vx,
+                     const double *vy, double dt)
 {
-    if (s->contact) {
-        contact_slide(s->contact, p);
-        const double work = dt * s->contact->power;
-        s->work += work;
-        s->work_on[0] += work;
+    if (solid->contact) {
+        contact_slide(solid->contact, particles);
+        const double work = dt * solid->contact->power;
+        solid->work += work;
+        solid->work_on[0] += work;
     }
-    if (s->loads) s->work += loads_work(s->loads, p, vx, vy, dt, s->work_on);
+    if (solid->loads)
+        solid->work += loads_work(solid->loads, particles, vx, vy, dt, solid->work_on);
 }
 
-void solid_place_clamps(const struct solid *s, struct particles *p, double time)
+void solid_place_clamps(const struct solid *solid, struct particles *particles, double time)
 {
-    if (s->loads) loads_place_clamps(s->loads, p, time);
+    if (solid->loads) loads_place_clamps(solid->loads, particles, time);
 }
 
 /* Between the sub-steps: all threads together. */
 static void place_clamps(const struct chunk *own, double time)
 {
-    const struct solid *const s = own->s;
-    if (!s->loads) return;
+    const struct solid *const solid = own->s;
+    if (!solid->loads) return;
 #pragma omp single
-    loads_place_clamps(s->loads, own->p, time);
+    loads_place_clamps(solid->loads, own->p, time);
     pack_motion(own);
 }
 
 /* The sub-steps of solid_advance by one of its threads. */
-static void substeps(struct solid *s, struct particles *p, double dt, int n, bool centred)
+static void substeps(struct solid *solid, struct particles *particles, double dt, int n,
+                     bool centred)
 {
-    const struct chunk chunk = chunk_of(s, p), *const own = &chunk;
+    const struct chunk chunk = chunk_of(solid, particles), *const own = &chunk;
     const double first = centred ? 0.5 * dt : 0;
     kick_and_drift(own, solid_free_kick, 0, first);
-    if (centred) place_clamps(own, s->time + first);
+    if (centred) place_clamps(own, solid->time + first);
     for (int k = 0; k < n; k++) {
         stress_sweeps(own, true);
         force_sweeps(own);
-        outer_forces(s, p, s->time + k * dt + first);
-        if (s->contact || s->loads) {
+        outer_forces(solid, particles, solid->time + k * dt + first);
+        if (solid->contact || solid->loads) {
 #pragma omp single
-            solid_book_work(s, p, p->vx, p->vy, dt);
+            solid_book_work(solid, particles, particles->vx, particles->vy, dt);
         }
         const double drift = k + 1 < n ? dt : dt - first;
-        kick_and_drift(own, s->kick, dt, drift);
-        place_clamps(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
+        kick_and_drift(own, solid->kick, dt, drift);
+        place_clamps(own, k + 1 < n ? solid->time + (k + 1) * dt + first : solid->time + n * dt);
     }
 }
 
-void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
+void solid_advance(struct solid *solid, struct particles *particles, double dt, int n, bool centred)
 {
-#pragma omp parallel num_threads(s->threads) if (!calls_program(s))
-    substeps(s, p, dt, n, centred);
-    s->time += n * dt;
+#pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
+    substeps(solid, particles, dt, n, centred);
+    solid->time += n * dt;
 }
 
-double solid_set_positions(struct particles *p)
+double solid_set_positions(struct particles *particles)
 {
     double moved2 = 0;
 #pragma omp parallel for simd schedule(static) reduction(max : moved2)
-    for (int64_t i = 0; i < p->n; i++) {
-        const double x = p->X[i] + p->ux[i], y = p->Y[i] + p->uy[i];
-        moved2 = max2(moved2, square(x - p->x[i]) + square(y - p->y[i]));
-        p->x[i] = x;
-        p->y[i] = y;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double x = particles->X[i] + particles->ux[i], y = particles->Y[i] + particles->uy[i];
+        moved2 = max2(moved2, square(x - particles->x[i]) + square(y - particles->y[i]));
+        particles->x[i] = x;
+        particles->y[i] = y;
     }
     return sqrt(moved2);
 }
 
-void solid_show(const struct solid *s, struct particles *p)
+void solid_show(const struct solid *solid, struct particles *particles)
 {
-#pragma omp parallel num_threads(s->threads)
+#pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(s, p);
-        sweep(&own, s->sweeps->write_stress);
+        const struct chunk own = chunk_of(solid, particles);
+        sweep(&own, solid->sweeps->write_stress);
     }
 }

@@ -8,22 +8,22 @@
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
  * are set). */
-enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
-                      struct particles *p, struct diag *d) SPHFSI_CHECKED;
+enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
+                      struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). In the
  * variational form hourglass control adds to the stress; then also the viscous and the hourglass
  * force. */
-void solid_stress(struct solid *s, struct particles *p);
+void solid_stress(struct solid *solid, struct particles *particles);
 
 /* Total acceleration (Eq. 21b) to sx, sy, from the results of solid_stress for the same
  * displacements and velocities; zero where clamped. */
-void solid_forces(const struct solid *s, struct particles *p);
+void solid_forces(const struct solid *solid, struct particles *particles);
 
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
  * other results only the packed fields are updated. displaced: not only velocities have changed
  * since the last call. */
-void solid_operator(struct solid *s, struct particles *p, bool displaced);
+void solid_operator(struct solid *solid, struct particles *particles, bool displaced);
 
 /* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from
  * what solid_stress has found. They stay in the scratch of s until that is used again; p is as
@@ -31,30 +31,32 @@ void solid_operator(struct solid *s, struct particles *p, bool displaced);
 struct solid_forces_now {
     const double *ax, *ay, *clamp_x, *clamp_y;
 };
-struct solid_forces_now solid_forces_now(struct solid *s, struct particles *p, double time);
+struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
+                                         double time);
 
 /* n sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
  * drift. With `centred`: half drift, kick, half drift, second order in time. Gradients, stresses,
  * accelerations and packed fields are those of the last sub-step only after solid_show and
  * solid_stress. */
-void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
+void solid_advance(struct solid *solid, struct particles *particles, double dt, int n,
+                   bool centred);
 
 /* Kick and drift where no fluid resists them. */
 solid_kick solid_free_kick;
 
 /* x = X + u; returns the largest displacement by it, m. */
-double solid_set_positions(struct particles *p);
+double solid_set_positions(struct particles *particles);
 
 /* Gradients, stresses and accelerations of the last evaluation to p. */
-void solid_show(const struct solid *s, struct particles *p);
+void solid_show(const struct solid *solid, struct particles *particles);
 
 /* Adds up the work of actions from outside over a kick of dt with the last forces, from the
  * velocities before it. Friction slides by these forces. */
-void solid_book_work(struct solid *s, struct particles *p, const double *vx, const double *vy,
-                     double dt);
+void solid_book_work(struct solid *solid, struct particles *particles, const double *vx,
+                     const double *vy, double dt);
 
 /* Sets particles with prescribed motion to their positions at a time. */
-void solid_place_clamps(const struct solid *s, struct particles *p, double time);
+void solid_place_clamps(const struct solid *solid, struct particles *particles, double time);
 
 /* The largest stable step for the square of a frequency and a rate of damping, s. */
 double solid_step_of(double omega2, double damping);
@@ -62,18 +64,19 @@ double solid_step_of(double omega2, double damping);
 /* Largest frequency and damping rate of the operator linearised about the present deformation, by
  * power iteration on the force routine; and the stable step, s. Restores u, v and all data of the
  * present state. */
-double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping);
+double solid_stable_step(struct solid *solid, struct particles *particles, double *omega,
+                         double *damping);
 
 /* The same about the undeformed state, stored in s. */
-void solid_find_step(struct solid *s, struct particles *p);
+void solid_find_step(struct solid *solid, struct particles *particles);
 
 /* Stiffness of the stiffest particle to a wave along a principal axis, over the undeformed one,
  * from gradients that are up to date. 1 if no particle is stretched or compressed by some 5 %. */
-double solid_stiffening(const struct solid *s, const struct particles *p);
+double solid_stiffening(const struct solid *solid, const struct particles *particles);
 
 /* Cauchy stress (xx, yy, xy, zz), Pa, and det F of a particle from its displacement gradient. */
-void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
-                  double *det);
+void solid_cauchy(const struct solid *solid, const struct particles *particles, int64_t i,
+                  double sigma[4], double *det);
 
 /* Von Mises stress, Pa, of a Cauchy stress (xx, yy, xy, zz). */
 double solid_von_mises(const double sigma[4]);
@@ -81,7 +84,7 @@ double solid_von_mises(const double sigma[4]);
 /* Strain energy and hourglass energy of a body, or of all (SOLID_ALL), J/m; smallest det F. From
  * the results of solid_stress. */
 enum { SOLID_ALL = -1 };
-void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
-                  double *hourglass, double *det_low);
+void solid_energy(const struct solid *solid, const struct particles *particles, int body,
+                  double *elastic, double *hourglass, double *det_low);
 
 #endif

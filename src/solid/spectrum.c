@@ -53,45 +53,47 @@ static void set_field(double *const field[2], double *const base[2], const doubl
 /* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to
  * `amplitude` at most. Stores the difference from its result at the base in (sx, sy). Returns the
  * factor by which that is larger. */
-static double apply_operator(struct solid *s, struct particles *p, double *const field[2],
-                             double *const base[2], double amplitude, bool both_signs)
+static double apply_operator(struct solid *solid, struct particles *particles,
+                             double *const field[2], double *const base[2], double amplitude,
+                             bool both_signs)
 {
-    const double factor = amplitude / largest(p->sx, p->sy, p->n);
-    const double asked = factor * norm(p->sx, p->sy, p->n);
-    double *const other[2] = {p->x0, p->y0};
-    const double *const rest[2] = {s->scratch[2], s->scratch[3]};
+    const double factor = amplitude / largest(particles->sx, particles->sy, particles->n);
+    const double asked = factor * norm(particles->sx, particles->sy, particles->n);
+    double *const other[2] = {particles->x0, particles->y0};
+    const double *const rest[2] = {solid->scratch[2], solid->scratch[3]};
     if (both_signs) {
         /* The viscous force acts on approaching pairs only: the other half of the pairs responds to
          * the opposite field. */
-        set_field(field, base, p->sx, p->sy, p->n, -factor);
-        keep(other, p->sx, p->sy, p->n);
-        solid_operator(s, p, false);
-        set_field(field, base, other[0], other[1], p->n, factor);
-        keep(other, p->sx, p->sy, p->n);
+        set_field(field, base, particles->sx, particles->sy, particles->n, -factor);
+        keep(other, particles->sx, particles->sy, particles->n);
+        solid_operator(solid, particles, false);
+        set_field(field, base, other[0], other[1], particles->n, factor);
+        keep(other, particles->sx, particles->sy, particles->n);
     } else {
-        set_field(field, base, p->sx, p->sy, p->n, factor);
+        set_field(field, base, particles->sx, particles->sy, particles->n, factor);
     }
-    solid_operator(s, p, !both_signs);
-    for (int64_t i = 0; i < p->n; i++) {
-        p->sx[i] -= both_signs ? other[0][i] : rest[0][i];
-        p->sy[i] -= both_signs ? other[1][i] : rest[1][i];
+    solid_operator(solid, particles, !both_signs);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->sx[i] -= both_signs ? other[0][i] : rest[0][i];
+        particles->sy[i] -= both_signs ? other[1][i] : rest[1][i];
     }
-    return norm(p->sx, p->sy, p->n) / asked;
+    return norm(particles->sx, particles->sy, particles->n) / asked;
 }
 
 /* Largest ratio of the operator's change to a small change of the field, displacement or velocity;
  * `amplitude` keeps it in the linear range. Power iteration approaches it from below: after so many
  * iterations 0.3 % are missing at kappa = 50; one percent is added. */
-static double largest_factor(struct solid *s, struct particles *p, double *const field[2],
-                             double *const base[2], double amplitude, bool both_signs)
+static double largest_factor(struct solid *solid, struct particles *particles,
+                             double *const field[2], double *const base[2], double amplitude,
+                             bool both_signs)
 {
     enum { ROUNDS = 60 };
     double factor = 0;
-    scramble(p->sx, p->n, 1, p->free);
-    scramble(p->sy, p->n, 2, p->free);
+    scramble(particles->sx, particles->n, 1, particles->free);
+    scramble(particles->sy, particles->n, 2, particles->free);
     for (int round = 0; round < ROUNDS; round++) {
-        if (!(largest(p->sx, p->sy, p->n) > 0)) return 0;
-        factor = apply_operator(s, p, field, base, amplitude, both_signs);
+        if (!(largest(particles->sx, particles->sy, particles->n) > 0)) return 0;
+        factor = apply_operator(solid, particles, field, base, amplitude, both_signs);
     }
     return 1.01 * factor;
 }
@@ -105,54 +107,57 @@ double solid_step_of(double omega2, double damping)
     return (sqrt(damping * damping + 4 * omega2) - damping) / omega2;
 }
 
-double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping)
+double solid_stable_step(struct solid *solid, struct particles *particles, double *omega,
+                         double *damping)
 {
-    double *const rates[2] = {s->scratch[4], s->scratch[5]};
-    keep(rates, p->sx, p->sy, p->n);
-    const size_t bytes = (size_t)p->n * sizeof *p->vx;
-    double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};
-    double *const base[2] = {s->scratch[0], s->scratch[1]};
-    double *const rest[2] = {s->scratch[2], s->scratch[3]};
-    double *const kept[2] = {p->vx0, p->vy0};
+    double *const rates[2] = {solid->scratch[4], solid->scratch[5]};
+    keep(rates, particles->sx, particles->sy, particles->n);
+    const size_t bytes = (size_t)particles->n * sizeof *particles->vx;
+    double *const u[2] = {particles->ux, particles->uy}, *const v[2] = {particles->vx,
+                                                                        particles->vy};
+    double *const base[2] = {solid->scratch[0], solid->scratch[1]};
+    double *const rest[2] = {solid->scratch[2], solid->scratch[3]};
+    double *const kept[2] = {particles->vx0, particles->vy0};
     /* At a base strain of 1 the rounding error of float is a thousandth of the change; velocities
      * have the same amplitude. */
-    const double amplitude = (s->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * s->dp;
-    keep(kept, p->vx, p->vy, p->n);
-    memset(p->vx, 0, bytes);
-    memset(p->vy, 0, bytes);
-    solid_operator(s, p, true);
-    keep(rest, p->sx, p->sy, p->n);
-    keep(base, p->ux, p->uy, p->n);
-    *omega = sqrt(largest_factor(s, p, u, base, amplitude, false));
-    keep(u, base[0], base[1], p->n);
+    const double amplitude = (solid->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * solid->dp;
+    keep(kept, particles->vx, particles->vy, particles->n);
+    memset(particles->vx, 0, bytes);
+    memset(particles->vy, 0, bytes);
+    solid_operator(solid, particles, true);
+    keep(rest, particles->sx, particles->sy, particles->n);
+    keep(base, particles->ux, particles->uy, particles->n);
+    *omega = sqrt(largest_factor(solid, particles, u, base, amplitude, false));
+    keep(u, base[0], base[1], particles->n);
     memset(base[0], 0, bytes);
     memset(base[1], 0, bytes);
     *damping = 0;
     bool damped = false;
     double rate = 0; /* of mass damping */
-    for (int k = 0; k < s->n_bodies; k++) {
-        damped |= s->body[k].viscosity + s->body[k].damping_time > 0;
-        rate = max2(rate, s->body[k].mass_damping);
+    for (int k = 0; k < solid->n_bodies; k++) {
+        damped |= solid->body[k].viscosity + solid->body[k].damping_time > 0;
+        rate = max2(rate, solid->body[k].mass_damping);
     }
     /* Linear damping acts on both signs: half of it on each. */
-    for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 0.5;
+    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].damping_time *= 0.5;
     if (damped) {
-        solid_operator(s, p, true);
-        *damping = largest_factor(s, p, v, base, amplitude * *omega, true);
+        solid_operator(solid, particles, true);
+        *damping = largest_factor(solid, particles, v, base, amplitude * *omega, true);
     }
-    for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 2;
+    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].damping_time *= 2;
     *damping += rate;
-    keep(v, kept[0], kept[1], p->n);
+    keep(v, kept[0], kept[1], particles->n);
     /* Later readers get the fields of the body, not of a trial. */
-    solid_stress(s, p);
-    keep((double *[2]){p->sx, p->sy}, rates[0], rates[1], p->n);
+    solid_stress(solid, particles);
+    keep((double *[2]){particles->sx, particles->sy}, rates[0], rates[1], particles->n);
     /* The eigenvalues of a sum of two operators are at most the sum of the largest of each. */
     return solid_step_of(square(*omega), *damping);
 }
 
-void solid_find_step(struct solid *s, struct particles *p)
+void solid_find_step(struct solid *solid, struct particles *particles)
 {
-    s->stable_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
+    solid->stable_step =
+        solid_stable_step(solid, particles, &solid->omega_max, &solid->damping_max);
 }
 
 static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }
@@ -173,12 +178,12 @@ static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdoubl
 
 /* Principal stretches of LANES particles from i on. `beyond`: which of the first n are stretched or
  * compressed by some 5 %; returns whether one is. */
-static bool stretches(const struct particles *p, int64_t i, int n, vdouble *first, vdouble *second,
-                      bool beyond[LANES])
+static bool stretches(const struct particles *particles, int64_t i, int n, vdouble *first,
+                      vdouble *second, bool beyond[LANES])
 {
-    const struct vtensor2 F =
-        deformation((struct vtensor2){vload_double(&p->Uxx[i]), vload_double(&p->Uxy[i]),
-                                      vload_double(&p->Uyx[i]), vload_double(&p->Uyy[i])});
+    const struct vtensor2 F = deformation(
+        (struct vtensor2){vload_double(&particles->Uxx[i]), vload_double(&particles->Uxy[i]),
+                          vload_double(&particles->Uyx[i]), vload_double(&particles->Uyy[i])});
     const vdouble det = vtensor2_det(F);
     const vdouble trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
     bool any = false;
@@ -194,7 +199,7 @@ static bool stretches(const struct particles *p, int64_t i, int n, vdouble *firs
 
 /* The largest of the axial stiffnesses in a pack. Each particle counts by itself: who shares its
  * vector depends on the machine. */
-static double stiffest(const struct solid *s, const struct particles *p,
+static double stiffest(const struct solid *solid, const struct particles *particles,
                        const struct solid_pack *pack)
 {
     double top = 0;
@@ -202,23 +207,24 @@ static double stiffest(const struct solid *s, const struct particles *p,
         const int n = pack->lanes - from < LANES ? pack->lanes - from : LANES;
         vdouble first, second;
         bool beyond[LANES];
-        if (!stretches(p, pack->i + from, n, &first, &second, beyond)) continue;
-        const vdouble now = axial_stiffness(&s->body[pack->body], first, second);
+        if (!stretches(particles, pack->i + from, n, &first, &second, beyond)) continue;
+        const vdouble now = axial_stiffness(&solid->body[pack->body], first, second);
         for (int l = 0; l < n; l++)
             if (beyond[l]) top = max2(top, now[l]);
     }
     return top;
 }
 
-double solid_stiffening(const struct solid *s, const struct particles *p)
+double solid_stiffening(const struct solid *solid, const struct particles *particles)
 {
     double top = 1;
-    double reference[s->n_bodies];
-    for (int k = 0; k < s->n_bodies; k++)
-        reference[k] = axial_stiffness(&s->body[k], vset_double(1), vset_double(1))[0];
-#pragma omp parallel for schedule(static) num_threads(s->threads) reduction(max : top)
-    for (int64_t k = 0; k < s->n_packs; k++)
+    double reference[solid->n_bodies];
+    for (int k = 0; k < solid->n_bodies; k++)
+        reference[k] = axial_stiffness(&solid->body[k], vset_double(1), vset_double(1))[0];
+#pragma omp parallel for schedule(static) num_threads(solid->threads) reduction(max : top)
+    for (int64_t k = 0; k < solid->n_packs; k++)
         /* cppcheck-suppress uninitvar ; all of its items are set above */
-        top = max2(top, stiffest(s, p, &s->pack[k]) / reference[s->pack[k].body]);
+        top =
+            max2(top, stiffest(solid, particles, &solid->pack[k]) / reference[solid->pack[k].body]);
     return top;
 }

@@ -31,18 +31,18 @@ static double reference_distance(double a, double b, double dp)
 
 /* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near,
  * are not bonded to it. -1: too many. */
-static int neighbours_of(const struct solid *s, const struct point_grid *g,
-                         const struct particles *p, int64_t i, int32_t *found)
+static int neighbours_of(const struct solid *solid, const struct point_grid *g,
+                         const struct particles *particles, int64_t i, int32_t *found)
 {
-    const struct solid_body *const own = &s->body[p->body[i]];
+    const struct solid_body *const own = &solid->body[particles->body[i]];
     const double reach = KERNEL_REACH * own->h, dp = own->dp;
     int n = 0;
-    struct point_visit v = point_grid_visit(g, p->X[i], p->Y[i], 1.001 * reach);
+    struct point_visit v = point_grid_visit(g, particles->X[i], particles->Y[i], 1.001 * reach);
     while (point_grid_next(g, &v)) {
         const int32_t j = (int32_t)v.k;
-        if (j == i || s->body[p->body[j]].bond != own->bond) continue;
-        const double dx = reference_distance(p->X[i], p->X[j], dp);
-        const double dy = reference_distance(p->Y[i], p->Y[j], dp);
+        if (j == i || solid->body[particles->body[j]].bond != own->bond) continue;
+        const double dx = reference_distance(particles->X[i], particles->X[j], dp);
+        const double dy = reference_distance(particles->Y[i], particles->Y[j], dp);
         if (dx * dx + dy * dy >= reach * reach) continue;
         if (n == MAX_NEIGHBOURS) return -1;
         int at = n++;
@@ -110,14 +110,14 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
  * rows give the paper's corrected gradient, all five one that is exact for quadratic fields (moving
  * least squares). If the neighbours cannot determine a quadratic field, as across two particles,
  * the gradient stays linear. false: not even linear. */
-static bool find_moments(const struct solid *s, const struct particles *p, int64_t i,
+static bool find_moments(const struct solid *solid, const struct particles *particles, int64_t i,
                          const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
 {
-    const double h = s->body[p->body[i]].h, dp = s->body[p->body[i]].dp;
+    const double h = solid->body[particles->body[i]].h, dp = solid->body[particles->body[i]].dp;
     double M[5][5] = {{0}};
     for (int k = 0; k < n; k++) {
-        const double x = reference_distance(p->X[found[k]], p->X[i], dp) / h;
-        const double y = reference_distance(p->Y[found[k]], p->Y[i], dp) / h;
+        const double x = reference_distance(particles->X[found[k]], particles->X[i], dp) / h;
+        const double y = reference_distance(particles->Y[found[k]], particles->Y[i], dp) / h;
         const double weight = -square(h * dp) * kernel_slope(h * sqrt(x * x + y * y), h);
         double b[5];
         basis(x, y, b);
@@ -148,12 +148,14 @@ static void gradient_weight(const struct solid_body *own, const struct gradient_
 }
 
 /* Fills one lane of a slot with the constants of the pair (i, j). */
-static void slot_set(struct draft *slot, int lane, const struct solid *s, const struct particles *p,
-                     const struct gradient_moments *moments, int64_t i, int64_t j)
+static void slot_set(struct draft *slot, int lane, const struct solid *solid,
+                     const struct particles *particles, const struct gradient_moments *moments,
+                     int64_t i, int64_t j)
 {
-    const struct solid_body *const a = &s->body[p->body[i]], *const b = &s->body[p->body[j]];
-    const double X = reference_distance(p->X[i], p->X[j], a->dp),
-                 Y = reference_distance(p->Y[i], p->Y[j], a->dp);
+    const struct solid_body *const a = &solid->body[particles->body[i]],
+                                   *const b = &solid->body[particles->body[j]];
+    const double X = reference_distance(particles->X[i], particles->X[j], a->dp),
+                 Y = reference_distance(particles->Y[i], particles->Y[j], a->dp);
     const double r2 = X * X + Y * Y, V = a->dp * a->dp, young = 0.5 * (a->young + b->young);
     double G[2], H[2];
     gradient_weight(a, &moments[i], X, Y, G);
@@ -175,7 +177,7 @@ static int compare_slot(const void *a, const void *b)
 }
 
 /* The slots of one pack, in ascending order of neighbours; returns their number. */
-static int pack_slots(const struct solid *s, const struct particles *p,
+static int pack_slots(const struct solid *solid, const struct particles *particles,
                       const struct point_grid *grid, const struct gradient_moments *moments,
                       const struct solid_pack *pack, struct draft *slots)
 {
@@ -183,9 +185,9 @@ static int pack_slots(const struct solid *s, const struct particles *p,
     int n = 0;
     for (int l = 0; l < pack->lanes; l++) {
         const int64_t i = pack->i + l;
-        const int count = neighbours_of(s, grid, p, i, found);
+        const int count = neighbours_of(solid, grid, particles, i, found);
         for (int k = 0; k < count; k++)
-            slot_set(slot_for(slots, &n, found[k] - i), l, s, p, moments, i, found[k]);
+            slot_set(slot_for(slots, &n, found[k] - i), l, solid, particles, moments, i, found[k]);
     }
     qsort(slots, (size_t)n, sizeof *slots, compare_slot);
     return n;
@@ -201,22 +203,23 @@ struct slot_sets {
 };
 
 /* Bytes of the weights of a slot. */
-static size_t slot_bytes(const struct solid *s)
+static size_t slot_bytes(const struct solid *solid)
 {
-    return SOLID_WEIGHTS * (size_t)s->sweeps->lanes * s->sweeps->size;
+    return SOLID_WEIGHTS * (size_t)solid->sweeps->lanes * solid->sweeps->size;
 }
 
 /* Moves the n slots of the sets to memory for `capacity`. */
-static enum err slots_move(struct slot_sets *sets, const struct solid *s, struct arena *a,
+static enum err slots_move(struct slot_sets *sets, const struct solid *solid, struct arena *a,
                            int64_t n, int64_t capacity, struct diag *d)
 {
     int64_t *const offset =
         arena_alloc(a, (size_t)capacity, sizeof *offset, "slots of the solid", d);
-    char *const weight = arena_alloc(a, (size_t)capacity, slot_bytes(s), "slots of the solid", d);
+    char *const weight =
+        arena_alloc(a, (size_t)capacity, slot_bytes(solid), "slots of the solid", d);
     if (!offset || !weight) return ERR_MEMORY;
     if (n) {
         memcpy(offset, sets->offset, (size_t)n * sizeof *offset);
-        memcpy(weight, sets->weight, (size_t)n * slot_bytes(s));
+        memcpy(weight, sets->weight, (size_t)n * slot_bytes(solid));
     }
     sets->offset = offset;
     sets->weight = weight;
@@ -225,134 +228,139 @@ static enum err slots_move(struct slot_sets *sets, const struct solid *s, struct
 }
 
 /* Finds a set equal to the n slots behind those stored, or stores these. */
-static void reuse_slots(struct solid *s, const struct slot_sets *sets, int32_t pack_index, int n)
+static void reuse_slots(struct solid *solid, const struct slot_sets *sets, int32_t pack_index,
+                        int n)
 {
-    struct solid_pack *const pack = &s->pack[pack_index];
-    const int64_t *const offset = &sets->offset[s->n_slots];
-    const char *const weight = &sets->weight[(size_t)s->n_slots * slot_bytes(s)];
-    const size_t offsets = (size_t)n * sizeof *offset, weights = (size_t)n * slot_bytes(s);
+    struct solid_pack *const pack = &solid->pack[pack_index];
+    const int64_t *const offset = &sets->offset[solid->n_slots];
+    const char *const weight = &sets->weight[(size_t)solid->n_slots * slot_bytes(solid)];
+    const size_t offsets = (size_t)n * sizeof *offset, weights = (size_t)n * slot_bytes(solid);
     pack->n_slots = n;
     size_t k = hash_bytes(hash_bytes(HASH_START, offset, offsets), weight, weights);
     for (k &= sets->size - 1; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
-        const struct solid_pack *const other = &s->pack[sets->pack[k]];
+        const struct solid_pack *const other = &solid->pack[sets->pack[k]];
         const size_t first = (size_t)other->first_slot;
         if (other->body == pack->body && other->n_slots == n &&
             memcmp(&sets->offset[first], offset, offsets) == 0 &&
-            memcmp(&sets->weight[first * slot_bytes(s)], weight, weights) == 0) {
+            memcmp(&sets->weight[first * slot_bytes(solid)], weight, weights) == 0) {
             pack->first_slot = other->first_slot;
             return;
         }
     }
     sets->pack[k] = pack_index;
-    pack->first_slot = (int32_t)s->n_slots;
-    s->n_slots += n;
+    pack->first_slot = (int32_t)solid->n_slots;
+    solid->n_slots += n;
 }
 
-static void cut_packs(struct solid *s, const struct particles *p)
+static void cut_packs(struct solid *solid, const struct particles *particles)
 {
-    for (int64_t i = 0; i < p->n;) {
-        struct solid_pack *const pack = &s->pack[s->n_packs++];
-        *pack = (struct solid_pack){.i = (int32_t)i, .body = p->body[i]};
-        while (pack->lanes < s->sweeps->lanes && i < p->n && p->body[i] == pack->body) {
+    for (int64_t i = 0; i < particles->n;) {
+        struct solid_pack *const pack = &solid->pack[solid->n_packs++];
+        *pack = (struct solid_pack){.i = (int32_t)i, .body = particles->body[i]};
+        while (pack->lanes < solid->sweeps->lanes && i < particles->n &&
+               particles->body[i] == pack->body) {
             pack->lanes++;
             i++;
         }
     }
 }
 
-static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
-                            const struct particles *p, const struct point_grid *grid,
+static enum err store_slots(struct solid *solid, struct arena *a, struct arena *scratch,
+                            const struct particles *particles, const struct point_grid *grid,
                             const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
-    while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
+    while (sets.size < 2 * (size_t)solid->n_packs) sets.size *= 2;
     sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
     struct draft *const drafts =
         arena_alloc(scratch, MAX_SLOTS, sizeof *drafts, "slots of the solid", d);
     if (!sets.pack || !drafts) return ERR_MEMORY;
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
-    const int lanes = s->sweeps->lanes;
-    for (int64_t k = 0; k < s->n_packs; k++) {
-        const int n = pack_slots(s, p, grid, moments, &s->pack[k], drafts);
-        if (s->n_slots + n > sets.capacity)
-            TRY(slots_move(&sets, s, scratch, s->n_slots, 2 * (s->n_slots + n), d));
+    const int lanes = solid->sweeps->lanes;
+    for (int64_t k = 0; k < solid->n_packs; k++) {
+        const int n = pack_slots(solid, particles, grid, moments, &solid->pack[k], drafts);
+        if (solid->n_slots + n > sets.capacity)
+            TRY(slots_move(&sets, solid, scratch, solid->n_slots, 2 * (solid->n_slots + n), d));
         for (int m = 0; m < n; m++) {
-            const int64_t slot = s->n_slots + m;
+            const int64_t slot = solid->n_slots + m;
             sets.offset[slot] = drafts[m].offset;
             for (int w = 0; w < SOLID_WEIGHTS; w++)
                 for (int l = 0; l < lanes; l++)
-                    solid_set(s, sets.weight, (slot * SOLID_WEIGHTS + w) * lanes + l,
+                    solid_set(solid, sets.weight, (slot * SOLID_WEIGHTS + w) * lanes + l,
                               drafts[m].weight[w][l]);
         }
-        reuse_slots(s, &sets, (int32_t)k, n);
+        reuse_slots(solid, &sets, (int32_t)k, n);
     }
-    TRY(slots_move(&sets, s, a, s->n_slots, s->n_slots, d));
-    s->offset = sets.offset;
-    s->weight = sets.weight;
+    TRY(slots_move(&sets, solid, a, solid->n_slots, solid->n_slots, d));
+    solid->offset = sets.offset;
+    solid->weight = sets.weight;
     return ERR_OK;
 }
 
 /* Moments of every particle; also checks the number of neighbours. */
-static enum err all_moments(const struct solid *s, const struct point_grid *g,
-                            const struct particles *p, struct gradient_moments *moments,
+static enum err all_moments(const struct solid *solid, const struct point_grid *g,
+                            const struct particles *particles, struct gradient_moments *moments,
                             struct diag *d)
 {
     int32_t found[MAX_NEIGHBOURS];
-    for (int64_t i = 0; i < p->n; i++) {
-        const int n = neighbours_of(s, g, p, i, found);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const int n = neighbours_of(solid, g, particles, i, found);
         if (n < 0)
             return diag_fail(
                 d, ERR_INPUT,
                 "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
                 "use a smaller h_over_dp; bodies that overlap also cause this",
-                p->X[i], p->Y[i], MAX_NEIGHBOURS);
-        const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
-        if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
+                particles->X[i], particles->Y[i], MAX_NEIGHBOURS);
+        const bool quadratic = solid->body[particles->body[i]].gradient == GRADIENT_QUADRATIC;
+        if (!find_moments(solid, particles, i, found, n, quadratic, &moments[i]))
             return diag_fail(
                 d, ERR_INPUT,
                 "the solid particle at (%.6g, %.6g) m has too few neighbours to determine a "
                 "deformation gradient; a body needs at least 2 particles across",
-                p->X[i], p->Y[i]);
+                particles->X[i], particles->Y[i]);
     }
     return ERR_OK;
 }
 
 /* Sums of the gradient weights over the neighbours, constant in time. */
-static void sum_weights(const struct solid *s)
+static void sum_weights(const struct solid *solid)
 {
-    const int lanes = s->sweeps->lanes;
-    for (int64_t k = 0; k < s->n_packs; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
+    const int lanes = solid->sweeps->lanes;
+    for (int64_t k = 0; k < solid->n_packs; k++) {
+        const struct solid_pack *const pack = &solid->pack[k];
         for (int l = 0; l < pack->lanes; l++) {
             double Gx = 0, Gy = 0;
             for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
-                Gx += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GX) * lanes + l);
-                Gy += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GY) * lanes + l);
+                Gx += solid_get(solid, solid->weight, (m * SOLID_WEIGHTS + W_GX) * lanes + l);
+                Gy += solid_get(solid, solid->weight, (m * SOLID_WEIGHTS + W_GY) * lanes + l);
             }
-            solid_set(s, s->lane[S_GX], pack->i + l, Gx);
-            solid_set(s, s->lane[S_GY], pack->i + l, Gy);
+            solid_set(solid, solid->lane[S_GX], pack->i + l, Gx);
+            solid_set(solid, solid->lane[S_GY], pack->i + l, Gy);
         }
     }
 }
 
-enum err solid_stencil_create(struct solid *s, struct arena *a, const struct particles *p,
-                              struct diag *d)
+enum err solid_stencil_create(struct solid *solid, struct arena *a,
+                              const struct particles *particles, struct diag *d)
 {
-    s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
-    if (!s->pack) return ERR_MEMORY;
-    cut_packs(s, p);
+    solid->pack =
+        arena_alloc(a, (size_t)particles->n, sizeof *solid->pack, "packs of the solid", d);
+    if (!solid->pack) return ERR_MEMORY;
+    cut_packs(solid, particles);
     struct arena scratch = {.limit = a->limit};
     struct point_grid grid;
     double reach = 0;
-    for (int k = 0; k < s->n_bodies; k++) reach = max2(reach, KERNEL_REACH * s->body[k].h);
+    for (int k = 0; k < solid->n_bodies; k++) reach = max2(reach, KERNEL_REACH * solid->body[k].h);
     struct gradient_moments *const moments =
-        arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
-    enum err e =
-        moments ? point_grid_create(&grid, reach, p->n, p->X, p->Y, &scratch, d) : ERR_MEMORY;
-    for (int64_t i = 0; !e && i < p->n; i++) point_grid_insert(&grid, i);
-    if (!e) e = all_moments(s, &grid, p, moments, d);
-    if (!e) e = store_slots(s, a, &scratch, p, &grid, moments, d);
+        arena_alloc(&scratch, (size_t)particles->n, sizeof *moments,
+                    "gradient weights of the solid", d);
+    enum err e = moments ? point_grid_create(&grid, reach, particles->n, particles->X, particles->Y,
+                                             &scratch, d)
+                         : ERR_MEMORY;
+    for (int64_t i = 0; !e && i < particles->n; i++) point_grid_insert(&grid, i);
+    if (!e) e = all_moments(solid, &grid, particles, moments, d);
+    if (!e) e = store_slots(solid, a, &scratch, particles, &grid, moments, d);
     arena_free(&scratch);
-    if (!e) sum_weights(s);
+    if (!e) sum_weights(solid);
     return e;
 }

@@ -7,45 +7,48 @@
 #include "solid/pair_laws.h"
 
 /* Writes the lanes of a pack only: the memory behind it belongs to the next. */
-SPHFSI_INLINE void store_packed(const struct solid *s, int lane, const struct solid_pack *pack,
+SPHFSI_INLINE void store_packed(const struct solid *solid, int lane, const struct solid_pack *pack,
                                 vreal value)
 {
-    vput((real *)s->lane[lane] + pack->i, value, pack->lanes);
+    vput((real *)solid->lane[lane] + pack->i, value, pack->lanes);
 }
 
 /* Four components from field `lane` on. The last pack of a body is stored in a function of its
  * own, which leaves the registers of the others alone. */
-static __attribute__((noinline, cold)) void
-store_part(const struct solid *s, int lane, const struct solid_pack *pack, const struct vtensor2 *t)
+static __attribute__((noinline, cold)) void store_part(const struct solid *solid, int lane,
+                                                       const struct solid_pack *pack,
+                                                       const struct vtensor2 *t)
 {
-    store_packed(s, lane, pack, t->xx);
-    store_packed(s, lane + 1, pack, t->xy);
-    store_packed(s, lane + 2, pack, t->yx);
-    store_packed(s, lane + 3, pack, t->yy);
+    store_packed(solid, lane, pack, t->xx);
+    store_packed(solid, lane + 1, pack, t->xy);
+    store_packed(solid, lane + 2, pack, t->yx);
+    store_packed(solid, lane + 3, pack, t->yy);
 }
 
-SPHFSI_INLINE void store_tensor(const struct solid *s, int lane, const struct solid_pack *pack,
+SPHFSI_INLINE void store_tensor(const struct solid *solid, int lane, const struct solid_pack *pack,
                                 struct vtensor2 t)
 {
     if (pack->lanes < LANES) {
         const struct vtensor2 part = t;
-        store_part(s, lane, pack, &part);
+        store_part(solid, lane, pack, &part);
         return;
     }
-    vstore((real *)s->lane[lane] + pack->i, t.xx);
-    vstore((real *)s->lane[lane + 1] + pack->i, t.xy);
-    vstore((real *)s->lane[lane + 2] + pack->i, t.yx);
-    vstore((real *)s->lane[lane + 3] + pack->i, t.yy);
+    vstore((real *)solid->lane[lane] + pack->i, t.xx);
+    vstore((real *)solid->lane[lane + 1] + pack->i, t.xy);
+    vstore((real *)solid->lane[lane + 2] + pack->i, t.yx);
+    vstore((real *)solid->lane[lane + 3] + pack->i, t.yy);
 }
 
 /* Adds a part to the stress of a pack. */
-SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pack,
+SPHFSI_INLINE void add_stress(const struct solid *solid, const struct solid_pack *pack,
                               struct vtensor2 more)
 {
     const int64_t i = pack->i;
-    store_tensor(s, S_PXX, pack,
-                 (struct vtensor2){lane_of(s, S_PXX, i) + more.xx, lane_of(s, S_PXY, i) + more.xy,
-                                   lane_of(s, S_PYX, i) + more.yx, lane_of(s, S_PYY, i) + more.yy});
+    store_tensor(solid, S_PXX, pack,
+                 (struct vtensor2){lane_of(solid, S_PXX, i) + more.xx,
+                                   lane_of(solid, S_PXY, i) + more.xy,
+                                   lane_of(solid, S_PYX, i) + more.yx,
+                                   lane_of(solid, S_PYY, i) + more.yy});
 }
 
 /* The slots of a pack: the weights of all slots in order, and the indices of its neighbours. */
@@ -57,21 +60,22 @@ SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pa
     for (int64_t j; offset < end && (j = (pack)->i + *offset, true); offset++, slot += SLOT_SIZE)
 
 /* In double precision the packed fields are the particle fields. */
-static void pack_motion(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void pack_motion(const struct solid *solid, struct particles *particles, int64_t first,
+                        int64_t last)
 {
     if (!SPLIT || first == last) return;
-    real *const ux = s->lane[S_UX], *const uy = s->lane[S_UY], *const low_x = s->lane[S_LOW_X],
-                *const low_y = s->lane[S_LOW_Y], *const vx = s->lane[S_VX],
-                *const vy = s->lane[S_VY];
-    const int64_t end = s->pack[last - 1].i + s->pack[last - 1].lanes;
+    real *const ux = solid->lane[S_UX], *const uy = solid->lane[S_UY],
+                *const low_x = solid->lane[S_LOW_X], *const low_y = solid->lane[S_LOW_Y],
+                *const vx = solid->lane[S_VX], *const vy = solid->lane[S_VY];
+    const int64_t end = solid->pack[last - 1].i + solid->pack[last - 1].lanes;
 #pragma omp simd
-    for (int64_t i = s->pack[first].i; i < end; i++) {
-        ux[i] = (real)p->ux[i];
-        uy[i] = (real)p->uy[i];
-        low_x[i] = (real)(p->ux[i] - (double)ux[i]);
-        low_y[i] = (real)(p->uy[i] - (double)uy[i]);
-        vx[i] = (real)p->vx[i];
-        vy[i] = (real)p->vy[i];
+    for (int64_t i = solid->pack[first].i; i < end; i++) {
+        ux[i] = (real)particles->ux[i];
+        uy[i] = (real)particles->uy[i];
+        low_x[i] = (real)(particles->ux[i] - (double)ux[i]);
+        low_y[i] = (real)(particles->uy[i] - (double)uy[i]);
+        vx[i] = (real)particles->vx[i];
+        vy[i] = (real)particles->vy[i];
     }
 }
 
@@ -86,46 +90,49 @@ SPHFSI_INLINE void add_gradient(struct vtensor2 *sum, const real *slot, struct v
 }
 
 /* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
-static void stress(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void stress(const struct solid *solid, struct particles *particles, int64_t first,
+                   int64_t last)
 {
-    (void)p;
+    (void)particles;
     for (int64_t k = first; k < last; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
-        const struct solid_body *const body = &s->body[pack->body];
-        const struct placed a = placed_at(s, pack->i);
+        const struct solid_pack *const pack = &solid->pack[k];
+        const struct solid_body *const body = &solid->body[pack->body];
+        const struct placed a = placed_at(solid, pack->i);
         struct vtensor2 sum = {vset(0), vset(0), vset(0), vset(0)};
-        EACH_SLOT(s, pack, slot, j)
-        add_gradient(&sum, slot, displacement_between(s, &a, j));
+        EACH_SLOT(solid, pack, slot, j)
+        add_gradient(&sum, slot, displacement_between(solid, &a, j));
         const struct vtensor2 U = {-sum.xx, -sum.xy, -sum.yx, -sum.yy};
-        store_tensor(s, S_UXX, pack, U);
-        if (!body->variational) store_tensor(s, S_PXX, pack, material_pk1(body, U));
+        store_tensor(solid, S_UXX, pack, U);
+        if (!body->variational) store_tensor(solid, S_PXX, pack, material_pk1(body, U));
     }
 }
 
 /* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C :
  * dE/dt with the tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a)
  * G_ab^T. P gains F times it. */
-static void damping_of_pack(const struct solid *s, const struct solid_pack *pack)
+static void damping_of_pack(const struct solid *solid, const struct solid_pack *pack)
 {
-    const struct solid_body *const body = &s->body[pack->body];
-    const struct solid_receiver a = receiver_of(s, pack->i);
+    const struct solid_body *const body = &solid->body[pack->body];
+    const struct solid_receiver a = receiver_of(solid, pack->i);
     const struct vtensor2 F = deformation(a.U);
     struct vtensor2 rate = {vset(0), vset(0), vset(0), vset(0)}; /* -dF/dt */
-    EACH_SLOT(s, pack, slot, j) add_gradient(&rate, slot, velocity_between(s, a.v, j));
+    EACH_SLOT(solid, pack, slot, j) add_gradient(&rate, slot, velocity_between(solid, a.v, j));
     const vreal shear =
         (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx) * (real)0.5;
     const struct vtensor2 strain_rate = {F.xx * rate.xx + F.yx * rate.yx, shear, shear,
                                          F.xy * rate.xy + F.yy * rate.yy};
     const double tau = body->damping_time;
-    add_stress(s, pack,
+    add_stress(solid, pack,
                vtensor2_mul(F, hooke(strain_rate, -tau * plane_lambda(body), -tau * body->mu)));
 }
 
-static void damping(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void damping(const struct solid *solid, struct particles *particles, int64_t first,
+                    int64_t last)
 {
-    (void)p;
+    (void)particles;
     for (int64_t k = first; k < last; k++)
-        if (s->body[s->pack[k].body].damping_time > 0) damping_of_pack(s, &s->pack[k]);
+        if (solid->body[solid->pack[k].body].damping_time > 0)
+            damping_of_pack(solid, &solid->pack[k]);
 }
 
 /* What the loop over the slots of a pack sums; constants after inlining. */
@@ -133,23 +140,23 @@ struct slot_laws {
     bool stress, viscous, mixed, symmetric, hourglass, variational;
 };
 
-SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
+SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *solid, const struct solid_pack *pack,
                                           const struct solid_receiver *a, struct slot_laws laws)
 {
-    const struct solid_body *const body = &s->body[pack->body];
+    const struct solid_body *const body = &solid->body[pack->body];
     const vreal eta2 = vset((real)(0.01 * body->h * body->h)), zero = vset(0);
     struct solid_sums sums = {zero, zero, zero,
                               zero, zero, zero,
                               zero, zero, {zero, zero, zero, zero}};
-    EACH_SLOT(s, pack, slot, j)
+    EACH_SLOT(solid, pack, slot, j)
     {
-        if (laws.stress) stress_force(s, slot, j, &sums);
+        if (laws.stress) stress_force(solid, slot, j, &sums);
         if (!laws.viscous && !laws.hourglass) continue;
-        struct solid_pair q = pair_of(s, slot, j, a);
-        if (laws.hourglass || laws.symmetric) q.U_b = load_gradient(s, j);
+        struct solid_pair q = pair_of(solid, slot, j, a);
+        if (laws.hourglass || laws.symmetric) q.U_b = load_gradient(solid, j);
         if (laws.viscous) {
-            vreal Pi = viscous_pressure(s, &q, a, eta2);
-            if (laws.mixed) Pi = Pi * mean_viscosity(s, pack->i, j, body);
+            vreal Pi = viscous_pressure(solid, &q, a, eta2);
+            if (laws.mixed) Pi = Pi * mean_viscosity(solid, pack->i, j, body);
             viscous_force(&q, Pi, laws.symmetric, &sums);
         }
         if (laws.hourglass && laws.variational) hourglass_variational(&q, a, &sums);
@@ -185,115 +192,123 @@ SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
 
 /* The variational form adds to the stress, which must be complete before neighbours sum it. So its
  * pairs have a pass of their own. */
-static void pairs_of_pack(const struct solid *s, const struct solid_pack *pack)
+static void pairs_of_pack(const struct solid *solid, const struct solid_pack *pack)
 {
-    const struct solid_body *const body = &s->body[pack->body];
-    const struct solid_receiver a = receiver_of(s, pack->i);
+    const struct solid_body *const body = &solid->body[pack->body];
+    const struct solid_receiver a = receiver_of(solid, pack->i);
     const struct slot_laws laws = pair_laws(body);
     struct solid_sums sums;
     /* The default has a specialised loop; the other combinations branch at run time. */
     if (laws.viscous && laws.symmetric && !laws.mixed)
-        sums = sum_slots(s, pack, &a, (struct slot_laws){false, true, false, true, true, true});
+        sums = sum_slots(solid, pack, &a, (struct slot_laws){false, true, false, true, true, true});
     else
-        sums = sum_slots(s, pack, &a, laws);
+        sums = sum_slots(solid, pack, &a, laws);
     const struct vvector2 acc = pairs_acceleration(body, &a, &sums);
-    store_packed(s, S_PAIRS_X, pack, acc.x);
-    store_packed(s, S_PAIRS_Y, pack, acc.y);
+    store_packed(solid, S_PAIRS_X, pack, acc.x);
+    store_packed(solid, S_PAIRS_Y, pack, acc.y);
     const real half = (real)(0.5 * body->density);
     const struct vtensor2 P = material_pk1(body, a.U);
-    store_tensor(s, S_PXX, pack,
+    store_tensor(solid, S_PXX, pack,
                  (struct vtensor2){P.xx + sums.pull.xx * half, P.xy + sums.pull.xy * half,
                                    P.yx + sums.pull.yx * half, P.yy + sums.pull.yy * half});
 }
 
-static void pairs(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void pairs(const struct solid *solid, struct particles *particles, int64_t first,
+                  int64_t last)
 {
-    (void)p;
+    (void)particles;
     for (int64_t k = first; k < last; k++)
-        if (s->body[s->pack[k].body].variational) pairs_of_pack(s, &s->pack[k]);
+        if (solid->body[solid->pack[k].body].variational) pairs_of_pack(solid, &solid->pack[k]);
 }
 
 /* Eq. 13a with the neighbours' part of the stress in `sums`. The particle's own part is P_a
  * times the sum of G_ab, zero inside a lattice. */
-SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *s,
+SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *solid,
                                                  const struct solid_pack *pack,
                                                  const struct solid_sums *sums,
                                                  struct vvector2 pairs)
 {
     const int64_t i = pack->i;
-    const vreal Gx = lane_of(s, S_GX, i), Gy = lane_of(s, S_GY, i);
-    const vreal own_x = vfma(lane_of(s, S_PXX, i), Gx, lane_of(s, S_PXY, i) * Gy);
-    const vreal own_y = vfma(lane_of(s, S_PYX, i), Gx, lane_of(s, S_PYY, i) * Gy);
-    const real inv_density = (real)(1 / s->body[pack->body].density);
+    const vreal Gx = lane_of(solid, S_GX, i), Gy = lane_of(solid, S_GY, i);
+    const vreal own_x = vfma(lane_of(solid, S_PXX, i), Gx, lane_of(solid, S_PXY, i) * Gy);
+    const vreal own_y = vfma(lane_of(solid, S_PYX, i), Gx, lane_of(solid, S_PYY, i) * Gy);
+    const real inv_density = (real)(1 / solid->body[pack->body].density);
     return (struct vvector2){(sums->stress_x + own_x) * inv_density + pairs.x,
                              (sums->stress_y + own_y) * inv_density + pairs.y};
 }
 
 /* The same for a variational body, whose forces of pairs are known. */
-SPHFSI_INLINE struct vvector2 stress_acceleration(const struct solid *s,
+SPHFSI_INLINE struct vvector2 stress_acceleration(const struct solid *solid,
                                                   const struct solid_pack *pack)
 {
     const vreal zero = vset(0);
     struct solid_sums sums = {.stress_x = zero, .stress_y = zero};
-    EACH_SLOT(s, pack, slot, j) stress_force(s, slot, j, &sums);
-    return total_acceleration(s, pack, &sums,
-                              (struct vvector2){lane_of(s, S_PAIRS_X, pack->i),
-                                                lane_of(s, S_PAIRS_Y, pack->i)});
+    EACH_SLOT(solid, pack, slot, j) stress_force(solid, slot, j, &sums);
+    return total_acceleration(solid, pack, &sums,
+                              (struct vvector2){lane_of(solid, S_PAIRS_X, pack->i),
+                                                lane_of(solid, S_PAIRS_Y, pack->i)});
 }
 
 /* Acceleration by stress and the forces of pairs. */
-SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *s, const struct solid_pack *pack)
+SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *solid,
+                                               const struct solid_pack *pack)
 {
-    const struct solid_body *const body = &s->body[pack->body];
+    const struct solid_body *const body = &solid->body[pack->body];
     const int64_t i = pack->i;
-    const struct solid_receiver a = receiver_of(s, i);
+    const struct solid_receiver a = receiver_of(solid, i);
     struct slot_laws laws = pair_laws(body);
     laws.stress = true;
     struct solid_sums sums;
     /* The paper's combination has a specialised loop. */
     if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
-        sums = sum_slots(s, pack, &a, (struct slot_laws){true, true, false, false, true, false});
+        sums =
+            sum_slots(solid, pack, &a, (struct slot_laws){true, true, false, false, true, false});
     else
-        sums = sum_slots(s, pack, &a, laws);
-    return total_acceleration(s, pack, &sums, pairs_acceleration(body, &a, &sums));
+        sums = sum_slots(solid, pack, &a, laws);
+    return total_acceleration(solid, pack, &sums, pairs_acceleration(body, &a, &sums));
 }
 
-static void forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void forces(const struct solid *solid, struct particles *particles, int64_t first,
+                   int64_t last)
 {
     for (int64_t k = first; k < last; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
-        const struct vvector2 acc = s->body[pack->body].variational ? stress_acceleration(s, pack)
-                                                                    : own_acceleration(s, pack);
-        vwiden(&p->sx[pack->i], acc.x, pack->lanes);
-        vwiden(&p->sy[pack->i], acc.y, pack->lanes);
+        const struct solid_pack *const pack = &solid->pack[k];
+        const struct vvector2 acc = solid->body[pack->body].variational
+                                        ? stress_acceleration(solid, pack)
+                                        : own_acceleration(solid, pack);
+        vwiden(&particles->sx[pack->i], acc.x, pack->lanes);
+        vwiden(&particles->sy[pack->i], acc.y, pack->lanes);
     }
 }
 
 /* In double precision the packed fields are the particle fields. */
-static void write_stress(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void write_stress(const struct solid *solid, struct particles *particles, int64_t first,
+                         int64_t last)
 {
     if (!SPLIT) return;
-    double *const to[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy, p->Pxx, p->Pxy, p->Pyx, p->Pyy};
+    double *const to[] = {particles->Uxx, particles->Uxy, particles->Uyx, particles->Uyy,
+                          particles->Pxx, particles->Pxy, particles->Pyx, particles->Pyy};
     for (int64_t k = first; k < last; k++)
         for (int c = 0; c < (int)COUNT_OF(to); c++)
-            vwiden(&to[c][s->pack[k].i], lane_of(s, S_UXX + c, s->pack[k].i), s->pack[k].lanes);
+            vwiden(&to[c][solid->pack[k].i], lane_of(solid, S_UXX + c, solid->pack[k].i),
+                   solid->pack[k].lanes);
 }
 
 /* Energy of the hourglass force, J/m; half of it, since each pair occurs twice. Variational: the
  * sum of k |e|^2/2. The printed force omits how e_ab depends on F and has no potential: half of
  * force times stretch of the pair, its work for small strains. */
-static void hourglass(const struct solid *s, const struct solid_pack *pack, double *energy)
+static void hourglass(const struct solid *solid, const struct solid_pack *pack, double *energy)
 {
-    const struct solid_receiver a = receiver_of(s, pack->i);
+    const struct solid_receiver a = receiver_of(solid, pack->i);
     vreal sum = vset(0);
-    EACH_SLOT(s, pack, slot, j)
+    EACH_SLOT(solid, pack, slot, j)
     {
-        struct solid_pair q = pair_of(s, slot, j, &a);
-        q.U_b = load_gradient(s, j);
+        struct solid_pair q = pair_of(solid, slot, j, &a);
+        q.U_b = load_gradient(solid, j);
         vreal ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
         const vreal half_k = weight_of(slot, W_HALF_K);
-        if (s->body[pack->body].variational) {
+        if (solid->body[pack->body].variational) {
             sum = sum + (real)0.5 * half_k * (ex * ex + ey * ey);
             continue;
         }
@@ -302,7 +317,7 @@ static void hourglass(const struct solid *s, const struct solid_pack *pack, doub
             (((real)2 * q.X + q.u.x) * q.u.x + ((real)2 * q.Y + q.u.y) * q.u.y) / (x + X);
         sum = sum - half_k * (ex * q.x + ey * q.y) / x * stretch;
     }
-    vwiden(energy, sum * (real)(0.25 * s->body[pack->body].mass), pack->lanes);
+    vwiden(energy, sum * (real)(0.25 * solid->body[pack->body].mass), pack->lanes);
 }
 
 const struct solid_sweeps SWEEP(solid_sweeps) = {

@@ -77,10 +77,11 @@ struct solid_pack {
 struct solid;
 
 /* Processes the packs from `first` to before `last`. */
-typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
+typedef void solid_sweep(const struct solid *solid, struct particles *particles, int64_t first,
+                         int64_t last);
 
 /* Kick by the accelerations and drift, s, of the particles from first to end - 1. */
-typedef void solid_kick(const struct particles *p, int64_t first, int64_t end, double kick,
+typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
                         double drift);
 
 /* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:

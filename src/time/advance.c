@@ -16,13 +16,13 @@ void advance_structure(struct simulation *sim, double dt, double kick)
 }
 
 /* The extremes over a range of fluid particles, without branches. */
-static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
+static struct extremes extremes_of(const struct particles *particles, int64_t from, int64_t end)
 {
     vdouble low = vset_double(0), high = low, speed2 = low, nan_probe = low;
     int64_t i = from;
     for (; i + LANES_DOUBLE <= end; i += LANES_DOUBLE) {
-        const vdouble vx = vload_double(&p->vx[i]), vy = vload_double(&p->vy[i]);
-        const vdouble d = vload_double(&p->dens[i]), v2 = vx * vx + vy * vy;
+        const vdouble vx = vload_double(&particles->vx[i]), vy = vload_double(&particles->vy[i]);
+        const vdouble d = vload_double(&particles->dens[i]), v2 = vx * vx + vy * vy;
         low = vmin_double(d, low);
         high = vmax_double(d, high);
         speed2 = vmax_double(v2, speed2);
@@ -31,11 +31,11 @@ static struct extremes extremes_of(const struct particles *p, int64_t from, int6
     struct extremes e = {-vtop_double(-low), vtop_double(high), vtop_double(speed2),
                          vsum_double(nan_probe)};
     for (; i < end; i++) {
-        const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
-        e.dens_low = min2(e.dens_low, p->dens[i]);
-        e.dens_high = max2(e.dens_high, p->dens[i]);
+        const double v2 = particles->vx[i] * particles->vx[i] + particles->vy[i] * particles->vy[i];
+        e.dens_low = min2(e.dens_low, particles->dens[i]);
+        e.dens_high = max2(e.dens_high, particles->dens[i]);
         e.speed2 = max2(e.speed2, v2);
-        e.nan_probe += 0 * (v2 + p->dens[i]);
+        e.nan_probe += 0 * (v2 + particles->dens[i]);
     }
     return e;
 }
@@ -43,14 +43,14 @@ static struct extremes extremes_of(const struct particles *p, int64_t from, int6
 void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by)
 {
     enum { BLOCK = 256 };
-    struct particles *const p = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->kind[KIND_FLUID];
     double low = 0, high = 0, speed2 = 0, nan_probe = 0;
 #pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
     reduction(+ : nan_probe)
-    for (int64_t from = 0; from < p->n; from += BLOCK) {
-        const int64_t end = from + BLOCK < p->n ? from + BLOCK : p->n;
-        if (rows) rows(p, by, from, end);
-        const struct extremes e = extremes_of(p, from, end);
+    for (int64_t from = 0; from < particles->n; from += BLOCK) {
+        const int64_t end = from + BLOCK < particles->n ? from + BLOCK : particles->n;
+        if (rows) rows(particles, by, from, end);
+        const struct extremes e = extremes_of(particles, from, end);
         low = min2(low, e.dens_low);
         high = max2(high, e.dens_high);
         speed2 = max2(speed2, e.speed2);

@@ -7,7 +7,7 @@
 
 /* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end
  * - 1; `by` holds its parameters. Finds their extremes while they are in the caches. */
-typedef void advance_rows(struct particles *p, const void *by, int64_t from, int64_t end);
+typedef void advance_rows(struct particles *particles, const void *by, int64_t from, int64_t end);
 void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
 
 /* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the

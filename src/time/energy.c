@@ -35,48 +35,52 @@ static void add_energies(struct energies *sum, const struct energies *e)
 
 static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     const double *const g = sim->scene->top.gravity;
-    for (int64_t i = 0; i < p->n; i++) {
-        struct energies *const e = &of[energy_entry(KIND_FLUID, p->body[i])];
-        const double m = particle_mass(k, p, i);
-        e->row.kinetic += 0.5 * m * (square(p->vx[i]) + square(p->vy[i]));
-        e->row.potential -= m * (g[0] * p->x[i] + g[1] * p->y[i]);
-        e->row.internal += m * eos_energy(p->dens[i], k->c0);
-        e->row.momentum_x += m * p->vx[i];
-        e->row.momentum_y += m * p->vy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        struct energies *const e = &of[energy_entry(KIND_FLUID, particles->body[i])];
+        const double m = particle_mass(k, particles, i);
+        e->row.kinetic += 0.5 * m * (square(particles->vx[i]) + square(particles->vy[i]));
+        e->row.potential -= m * (g[0] * particles->x[i] + g[1] * particles->y[i]);
+        e->row.internal += m * eos_energy(particles->dens[i], k->c0);
+        e->row.momentum_x += m * particles->vx[i];
+        e->row.momentum_y += m * particles->vy[i];
         e->row.mass += m;
         e->scale += m * square(k->c0);
-        if (p->dens_slow) e->damper += 0.5 * m * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
+        if (particles->dens_slow)
+            e->damper += 0.5 * m * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
     }
 }
 
 /* Returns the smallest det F. The first solid carries the energy of contact of all. */
 static double add_solids(struct simulation *sim, struct energies *solid)
 {
-    const struct particles *const p = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     double lowest = 1;
-    for (int64_t i = 0; i < p->n; i++) {
-        struct ledger *const row = &solid[p->body[i]].row;
-        const struct solid_body *const b = &sim->solid.body[p->body[i]];
-        row->kinetic += 0.5 * b->mass * (square(p->vx[i]) + square(p->vy[i]));
-        row->potential -= b->mass * (b->gravity[0] * p->x[i] + b->gravity[1] * p->y[i]);
-        row->momentum_x += b->mass * p->vx[i];
-        row->momentum_y += b->mass * p->vy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        struct ledger *const row = &solid[particles->body[i]].row;
+        const struct solid_body *const b = &sim->solid.body[particles->body[i]];
+        row->kinetic += 0.5 * b->mass * (square(particles->vx[i]) + square(particles->vy[i]));
+        row->potential -=
+            b->mass * (b->gravity[0] * particles->x[i] + b->gravity[1] * particles->y[i]);
+        row->momentum_x += b->mass * particles->vx[i];
+        row->momentum_y += b->mass * particles->vy[i];
         row->mass += b->mass;
-        solid[p->body[i]].scale += b->young * square(b->dp);
-        if (!p->interface_impulse_x) continue; /* the fluid has not received that yet (T-35b) */
-        row->momentum_x -= p->interface_impulse_x[i];
-        row->momentum_y -= p->interface_impulse_y[i];
+        solid[particles->body[i]].scale += b->young * square(b->dp);
+        if (!particles->interface_impulse_x)
+            continue; /* the fluid has not received that yet (T-35b) */
+        row->momentum_x -= particles->interface_impulse_x[i];
+        row->momentum_y -= particles->interface_impulse_y[i];
     }
     for (int k = 0; k < sim->scene->n_solid; k++) {
         double det;
-        solid_energy(&sim->solid, p, k, &solid[k].row.elastic, &solid[k].row.hourglass, &det);
+        solid_energy(&sim->solid, particles, k, &solid[k].row.elastic, &solid[k].row.hourglass,
+                     &det);
         if (!(det >= lowest)) lowest = det; /* also one that is not a number */
     }
     if (sim->effects & FX_CONTACT)
-        solid->row.contact = contact_energy(&sim->contact, p, sim->state.time);
+        solid->row.contact = contact_energy(&sim->contact, particles, sim->state.time);
     return lowest;
 }
 
@@ -113,10 +117,10 @@ static void add_dummies(const struct simulation *sim, struct energies *fluid)
 {
     double dummies = 0, internal = 0;
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &sim->kind[kind];
-        for (int64_t i = 0; i < p->n && p->dens; i++)
-            dummies +=
-                sim->fluid.volume[kind][p->body[i]] * eos_energy(p->dens[i], sim->fluid.k.c0);
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n && particles->dens; i++)
+            dummies += sim->fluid.volume[kind][particles->body[i]] *
+                       eos_energy(particles->dens[i], sim->fluid.k.c0);
     }
     for (int k = 0; k < sim->scene->n_fluid; k++) internal += fluid[k].row.internal;
     for (int k = 0; k < sim->scene->n_fluid && internal > 0; k++)
@@ -175,10 +179,11 @@ static void find_boxes(const struct simulation *sim, struct section_box box[ENER
     for (int k = 0; k < ENERGY_ENTRIES; k++)
         for (int side = 0; side < 4; side++) box[k].low[side] = (double)INFINITY;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &sim->kind[kind];
-        for (int64_t i = 0; i < p->n; i++) {
-            const double at[] = {p->x[i], p->y[i], -p->x[i], -p->y[i]};
-            double *const low = box[energy_entry((enum kind)kind, p->body[i])].low;
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n; i++) {
+            const double at[] = {particles->x[i], particles->y[i], -particles->x[i],
+                                 -particles->y[i]};
+            double *const low = box[energy_entry((enum kind)kind, particles->body[i])].low;
             for (int side = 0; side < 4; side++) low[side] = min2(low[side], at[side]);
         }
     }
@@ -241,11 +246,11 @@ void energy_join_touching(struct simulation *sim)
  * velocity that the fluid uses. */
 static void find_waiting_work(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
 {
-    const struct particles *const p = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-    for (int64_t i = 0; i < p->n && p->interface_impulse_x; i++)
-        of[p->body[i]] +=
-            p->interface_impulse_x[i] * p->wx[i] + p->interface_impulse_y[i] * p->wy[i];
+    for (int64_t i = 0; i < particles->n && particles->interface_impulse_x; i++)
+        of[particles->body[i]] += particles->interface_impulse_x[i] * particles->wx[i] +
+                                  particles->interface_impulse_y[i] * particles->wy[i];
 }
 
 /* Energy that the work on a section changes. */

@@ -35,27 +35,29 @@ SPHFSI_INLINE double compression_rate(double dens, double c0)
 static void find_values(const struct simulation *sim, enum quantity quantity, int64_t i, int count,
                         double *value)
 {
-    const struct particles p = sim->kind[KIND_FLUID];
+    const struct particles particles = sim->kind[KIND_FLUID];
     const double c0 = sim->fluid.k.c0, mass = sim->fluid.k.mass;
     const double gx = sim->scene->top.gravity[0], gy = sim->scene->top.gravity[1];
     if (quantity == BODY_POWER) {
 #pragma omp simd
-        for (int r = 0; r < count; r++) value[r] = p.body_power[i + r];
+        for (int r = 0; r < count; r++) value[r] = particles.body_power[i + r];
         return;
     }
     if (quantity == POWER) {
 #pragma omp simd
         for (int64_t k = i; k < i + count; k++)
-            value[k - i] = mass * (p.vx[k] * (p.ax[k] - gx) + p.vy[k] * (p.ay[k] - gy) +
-                                   compression_rate(p.dens[k], c0) * p.ddens[k]);
+            value[k - i] = mass * (particles.vx[k] * (particles.ax[k] - gx) +
+                                   particles.vy[k] * (particles.ay[k] - gy) +
+                                   compression_rate(particles.dens[k], c0) * particles.ddens[k]);
     } else {
 #pragma omp simd
         for (int64_t k = i; k < i + count; k++)
-            value[k - i] = mass * (eos_energy(p.dens[k], c0) - gx * p.x[k] - gy * p.y[k]);
+            value[k - i] = mass * (eos_energy(particles.dens[k], c0) - gx * particles.x[k] -
+                                   gy * particles.y[k]);
     }
-    if (!p.m) return;
+    if (!particles.m) return;
 #pragma omp simd
-    for (int r = 0; r < count; r++) value[r] *= p.m[i + r];
+    for (int r = 0; r < count; r++) value[r] *= particles.m[i + r];
 }
 
 static void sum_slice(const struct simulation *sim, enum quantity quantity, int64_t from,
@@ -103,16 +105,17 @@ struct powers {
 /* Of a program, of gravity beyond its value at t = 0, and of the constraint at open boundaries. */
 static void find_outside_power(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct external *const external = &sim->external[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     const double gx = k->gravity[0] - sim->scene->top.gravity[0],
                  gy = k->gravity[1] - sim->scene->top.gravity[1];
     if (sim->gravity_varies || external->at)
-        for (int64_t i = 0; i < p->n; i++) {
+        for (int64_t i = 0; i < particles->n; i++) {
             const double ax = gx + (external->at ? external->ax[i] : 0),
                          ay = gy + (external->at ? external->ay[i] : 0);
-            of[p->body[i]] += particle_mass(k, p, i) * (ax * p->vx[i] + ay * p->vy[i]);
+            of[particles->body[i]] +=
+                particle_mass(k, particles, i) * (ax * particles->vx[i] + ay * particles->vy[i]);
         }
     for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
         of[0] += sim->open.rate[b].power;
@@ -189,17 +192,19 @@ void energy_of_midpoint(struct simulation *sim, double dt)
 
 void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     const double since = sim->state.dt;
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-    for (int64_t i = 0; i < p->n && p->vx_old; i++) {
-        if (p->open && p->open[i]) continue; /* set anew at each evaluation */
-        const double u = p->vx_old[i] + since * p->ax[i], v = p->vy_old[i] + since * p->ay[i];
-        const double d = p->dens_old[i] + since * p->ddens[i];
-        of[p->body[i]] += 0.5 * particle_mass(k, p, i) *
-                          (0.5 * (square(p->vx[i]) + square(p->vy[i]) - square(u) - square(v)) +
-                           eos_energy(p->dens[i], k->c0) - eos_energy(d, k->c0));
+    for (int64_t i = 0; i < particles->n && particles->vx_old; i++) {
+        if (particles->open && particles->open[i]) continue; /* set anew at each evaluation */
+        const double u = particles->vx_old[i] + since * particles->ax[i],
+                     v = particles->vy_old[i] + since * particles->ay[i];
+        const double d = particles->dens_old[i] + since * particles->ddens[i];
+        of[particles->body[i]] +=
+            0.5 * particle_mass(k, particles, i) *
+            (0.5 * (square(particles->vx[i]) + square(particles->vy[i]) - square(u) - square(v)) +
+             eos_energy(particles->dens[i], k->c0) - eos_energy(d, k->c0));
     }
 }
 
@@ -242,14 +247,15 @@ void energy_after_shift(struct simulation *sim, const double energy[SCENE_MAX_SE
  * counted half a step before is the mean of both solutions' (T-46f). */
 void energy_drop_density(struct simulation *sim, int64_t i)
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
-    const double c0 = sim->fluid.k.c0, d = p->dens[i];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const double c0 = sim->fluid.k.c0, d = particles->dens[i];
     if (!keeps_account(sim)) return;
-    const double rate = p->ddens_old ? p->ddens_old[i] : p->ddens[i];
+    const double rate = particles->ddens_old ? particles->ddens_old[i] : particles->ddens[i];
     const double half = sim->state.energy.pending * rate * compression_rate(d, c0);
-    const double held = p->dens_old ? 0.5 * (eos_energy(d, c0) + eos_energy(p->dens_old[i], c0))
-                                    : eos_energy(d, c0) - half;
-    dissipate(sim, p->body[i], particle_mass(&sim->fluid.k, p, i) * held);
+    const double held = particles->dens_old
+                            ? 0.5 * (eos_energy(d, c0) + eos_energy(particles->dens_old[i], c0))
+                            : eos_energy(d, c0) - half;
+    dissipate(sim, particles->body[i], particle_mass(&sim->fluid.k, particles, i) * held);
 }
 
 void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
@@ -261,21 +267,25 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
 {
-    const struct particles *const p = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     const double *const *const external = sim->solid.external;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
     const double late = centred ? 0 : 0.5 * dt / n;
     double fluid[SCENE_MAX_SECTIONS] = {0}, outside[SCENE_MAX_SECTIONS] = {0};
     if (!keeps_account(sim)) return;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->free[i] == 0) continue;
-        const double mass = sim->solid.body[p->body[i]].mass;
-        const double ux = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
-        const double uy = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
-        fluid[p->body[i]] += p->fx[i] * ux + p->fy[i] * uy;
-        if (sim->coupling.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
-        if (external[0]) outside[p->body[i]] += mass * (external[0][i] * ux + external[1][i] * uy);
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->free[i] == 0) continue;
+        const double mass = sim->solid.body[particles->body[i]].mass;
+        const double ux =
+            particles->ux[i] - particles->x0[i] - late * (particles->vx[i] - particles->vx0[i]);
+        const double uy =
+            particles->uy[i] - particles->y0[i] - late * (particles->vy[i] - particles->vy0[i]);
+        fluid[particles->body[i]] += particles->fx[i] * ux + particles->fy[i] * uy;
+        if (sim->coupling.impedance > 0)
+            fluid[particles->body[i]] += mass * particles->face_work[i]; /* T-35a */
+        if (external[0])
+            outside[particles->body[i]] += mass * (external[0][i] * ux + external[1][i] * uy);
     }
     for (int k = 0; k < sim->scene->n_solid; k++) {
         struct energy_entry *const e = entry_of(sim, KIND_SOLID, k);
@@ -294,17 +304,19 @@ static double gravity_work(struct simulation *sim)
     const double dt = sim->state.dt;
     scene_gravity_at(sim->scene, sim->state.time - 0.5 * dt, g);
     const double gx = g[0] - start[0], gy = g[1] - start[1];
-    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const p = &sim->kind[KIND_SOLID];
+    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
+                                                                      &sim->kind[KIND_SOLID];
     for (int64_t i = 0; i < fluid->n; i++) {
         px += sim->fluid.k.mass * fluid->vx[i];
         py += sim->fluid.k.mass * fluid->vy[i];
     }
-    for (int64_t i = 0; i < p->n; i++) {
-        const double mass =
-            sim->scene->solid[p->body[i]].gravity * p->free[i] * sim->solid.body[p->body[i]].mass;
-        px += mass * p->vx[i];
-        py += mass * p->vy[i];
-        energy_supply(sim, KIND_SOLID, p->body[i], dt * mass * (gx * p->vx[i] + gy * p->vy[i]));
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double mass = sim->scene->solid[particles->body[i]].gravity * particles->free[i] *
+                            sim->solid.body[particles->body[i]].mass;
+        px += mass * particles->vx[i];
+        py += mass * particles->vy[i];
+        energy_supply(sim, KIND_SOLID, particles->body[i],
+                      dt * mass * (gx * particles->vx[i] + gy * particles->vy[i]));
     }
     return dt * (gx * px + gy * py);
 }

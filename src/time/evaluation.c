@@ -26,13 +26,13 @@ void find_external(struct simulation *sim, enum kind kind, double time)
 static void add_external(struct simulation *sim, double time)
 {
     const struct external *const external = &sim->external[KIND_FLUID];
-    struct particles *const p = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->kind[KIND_FLUID];
     find_external(sim, KIND_FLUID, time);
     double top = sim->fluid.extremes.acceleration2;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ax[i] += external->ax[i];
-        p->ay[i] += external->ay[i];
-        top = max2(top, square(p->ax[i]) + square(p->ay[i]));
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ax[i] += external->ax[i];
+        particles->ay[i] += external->ay[i];
+        top = max2(top, square(particles->ax[i]) + square(particles->ay[i]));
     }
     sim->fluid.extremes.acceleration2 = top;
 }

@@ -21,40 +21,43 @@ struct finding {
 };
 
 /* The first particle, in order, whose speed or density exceeds its limit or is not a number. */
-static struct finding find_invalid(const struct particles *p, double speed_limit, double dens_limit)
+static struct finding find_invalid(const struct particles *particles, double speed_limit,
+                                   double dens_limit)
 {
-    for (int64_t i = 0; i < p->n; i++) {
-        const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double speed =
+            sqrt(particles->vx[i] * particles->vx[i] + particles->vy[i] * particles->vy[i]);
         if (!(speed <= speed_limit)) return (struct finding){i, "speed (m/s)", speed};
-        if (!isfinite(p->x[i] + p->y[i]))
-            return (struct finding){i, "position (m)", p->x[i] + p->y[i]};
-        if (dens_limit > 0 && !(fabs(p->dens[i]) <= dens_limit))
-            return (struct finding){i, "rho/rho0 - 1", p->dens[i]};
+        if (!isfinite(particles->x[i] + particles->y[i]))
+            return (struct finding){i, "position (m)", particles->x[i] + particles->y[i]};
+        if (dens_limit > 0 && !(fabs(particles->dens[i]) <= dens_limit))
+            return (struct finding){i, "rho/rho0 - 1", particles->dens[i]};
     }
     return (struct finding){-1, "", 0};
 }
 
-static enum err complain(const struct simulation *s, enum kind kind, struct finding f,
+static enum err complain(const struct simulation *sim, enum kind kind, struct finding f,
                          const char *cause, struct diag *d)
 {
-    const struct particles *const p = &s->kind[kind];
+    const struct particles *const particles = &sim->kind[kind];
     return diag_fail(d, ERR_GUARD,
                      "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
                      "which is not valid: %s",
-                     time_text(s).text, (long long)s->state.steps, kind_names[kind],
-                     (long long)p->id[f.at], p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
+                     time_text(sim).text, (long long)sim->state.steps, kind_names[kind],
+                     (long long)particles->id[f.at], particles->x[f.at], particles->y[f.at],
+                     f.quantity, f.value, cause);
 }
 
 /* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
-static bool fluid_sound(struct simulation *s)
+static bool fluid_sound(struct simulation *sim)
 {
-    const struct extremes *const e = &s->extremes;
+    const struct extremes *const e = &sim->extremes;
     const double speed = sqrt(e->speed2);
-    s->state.dens_low = min2(s->state.dens_low, e->dens_low);
-    s->state.dens_high = max2(s->state.dens_high, e->dens_high);
-    s->state.speed_high = max2(s->state.speed_high, speed);
-    return e->nan_probe == 0 && speed <= s->guard.speed_limit &&
-           e->dens_high <= s->guard.dens_limit && e->dens_low >= -s->guard.dens_limit;
+    sim->state.dens_low = min2(sim->state.dens_low, e->dens_low);
+    sim->state.dens_high = max2(sim->state.dens_high, e->dens_high);
+    sim->state.speed_high = max2(sim->state.speed_high, speed);
+    return e->nan_probe == 0 && speed <= sim->guard.speed_limit &&
+           e->dens_high <= sim->guard.dens_limit && e->dens_low >= -sim->guard.dens_limit;
 }
 
 #define UNSTABLE                                                                                  \
@@ -67,40 +70,40 @@ static bool fluid_sound(struct simulation *s)
     "probably because fluid particles entered a wall or solid earlier in the run; a larger " \
     "wall_repulsion or diffusion_form = antuono prevents that"
 
-static enum err complain_of_fluid(const struct simulation *s, struct finding f, struct diag *d)
+static enum err complain_of_fluid(const struct simulation *sim, struct finding f, struct diag *d)
 {
-    const double given = s->scene->given_speed;
+    const double given = sim->scene->given_speed;
     char cause[200];
-    if (!(given > SPEED_WARNING * s->scene->c0))
-        return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
+    if (!(given > SPEED_WARNING * sim->scene->c0))
+        return complain(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
     snprintf(cause, sizeof cause,
              "the case gives the fluid up to %.4g m/s, but its speed of sound is only %.4g m/s; "
              "check that speed, or use sound_speed = %.3g or more",
-             given, s->scene->c0, 10 * given);
-    return complain(s, KIND_FLUID, f, cause, d);
+             given, sim->scene->c0, 10 * given);
+    return complain(sim, KIND_FLUID, f, cause, d);
 }
 
-static enum err check_fluid(struct simulation *s, struct diag *d)
+static enum err check_fluid(struct simulation *sim, struct diag *d)
 {
-    if (!fluid_sound(s)) {
+    if (!fluid_sound(sim)) {
         const struct finding f =
-            find_invalid(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
-        if (f.at >= 0) return complain_of_fluid(s, f, d);
+            find_invalid(&sim->kind[KIND_FLUID], sim->guard.speed_limit, sim->guard.dens_limit);
+        if (f.at >= 0) return complain_of_fluid(sim, f, d);
     }
-    if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
-        s->guard.warned_speed = true;
+    if (!sim->guard.warned_speed && sim->state.speed_high > SPEED_WARNING * sim->scene->c0) {
+        sim->guard.warned_speed = true;
         diag_warn(d,
                   "%s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
                   "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
-                  time_text(s).text, s->state.speed_high, SPEED_WARNING, s->scene->c0);
+                  time_text(sim).text, sim->state.speed_high, SPEED_WARNING, sim->scene->c0);
     }
-    const double dens = max2(s->state.dens_high, -s->state.dens_low);
-    if (!s->guard.warned_dens && dens > DENS_WARNING) {
-        s->guard.warned_dens = true;
+    const double dens = max2(sim->state.dens_high, -sim->state.dens_low);
+    if (!sim->guard.warned_dens && dens > DENS_WARNING) {
+        sim->guard.warned_dens = true;
         diag_warn(d,
                   "%s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
                   "usual, and the run stops at %g %%; a higher sound_speed may help",
-                  time_text(s).text, 100 * dens, 100 * s->guard.dens_limit);
+                  time_text(sim).text, 100 * dens, 100 * sim->guard.dens_limit);
     }
     return ERR_OK;
 }
@@ -109,24 +112,25 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
 #define OVERLAP_WARNING 0.5
 #define OVERLAP_LIMIT 0.98
 
-bool guards_contact_hard(const struct simulation *s)
+bool guards_contact_hard(const struct simulation *sim)
 {
-    return s->solid.contact && s->contact.deepest.overlap >= OVERLAP_WARNING;
+    return sim->solid.contact && sim->contact.deepest.overlap >= OVERLAP_WARNING;
 }
 
-bool guards_strain_due(const struct simulation *s)
+bool guards_strain_due(const struct simulation *sim)
 {
-    const bool now =
-        !(s->effects & FX_FLUID) || s->state.steps % CHECK_INTERVAL == 0 || guards_contact_hard(s);
-    return s->effects & FX_SOLID && now;
+    const bool now = !(sim->effects & FX_FLUID) || sim->state.steps % CHECK_INTERVAL == 0 ||
+                     guards_contact_hard(sim);
+    return sim->effects & FX_SOLID && now;
 }
 
 /* det F of every particle, from displacement gradients as of the last stress evaluation. */
-static struct finding smallest_det(const struct particles *p)
+static struct finding smallest_det(const struct particles *particles)
 {
     struct finding f = {-1, "det F", (double)INFINITY};
-    for (int64_t i = 0; i < p->n; i++) {
-        const double det = (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double det = (1 + particles->Uxx[i]) * (1 + particles->Uyy[i]) -
+                           particles->Uxy[i] * particles->Uyx[i];
         if (isnan(det))
             return (struct finding){i, "det F", det}; /* comparisons with it are false */
         if (!(det >= f.value)) f = (struct finding){i, "det F", det};
@@ -135,22 +139,24 @@ static struct finding smallest_det(const struct particles *p)
 }
 
 /* The first particle faster than the mean of its body by ten times the speed of sound. */
-static struct finding too_fast(const struct simulation *s, const struct particles *p)
+static struct finding too_fast(const struct simulation *sim, const struct particles *particles)
 {
-    for (int64_t i = 0; i < p->n;) {
-        const int32_t body = p->body[i];
-        const double limit = 10 * s->solid.body[body].sound_speed;
+    for (int64_t i = 0; i < particles->n;) {
+        const int32_t body = particles->body[i];
+        const double limit = 10 * sim->solid.body[body].sound_speed;
         double sum_x = 0, sum_y = 0;
         int64_t end = i;
-        for (; end < p->n && p->body[end] == body; end++) {
-            if (!isfinite(p->vx[end] + p->vy[end]))
-                return (struct finding){end, "speed (m/s)", p->vx[end] + p->vy[end]};
-            sum_x += p->vx[end];
-            sum_y += p->vy[end];
+        for (; end < particles->n && particles->body[end] == body; end++) {
+            if (!isfinite(particles->vx[end] + particles->vy[end]))
+                return (struct finding){end, "speed (m/s)",
+                                        particles->vx[end] + particles->vy[end]};
+            sum_x += particles->vx[end];
+            sum_y += particles->vy[end];
         }
         const double mean_x = sum_x / (double)(end - i), mean_y = sum_y / (double)(end - i);
         for (; i < end; i++) {
-            const double speed2 = square(p->vx[i] - mean_x) + square(p->vy[i] - mean_y);
+            const double speed2 =
+                square(particles->vx[i] - mean_x) + square(particles->vy[i] - mean_y);
             if (!(speed2 <= limit * limit))
                 return (struct finding){i, "speed relative to its body (m/s)", sqrt(speed2)};
         }
@@ -158,128 +164,132 @@ static struct finding too_fast(const struct simulation *s, const struct particle
     return (struct finding){-1, "", 0};
 }
 
-static enum err check_contact(struct simulation *s, struct diag *d)
+static enum err check_contact(struct simulation *sim, struct diag *d)
 {
-    const struct contact_depth *const at = &s->contact.deepest;
+    const struct contact_depth *const at = &sim->contact.deepest;
     char one[CONTACT_NAME], other[CONTACT_NAME];
-    if (s->contact.list_full)
+    if (sim->contact.list_full)
         return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
-                         time_text(s).text);
-    if (at->overlap < OVERLAP_WARNING || (s->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
+                         time_text(sim).text);
+    if (at->overlap < OVERLAP_WARNING || (sim->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
         return ERR_OK;
-    contact_name(&s->contact, at->body, one);
-    contact_name(&s->contact, at->other, other);
-    s->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
-    if (s->guard.case_at_fault)
+    contact_name(&sim->contact, at->body, one);
+    contact_name(&sim->contact, at->other, other);
+    sim->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
+    if (sim->guard.case_at_fault)
         return diag_fail(
             d, ERR_GUARD,
             "%s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
             "m, the limit of contact; a larger stiffness in [contact], a stiffer body or a slower "
             "motion may help",
-            time_text(s).text, (long long)s->state.steps, one, other, at->overlap, at->x, at->y);
-    s->guard.warned_contact = true;
+            time_text(sim).text, (long long)sim->state.steps, one, other, at->overlap, at->x,
+            at->y);
+    sim->guard.warned_contact = true;
     diag_warn(d,
               "%s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
               "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
-              time_text(s).text, one, other, at->overlap, at->x, at->y);
+              time_text(sim).text, one, other, at->overlap, at->x, at->y);
     return ERR_OK;
 }
 
-static enum err check_solid(struct simulation *s, struct diag *d)
+static enum err check_solid(struct simulation *sim, struct diag *d)
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
-    const struct finding fast = too_fast(s, p);
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
-        return complain(s, KIND_SOLID, fast,
+        return complain(sim, KIND_SOLID, fast,
                         "the limit is ten times the speed of sound of the material. The solid is "
                         "unstable (a smaller solid_safety may help) or far too soft for its load",
                         d);
-    if (s->solid.contact) TRY(check_contact(s, d));
-    if (!guards_strain_due(s)) return ERR_OK;
-    const struct finding det = smallest_det(p);
-    s->state.det_low = min2(s->state.det_low, det.value);
+    if (sim->solid.contact) TRY(check_contact(sim, d));
+    if (!guards_strain_due(sim)) return ERR_OK;
+    const struct finding det = smallest_det(particles);
+    sim->state.det_low = min2(sim->state.det_low, det.value);
     if (!(det.value > 0))
-        return complain(s, KIND_SOLID, det,
+        return complain(sim, KIND_SOLID, det,
                         "the material is inverted; finer particles, more hourglass control or a "
                         "stiffer law may help",
                         d);
-    if (!s->guard.warned_det && det.value < DET_WARNING) {
-        s->guard.warned_det = true;
+    if (!sim->guard.warned_det && det.value < DET_WARNING) {
+        sim->guard.warned_det = true;
         diag_warn(
             d,
             "%s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
             "the material is inverted and the run stops; a finer dp or a stiffer law may help",
-            time_text(s).text, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+            time_text(sim).text, (long long)particles->id[det.at], particles->x[det.at],
+            particles->y[det.at], det.value);
     }
     return ERR_OK;
 }
 
-static int binding_bound(const struct simulation *s)
+static int binding_bound(const struct simulation *sim)
 {
     int least = 0;
     for (int k = 1; k < BOUND_COUNT; k++)
-        if (s->dt_bound[k] < s->dt_bound[least]) least = k;
+        if (sim->dt_bound[k] < sim->dt_bound[least]) least = k;
     return least;
 }
 
 /* What lengthens a step that a bound limits. */
-static const char *step_remedy(const struct simulation *s, int bound)
+static const char *step_remedy(const struct simulation *sim, int bound)
 {
     if (bound != BOUND_solid && bound != BOUND_contact)
         return "a smaller cfl or a higher sound_speed may help";
-    if (s->effects & FX_FLUID && s->scene->numerics.multirate == MULTIRATE_OFF)
+    if (sim->effects & FX_FLUID && sim->scene->numerics.multirate == MULTIRATE_OFF)
         return "numerics.multirate = auto gives the solid steps of its own";
     return "a finer dp or a stiffer body may help";
 }
 
 /* Steps that become too small, and sub-steps that become too many. */
-static enum err check_step(struct simulation *s, struct diag *d)
+static enum err check_step(struct simulation *sim, struct diag *d)
 {
-    const double limit = s->guard.step_limit;
-    const bool cut = !(s->dt_bound[BOUND_output] > s->state.dt); /* by an output time */
-    if (s->substeps > SUBSTEPS_MOST)
+    const double limit = sim->guard.step_limit;
+    const bool cut = !(sim->dt_bound[BOUND_output] > sim->state.dt); /* by an output time */
+    if (sim->substeps > SUBSTEPS_MOST)
         return diag_fail(
             d, ERR_GUARD,
             "%s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
             "because its material is being crushed or torn; a finer dp may help",
-            time_text(s).text, s->dt_solid, s->substeps);
-    if (cut || s->state.dt > STEP_WARNING * limit) return ERR_OK;
-    if (s->state.dt < limit)
+            time_text(sim).text, sim->dt_solid, sim->substeps);
+    if (cut || sim->state.dt > STEP_WARNING * limit) return ERR_OK;
+    if (sim->state.dt < limit)
         return diag_fail(d, ERR_GUARD,
                          "%s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
-                         time_text(s).text, s->state.dt);
-    const int bound = binding_bound(s);
-    if (!s->guard.warned_step)
+                         time_text(sim).text, sim->state.dt);
+    const int bound = binding_bound(sim);
+    if (!sim->guard.warned_step)
         diag_warn(d,
                   "%s: the time step has fallen to %.3g s, limited by %s, and the run "
                   "stops at %.3g s; %s",
-                  time_text(s).text, s->state.dt, bound_names[bound], limit, step_remedy(s, bound));
-    s->guard.warned_step = true;
+                  time_text(sim).text, sim->state.dt, bound_names[bound], limit,
+                  step_remedy(sim, bound));
+    sim->guard.warned_step = true;
     return ERR_OK;
 }
 
 /* No fluid would interact with walls at positions that are not numbers, and no message would say
  * so. */
-static enum err check_motion(struct simulation *s, struct diag *d)
+static enum err check_motion(struct simulation *sim, struct diag *d)
 {
-    for (int k = 0; k < s->wall_motion.n; k++) {
-        const struct moving_wall *const b = &s->wall_motion.body[k];
+    for (int k = 0; k < sim->wall_motion.n; k++) {
+        const struct moving_wall *const b = &sim->wall_motion.body[k];
         const struct motion_state *const m = &b->placed;
         const double sum = m->d[0] + m->d[1] + m->v[0] + m->v[1] + m->a[0] + m->a[1] + m->angle +
                            m->rate + m->angular_acceleration;
         if (isfinite(sum)) continue;
-        const struct scene_motion *const motion = &s->scene->motion[b->motion];
+        const struct scene_motion *const motion = &sim->scene->motion[b->motion];
         char place[LOCATION_TEXT];
-        scene_location(s->scene, motion->common.line, place);
-        s->guard.case_at_fault = true;
+        scene_location(sim->scene, motion->common.line, place);
+        sim->guard.case_at_fault = true;
         return diag_fail(
             d, ERR_GUARD,
             "%s: %s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
             "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite, so change "
             "its expression or table there",
-            place, time_text(s).text, motion->common.name, s->scene->wall[b->section].common.name,
-            m->d[0], m->d[1], m->v[0], m->v[1], m->a[0], m->a[1]);
+            place, time_text(sim).text, motion->common.name,
+            sim->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
+            m->a[1]);
     }
     return ERR_OK;
 }
@@ -289,26 +299,27 @@ enum { VOIDS_INTERVAL = 256 };
 
 /* In a full channel fluid is missing only where its pressure has fallen below zero, which opens
  * voids. */
-static void check_voids(struct simulation *s, struct diag *d)
+static void check_voids(struct simulation *sim, struct diag *d)
 {
-    const struct scene *const scene = s->scene;
-    const struct particles *const p = &s->kind[KIND_FLUID];
+    const struct scene *const scene = sim->scene;
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const double area = square(scene->top.dp);
     double volume = 0, margin = 0; /* a buffer has a row more or less */
-    if (!scene->full || s->guard.warned_voids || s->state.steps % VOIDS_INTERVAL) return;
-    for (int64_t i = 0; i < p->n; i++) volume += area * relative_mass(p, i) / (1 + p->dens[i]);
+    if (!scene->full || sim->guard.warned_voids || sim->state.steps % VOIDS_INTERVAL) return;
+    for (int64_t i = 0; i < particles->n; i++)
+        volume += area * relative_mass(particles, i) / (1 + particles->dens[i]);
     for (int k = 0; k < scene_open_count(scene); k++)
         margin += scene->top.dp * scene_open_at(scene, k).length;
     const double start = area * (double)scene->points[KIND_FLUID].n, missing = start - volume;
     if (!(missing > VOIDS_SHARE * start + margin)) return;
-    s->guard.warned_voids = true;
+    sim->guard.warned_voids = true;
     diag_warn(d,
               "%s: %.2g %% of the channel is empty: voids have opened where the pressure "
               "of the fluid fell below zero, and the flow round them is wrong. Only differences of "
               "pressure act on it, so give the open boundaries a `pressure` that is higher by "
               "about rho v^2/2 = %.3g Pa, by the largest speed so far",
-              time_text(s).text, 100 * missing / start,
-              0.5 * scene->rho0 * square(s->state.speed_high));
+              time_text(sim).text, 100 * missing / start,
+              0.5 * scene->rho0 * square(sim->state.speed_high));
 }
 
 /* Fraction of its available energy that a region may gain without a warning (T-46); the time for
@@ -323,33 +334,33 @@ static void check_voids(struct simulation *s, struct diag *d)
 #define GAIN_LIMIT 0.9
 
 /* Whether a solid has the paper's law, which gains energy under large strains at any step. */
-static bool lacks_potential(const struct simulation *s)
+static bool lacks_potential(const struct simulation *sim)
 {
     bool paper = false;
-    for (int k = 0; k < s->scene->n_solid; k++) paper |= s->scene->solid[k].law == LAW_PAPER;
+    for (int k = 0; k < sim->scene->n_solid; k++) paper |= sim->scene->solid[k].law == LAW_PAPER;
     return paper;
 }
 
-static bool bodies_are_near(const struct simulation *s)
+static bool bodies_are_near(const struct simulation *sim)
 {
-    return s->effects & FX_CONTACT && s->contact.near;
+    return sim->effects & FX_CONTACT && sim->contact.near;
 }
 
 /* Without weight nothing holds fluid at a wall that moves back. */
-static bool fluid_may_leave_walls(const struct simulation *s)
+static bool fluid_may_leave_walls(const struct simulation *sim)
 {
-    return !(s->effects & FX_GRAVITY) && s->scene->numerics.suction == SUCTION_OFF;
+    return !(sim->effects & FX_GRAVITY) && sim->scene->numerics.suction == SUCTION_OFF;
 }
 
-static bool substeps_chosen(const struct simulation *s)
+static bool substeps_chosen(const struct simulation *sim)
 {
-    return s->effects & FX_COUPLING && s->effects & FX_MULTIRATE &&
-           !(s->scene->numerics.fixed_step > 0);
+    return sim->effects & FX_COUPLING && sim->effects & FX_MULTIRATE &&
+           !(sim->scene->numerics.fixed_step > 0);
 }
 
-static bool always(const struct simulation *s)
+static bool always(const struct simulation *sim)
 {
-    (void)s;
+    (void)sim;
     return true;
 }
 
@@ -379,22 +390,22 @@ static const struct attribution {
     {TERM_ALL, always, "the boundaries of the fluid", ""},
 };
 
-static const struct attribution *attribution_of(const struct simulation *s,
+static const struct attribution *attribution_of(const struct simulation *sim,
                                                 const struct energy_gain *gain)
 {
     const struct attribution *row = attributions;
-    while (row->term != gain->term || !row->applies(s)) row++;
+    while (row->term != gain->term || !row->applies(sim)) row++;
     return row;
 }
 
 /* The work of dummies does not depend on the step: fluid that is resolved better makes it less,
  * also between bodies that meet. A step that no key of the case sets is named with its value. */
-static void write_step_remedy(const struct simulation *s, const struct energy_gain *gain,
+static void write_step_remedy(const struct simulation *sim, const struct energy_gain *gain,
                               char text[64])
 {
     double half = 0;
-    const char *const key = gain->term == TERM_ALL ? "dp" : timestep_shorter(s, &half);
-    if (strcmp(key, "fixed_step") == 0 && !(s->scene->numerics.fixed_step > 0))
+    const char *const key = gain->term == TERM_ALL ? "dp" : timestep_shorter(sim, &half);
+    if (strcmp(key, "fixed_step") == 0 && !(sim->scene->numerics.fixed_step > 0))
         snprintf(text, 64, "numerics.fixed_step = %.3g s", half);
     else
         snprintf(text, 64, "a smaller %s", key);
@@ -402,17 +413,17 @@ static void write_step_remedy(const struct simulation *s, const struct energy_ga
 
 /* The names of a region's sections, "[solid plate], [fluid left]"; returns their number. */
 enum { REGION_NAME = 160 };
-static int write_region_name(const struct simulation *s, int region, char text[REGION_NAME])
+static int write_region_name(const struct simulation *sim, int region, char text[REGION_NAME])
 {
     int list[ENERGY_ENTRIES], names = 0;
-    const int n = energy_entries(s, list);
+    const int n = energy_entries(sim, list);
     size_t used = 0;
     text[0] = '\0';
     for (int k = 0; k < n && used < REGION_NAME; k++) {
         const int kind = list[k] / SCENE_MAX_SECTIONS, section = list[k] % SCENE_MAX_SECTIONS;
         static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
-        const struct scene_section_common *const common = section_at(s->scene, id[kind], section);
-        if (energy_region(&s->state.energy, list[k]) != region) continue;
+        const struct scene_section_common *const common = section_at(sim->scene, id[kind], section);
+        if (energy_region(&sim->state.energy, list[k]) != region) continue;
         used += (size_t)snprintf(text + used, REGION_NAME - used, "%s[%s %s]", used ? ", " : "",
                                  kind_names[kind], common->name);
         names++;
@@ -421,29 +432,29 @@ static int write_region_name(const struct simulation *s, int region, char text[R
 }
 
 /* The fastest particle of a region; false if none moves. */
-static bool find_fastest(const struct simulation *s, int region, double at[2])
+static bool find_fastest(const struct simulation *sim, int region, double at[2])
 {
     double top = 0;
     at[0] = at[1] = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &s->kind[kind];
-        for (int64_t i = 0; i < p->n && kind != KIND_WALL; i++) {
-            const double speed2 = square(p->vx[i]) + square(p->vy[i]);
-            const int entry = energy_entry((enum kind)kind, p->body[i]);
-            if (!(speed2 > top) || energy_region(&s->state.energy, entry) != region) continue;
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n && kind != KIND_WALL; i++) {
+            const double speed2 = square(particles->vx[i]) + square(particles->vy[i]);
+            const int entry = energy_entry((enum kind)kind, particles->body[i]);
+            if (!(speed2 > top) || energy_region(&sim->state.energy, entry) != region) continue;
             top = speed2;
-            at[0] = p->x[i];
-            at[1] = p->y[i];
+            at[0] = particles->x[i];
+            at[1] = particles->y[i];
         }
     }
     return top > 0;
 }
 
-static void write_gain(const struct simulation *s, const struct energy_gain *g, char text[400])
+static void write_gain(const struct simulation *sim, const struct energy_gain *g, char text[400])
 {
     char name[REGION_NAME];
     double at[2];
-    const bool one = write_region_name(s, g->entry, name) == 1;
+    const bool one = write_region_name(sim, g->entry, name) == 1;
     const struct ledger *const now = &g->now;
     const double most = max2(max2(now->kinetic, now->internal), max2(now->elastic, now->hourglass));
     const char *const form = most == now->kinetic    ? "motion"
@@ -454,58 +465,58 @@ static void write_gain(const struct simulation *s, const struct energy_gain *g, 
         snprintf(text, 400,
                  "%s: %s %s gained %.3g J/m of energy that nothing supplied (available: "
                  "%.3g J/m), in %s. Most of %s energy is in %s",
-                 time_text(s).text, name, one ? "has" : "have", g->energy, g->available,
-                 attribution_of(s, g)->source, one ? "its" : "their", form);
-    if (find_fastest(s, g->entry, at) && used > 0 && used < 400)
+                 time_text(sim).text, name, one ? "has" : "have", g->energy, g->available,
+                 attribution_of(sim, g)->source, one ? "its" : "their", form);
+    if (find_fastest(sim, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
 
-enum err guards_energy(struct simulation *s, struct diag *d)
+enum err guards_energy(struct simulation *sim, struct diag *d)
 {
-    const struct energy_gain g = s->gain;
-    const double time = s->state.time;
+    const struct energy_gain g = sim->gain;
+    const double time = sim->state.time;
     char text[400], step[64];
-    if (!s->gain_found) return ERR_OK;
-    s->gain_found = false;
+    if (!sim->gain_found) return ERR_OK;
+    sim->gain_found = false;
     const double share = g.entry < 0       ? 0
                          : g.available > 0 ? g.energy / g.available
                                            : (double)INFINITY;
-    if (share <= GAIN_WARNING) s->state.gain_since = time;
+    if (share <= GAIN_WARNING) sim->state.gain_since = time;
     if (g.entry < 0) return ERR_OK;
-    const bool lasts = time - s->state.gain_since >= GAIN_LASTS;
+    const bool lasts = time - sim->state.gain_since >= GAIN_LASTS;
     if (share > GAIN_WARNING && share < GAIN_COUNTS_NOW && !lasts) return ERR_OK;
-    s->state.gain = max2(s->state.gain, g.energy);
-    s->state.gain_share = max2(s->state.gain_share, share);
+    sim->state.gain = max2(sim->state.gain, g.energy);
+    sim->state.gain_share = max2(sim->state.gain_share, share);
     if (share <= GAIN_WARNING) return ERR_OK;
-    write_gain(s, &g, text);
-    write_step_remedy(s, &g, step);
-    const char *const remedy = attribution_of(s, &g)->remedy;
+    write_gain(sim, &g, text);
+    write_step_remedy(sim, &g, step);
+    const char *const remedy = attribution_of(sim, &g)->remedy;
     /* A gain at the interface, or by the law of the fluid, may be less than what the rest loses. */
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
         return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s%s may help", text, step,
                          remedy);
-    if (!s->guard.warned_energy)
+    if (!sim->guard.warned_energy)
         diag_warn(d, "%s. The results may be invalid; %s%s may help", text, step, remedy);
-    s->guard.warned_energy = true;
+    sim->guard.warned_energy = true;
     return ERR_OK;
 }
 
-enum err guards_check(struct simulation *s, struct diag *d)
+enum err guards_check(struct simulation *sim, struct diag *d)
 {
-    if (s->effects & FX_MOTION) TRY(check_motion(s, d));
-    if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
-    if (!(s->effects & FX_MOTION)) check_voids(s, d);
-    if (s->effects & FX_SOLID) TRY(check_solid(s, d));
-    TRY(guards_energy(s, d));
-    return check_step(s, d);
+    if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
+    if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));
+    if (!(sim->effects & FX_MOTION)) check_voids(sim, d);
+    if (sim->effects & FX_SOLID) TRY(check_solid(sim, d));
+    TRY(guards_energy(sim, d));
+    return check_step(sim, d);
 }
 
-void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d)
+void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d)
 {
-    const struct particles *const p = &s->kind[KIND_FLUID];
-    const double *const low = s->scene->domain_lower, *const high = s->scene->domain_upper;
-    const double x = p->x[first], y = p->y[first];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const double *const low = sim->scene->domain_lower, *const high = sim->scene->domain_upper;
+    const double x = particles->x[first], y = particles->y[first];
     const char *const side = x < low[0]     ? "left"
                              : x >= high[0] ? "right"
                              : y < low[1]   ? "lower"
@@ -514,36 +525,38 @@ void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag 
               "%s: fluid particle %lld has left the domain through its %s side, at (%.6g, "
               "%.6g) m, and is removed: its mass and pressure will be missing; a [wall] in its way "
               "or a larger [domain] keeps it",
-              time_text(s).text, (long long)p->id[first], side, x, y);
+              time_text(sim).text, (long long)particles->id[first], side, x, y);
 }
 
 /* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
 #define CROSSING_SHARE 0.01
 enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * CHECK_INTERVAL };
 
-enum err guards_penetration(struct simulation *s, struct diag *d)
+enum err guards_penetration(struct simulation *sim, struct diag *d)
 {
-    if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.steps % CROSSING_INTERVAL)
+    if (!(sim->effects & (FX_WALL | FX_COUPLING)) || sim->state.steps % CROSSING_INTERVAL)
         return ERR_OK;
     int64_t first;
-    const int64_t count = penetration_count(s, &first);
-    const struct particles *const p = &s->kind[KIND_FLUID];
+    const int64_t count = penetration_count(sim, &first);
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     if (count == 0) return ERR_OK;
-    s->state.entered = s->state.entered > count ? s->state.entered : count;
-    if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
+    sim->state.entered = sim->state.entered > count ? sim->state.entered : count;
+    if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)particles->n)
         return diag_fail(
             d, ERR_GUARD,
             "%s, step %lld: %lld fluid particles have entered a wall or solid, the first "
             "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; a larger wall_repulsion, a "
             "thickness of three particles or a higher sound_speed may help",
-            time_text(s).text, (long long)s->state.steps, (long long)count, (long long)p->id[first],
-            p->x[first], p->y[first], elementary_hypot(p->vx[first], p->vy[first]));
-    if (s->guard.warned_crossing) return ERR_OK;
-    s->guard.warned_crossing = true;
+            time_text(sim).text, (long long)sim->state.steps, (long long)count,
+            (long long)particles->id[first], particles->x[first], particles->y[first],
+            elementary_hypot(particles->vx[first], particles->vy[first]));
+    if (sim->guard.warned_crossing) return ERR_OK;
+    sim->guard.warned_crossing = true;
     diag_warn(
         d,
         "%s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
         "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
-        time_text(s).text, (long long)p->id[first], p->x[first], p->y[first]);
+        time_text(sim).text, (long long)particles->id[first], particles->x[first],
+        particles->y[first]);
     return ERR_OK;
 }

@@ -12,24 +12,24 @@ enum { CHECK_INTERVAL = 16 };
 
 /* Reads the last test of the energy account: warns once if a region has gained energy, and
  * fails if the gain is nine tenths of its available energy. */
-enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err guards_energy(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
  * there are more than stray particles. */
-enum err guards_penetration(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
  * cell. */
-void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d);
+void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d);
 
 /* Whether surfaces in contact are pressed harder than the modulus of contact. */
-bool guards_contact_hard(const struct simulation *s);
+bool guards_contact_hard(const struct simulation *sim);
 
 /* Whether the check after this step reads the solid's gradients, which must then be up to date. */
-bool guards_strain_due(const struct simulation *s);
+bool guards_strain_due(const struct simulation *sim);
 
 /* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time,
  * quantity and likely cause; warns once if a limit is near. */
-enum err guards_check(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err guards_check(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 #endif

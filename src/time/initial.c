@@ -22,21 +22,21 @@ static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_
 {
     const struct scene_points *const points = &sim->scene->points[kind];
     const unsigned groups = groups_of(sim, kind);
-    struct particles *const p = &sim->kind[kind];
-    memset(p, 0, sizeof *p);
+    struct particles *const particles = &sim->kind[kind];
+    memset(particles, 0, sizeof *particles);
     if (!groups || points->n == 0) return ERR_OK;
     const int64_t most = groups & G_OPEN ? open_places(sim->scene) : points->n;
-    TRY(particles_create(p, &sim->arena, most, groups, kind_names[kind], d));
-    p->n = points->n;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] = points->x[i];
-        p->y[i] = points->y[i];
-        p->id[i] = first_id + i;
-        p->body[i] = points->body[i];
-        if (p->X) p->X[i] = points->x[i];
-        if (p->Y) p->Y[i] = points->y[i];
-        if (p->open) p->open[i] = points->open[i];
-        if (p->free) p->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
+    TRY(particles_create(particles, &sim->arena, most, groups, kind_names[kind], d));
+    particles->n = points->n;
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x[i] = points->x[i];
+        particles->y[i] = points->y[i];
+        particles->id[i] = first_id + i;
+        particles->body[i] = points->body[i];
+        if (particles->X) particles->X[i] = points->x[i];
+        if (particles->Y) particles->Y[i] = points->y[i];
+        if (particles->open) particles->open[i] = points->open[i];
+        if (particles->free) particles->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
     }
     return ERR_OK;
 }
@@ -48,40 +48,43 @@ static double expr_or(const struct expr *e, double x, double y, double otherwise
 
 static void start_fluid(struct simulation *sim)
 {
-    struct particles *const p = &sim->kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct scene_fluid *const f = &sim->scene->fluid[p->body[i]];
-        const double x = p->x[i], y = p->y[i];
+    struct particles *const particles = &sim->kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const struct scene_fluid *const f = &sim->scene->fluid[particles->body[i]];
+        const double x = particles->x[i], y = particles->y[i];
         /* Hydrostatic start below the free surface. */
         const double depth = isnan(f->surface) ? 0 : max2(0, f->surface - y);
         const double pressure =
             expr_or(f->pressure.e[0], x, y, -sim->scene->rho0 * sim->scene->top.gravity[1] * depth);
-        p->dens[i] = eos_dens(pressure, sim->scene->rho0, sim->scene->c0);
-        if (p->dens_slow) p->dens_slow[i] = p->dens[i];
-        if (p->m) p->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + p->dens[i] : 1;
-        p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
-        p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
-        if (p->vx_half) {
-            p->vx_half[i] = p->vx[i];
-            p->vy_half[i] = p->vy[i];
+        particles->dens[i] = eos_dens(pressure, sim->scene->rho0, sim->scene->c0);
+        if (particles->dens_slow) particles->dens_slow[i] = particles->dens[i];
+        if (particles->m)
+            particles->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + particles->dens[i] : 1;
+        particles->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
+        particles->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
+        if (particles->vx_half) {
+            particles->vx_half[i] = particles->vx[i];
+            particles->vy_half[i] = particles->vy[i];
         }
-        if (!p->vx_old) continue;
-        p->vx_old[i] = p->vx[i];
-        p->vy_old[i] = p->vy[i];
-        p->dens_old[i] = p->dens[i];
+        if (!particles->vx_old) continue;
+        particles->vx_old[i] = particles->vx[i];
+        particles->vy_old[i] = particles->vy[i];
+        particles->dens_old[i] = particles->dens[i];
     }
 }
 
 static void start_solid(struct simulation *sim)
 {
-    struct particles *const p = &sim->kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct scene_solid *const b = &sim->scene->solid[p->body[i]];
-        p->vx[i] = p->free[i] * expr_or(b->velocity.e[0], p->X[i], p->Y[i], 0);
-        p->vy[i] = p->free[i] * expr_or(b->velocity.e[1], p->X[i], p->Y[i], 0);
-        if (!p->wx) continue;
-        p->wx[i] = p->vx[i];
-        p->wy[i] = p->vy[i];
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const struct scene_solid *const b = &sim->scene->solid[particles->body[i]];
+        particles->vx[i] =
+            particles->free[i] * expr_or(b->velocity.e[0], particles->X[i], particles->Y[i], 0);
+        particles->vy[i] =
+            particles->free[i] * expr_or(b->velocity.e[1], particles->X[i], particles->Y[i], 0);
+        if (!particles->wx) continue;
+        particles->wx[i] = particles->vx[i];
+        particles->wy[i] = particles->vy[i];
     }
 }
 

@@ -26,55 +26,58 @@ struct step_sizes {
     double dt, kick, r, r_old;
 };
 
-static void update_leapfrog_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+static void update_leapfrog_rows(struct particles *particles, const void *by, int64_t from,
+                                 int64_t end)
 {
     const struct step_sizes *const step = by;
     const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
                  r_old = step->r_old;
 #pragma omp simd
     for (int64_t i = from; i < end; i++) {
-        p->vx_half[i] += kick * p->ax[i];
-        p->vy_half[i] += kick * p->ay[i];
-        p->x[i] += dt * p->vx_half[i];
-        p->y[i] += dt * p->vy_half[i];
-        p->vx[i] = p->vx_half[i] + half * p->ax[i];
-        p->vy[i] = p->vy_half[i] + half * p->ay[i];
-        p->dens[i] +=
-            dt * extrapolated_rate(p->ddens[i], p->ddens_old[i], p->ddens_older[i], r, r_old);
+        particles->vx_half[i] += kick * particles->ax[i];
+        particles->vy_half[i] += kick * particles->ay[i];
+        particles->x[i] += dt * particles->vx_half[i];
+        particles->y[i] += dt * particles->vy_half[i];
+        particles->vx[i] = particles->vx_half[i] + half * particles->ax[i];
+        particles->vy[i] = particles->vy_half[i] + half * particles->ay[i];
+        particles->dens[i] += dt * extrapolated_rate(particles->ddens[i], particles->ddens_old[i],
+                                                     particles->ddens_older[i], r, r_old);
     }
 }
 
-static void update_fluid(struct simulation *s, double dt, double dt_old, double dt_older)
+static void update_fluid(struct simulation *sim, double dt, double dt_old, double dt_older)
 {
-    struct particles *const p = &s->kind[KIND_FLUID];
+    struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct step_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
                                   step_ratio(dt_old, dt_older)};
     if (!(dt_old > 0)) { /* the first step has no earlier rates */
-        memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
-        memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
+        memcpy(particles->ddens_old, particles->ddens,
+               (size_t)particles->n * sizeof *particles->ddens);
+        memcpy(particles->ddens_older, particles->ddens,
+               (size_t)particles->n * sizeof *particles->ddens);
     }
-    advance_fluid(s, update_leapfrog_rows, &by);
+    advance_fluid(sim, update_leapfrog_rows, &by);
     /* Swaps the arrays of old rates; the next evaluation overwrites the oldest. */
-    double *const oldest = p->ddens_older;
-    p->ddens_older = p->ddens_old;
-    p->ddens_old = p->ddens;
-    p->ddens = oldest;
+    double *const oldest = particles->ddens_older;
+    particles->ddens_older = particles->ddens_old;
+    particles->ddens_old = particles->ddens;
+    particles->ddens = oldest;
 }
 
-static void leapfrog_step(struct simulation *s, double t_limit)
+static void leapfrog_step(struct simulation *sim, double t_limit)
 {
-    struct state *const st = &s->state;
-    evaluate_start(s);
+    struct state *const st = &sim->state;
+    evaluate_start(sim);
     double clock = wall_clock();
     bool hits;
-    const double dt = timestep_choose(s, t_limit, &hits), dt_old = st->dt;
-    energy_of_step(s, dt);
-    update_fluid(s, dt, dt_old, st->dt_old);
-    clock = phase_add(s, PHASE_update, clock);
-    if (s->effects & FX_COUPLING) advance_structure(s, dt, 0.5 * (dt_old + dt));
-    clock = phase_add(s, PHASE_solid, clock);
-    timestep_book(s, dt, t_limit, hits);
-    phase_add(s, PHASE_update, clock);
+    const double dt = timestep_choose(sim, t_limit, &hits), dt_old = st->dt;
+    energy_of_step(sim, dt);
+    update_fluid(sim, dt, dt_old, st->dt_old);
+    clock = phase_add(sim, PHASE_update, clock);
+    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, 0.5 * (dt_old + dt));
+    clock = phase_add(sim, PHASE_solid, clock);
+    timestep_book(sim, dt, t_limit, hits);
+    phase_add(sim, PHASE_update, clock);
 }
 
 const struct integrator integrator_leapfrog = {

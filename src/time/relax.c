@@ -13,79 +13,81 @@
 #include "time/simulation.h"
 #include "time/timestep.h"
 
-bool relax_due(const struct simulation *s)
+bool relax_due(const struct simulation *sim)
 {
-    return s->effects & FX_RELAX && !s->state.relaxed && s->state.time == 0;
+    return sim->effects & FX_RELAX && !sim->state.relaxed && sim->state.time == 0;
 }
 
-static double kinetic_energy(const struct simulation *s)
+static double kinetic_energy(const struct simulation *sim)
 {
-    const struct particles *const f = &s->kind[KIND_FLUID], *const p = &s->kind[KIND_SOLID];
+    const struct particles *const f = &sim->kind[KIND_FLUID], *const particles =
+                                                                  &sim->kind[KIND_SOLID];
     double fluid = 0, solid = 0;
     for (int64_t i = 0; i < f->n; i++)
         fluid += relative_mass(f, i) * (square(f->vx[i]) + square(f->vy[i]));
-    for (int64_t i = 0; i < p->n; i++)
-        solid += s->solid.body[p->body[i]].mass * (square(p->vx[i]) + square(p->vy[i]));
-    return 0.5 * (s->fluid.k.mass * fluid + solid);
+    for (int64_t i = 0; i < particles->n; i++)
+        solid += sim->solid.body[particles->body[i]].mass *
+                 (square(particles->vx[i]) + square(particles->vy[i]));
+    return 0.5 * (sim->fluid.k.mass * fluid + solid);
 }
 
 /* With `verlet` a solid's velocity is half a step behind its position: at rest it is that of half a
  * step before. Zero instead would put energy into the fastest modes. */
-static void stop_solid(struct simulation *s)
+static void stop_solid(struct simulation *sim)
 {
-    struct particles *const p = &s->kind[KIND_SOLID];
-    const double back = -0.5 * s->state.dt / s->substeps;
-    particles_clear(p->vx, p->n);
-    particles_clear(p->vy, p->n);
-    particles_clear(p->wx, p->n);
-    particles_clear(p->wy, p->n);
-    if (s->integrator->centred || p->n == 0) return;
-    solid_stress(&s->solid, p);
-    solid_forces(&s->solid, p);
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = back * p->sx[i];
-        p->vy[i] = back * p->sy[i];
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    const double back = -0.5 * sim->state.dt / sim->substeps;
+    particles_clear(particles->vx, particles->n);
+    particles_clear(particles->vy, particles->n);
+    particles_clear(particles->wx, particles->n);
+    particles_clear(particles->wy, particles->n);
+    if (sim->integrator->centred || particles->n == 0) return;
+    solid_stress(&sim->solid, particles);
+    solid_forces(&sim->solid, particles);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = back * particles->sx[i];
+        particles->vy[i] = back * particles->sy[i];
     }
 }
 
 /* The integrators' memories of earlier steps end with the motion. */
-static void stop(struct simulation *s)
+static void stop(struct simulation *sim)
 {
-    const struct particles *const f = &s->kind[KIND_FLUID];
+    const struct particles *const f = &sim->kind[KIND_FLUID];
     double *const of_fluid[] = {f->vx,     f->vy,     f->vx_half,   f->vy_half,
                                 f->vx_old, f->vy_old, f->ddens_old, f->ddens_older};
     for (size_t k = 0; k < COUNT_OF(of_fluid); k++) particles_clear(of_fluid[k], f->n);
-    if (s->effects & FX_SOLID) stop_solid(s);
-    s->state.verlet_count = 0; /* the next step is an Euler step */
-    s->state.relax_energy = 0;
-    s->evaluated = false;
+    if (sim->effects & FX_SOLID) stop_solid(sim);
+    sim->state.verlet_count = 0; /* the next step is an Euler step */
+    sim->state.relax_energy = 0;
+    sim->evaluated = false;
 }
 
 /* The run begins with what has been found. */
-static void begin_run(struct simulation *s)
+static void begin_run(struct simulation *sim)
 {
-    struct state *const st = &s->state;
-    stop(s);
+    struct state *const st = &sim->state;
+    stop(sim);
     st->relaxed = 1;
     st->lost_energy = st->periodic_energy = st->wall_work = st->exchanged = 0;
     st->dens_low = st->dens_high = st->speed_high = 0;
     st->gain = st->gain_share = st->gain_since = 0;
     st->det_low = 1;
-    energy_begin(s);
+    energy_begin(sim);
 }
 
 /* T-78: judges the motion after a step of the search. */
-static void judge(struct simulation *s, double elapsed)
+static void judge(struct simulation *sim, double elapsed)
 {
-    struct state *const st = &s->state;
-    const double energy = kinetic_energy(s), before = st->relax_energy;
+    struct state *const st = &sim->state;
+    const double energy = kinetic_energy(sim), before = st->relax_energy;
     st->relax_time += elapsed;
     st->relax_energy = energy;
     st->relax_most = max2(st->relax_most, energy);
-    const double tolerated = square(s->scene->relax.tolerance) * st->relax_most;
+    const double tolerated = square(sim->scene->relax.tolerance) * st->relax_most;
     if (energy > tolerated) st->relax_quiet = st->relax_time;
     if (before > tolerated && energy < before) {
-        stop(s);
+        stop(sim);
         st->relax_left = before;
         st->relax_swings++;
         st->relax_longest = max2(st->relax_longest, st->relax_time - st->relax_swing);
@@ -93,17 +95,18 @@ static void judge(struct simulation *s, double elapsed)
     }
     const double still = st->relax_time - st->relax_quiet;
     const bool never = st->relax_most == 0;
-    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) begin_run(s);
+    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) begin_run(sim);
 }
 
 /* The largest distance between walls and bodies at the start, m. */
-static double extent(const struct simulation *s)
+static double extent(const struct simulation *sim)
 {
-    const struct particles *const w = &s->kind[KIND_WALL], *const p = &s->kind[KIND_SOLID];
+    const struct particles *const w = &sim->kind[KIND_WALL], *const particles =
+                                                                 &sim->kind[KIND_SOLID];
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (int64_t i = 0; i < w->n + p->n; i++) {
-        const double x = i < w->n ? w->x[i] : p->X[i - w->n];
-        const double y = i < w->n ? w->y[i] : p->Y[i - w->n];
+    for (int64_t i = 0; i < w->n + particles->n; i++) {
+        const double x = i < w->n ? w->x[i] : particles->X[i - w->n];
+        const double y = i < w->n ? w->y[i] : particles->Y[i - w->n];
         low[0] = min2(low[0], x), high[0] = max2(high[0], x);
         low[1] = min2(low[1], y), high[1] = max2(high[1], y);
     }
@@ -111,49 +114,50 @@ static double extent(const struct simulation *s)
 }
 
 /* A body whose particles have all moved further than that will meet nothing that could hold it. */
-static enum err check_fall(const struct simulation *s, struct diag *d)
+static enum err check_fall(const struct simulation *sim, struct diag *d)
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     double least[SCENE_MAX_SECTIONS];
-    for (int b = 0; b < s->scene->n_solid; b++) least[b] = HUGE_VAL;
-    for (int64_t i = 0; i < p->n; i++) {
-        double *const of_body = &least[p->body[i]];
-        *of_body = min2(*of_body, square(p->ux[i]) + square(p->uy[i]));
+    for (int b = 0; b < sim->scene->n_solid; b++) least[b] = HUGE_VAL;
+    for (int64_t i = 0; i < particles->n; i++) {
+        double *const of_body = &least[particles->body[i]];
+        *of_body = min2(*of_body, square(particles->ux[i]) + square(particles->uy[i]));
     }
-    for (int b = 0; b < s->scene->n_solid; b++) {
-        const struct scene_solid *const body = &s->scene->solid[b];
+    for (int b = 0; b < sim->scene->n_solid; b++) {
+        const struct scene_solid *const body = &sim->scene->solid[b];
         char place[LOCATION_TEXT];
-        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(extent(s)))) continue;
-        scene_location(s->scene, body->common.line, place);
+        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(extent(sim)))) continue;
+        scene_location(sim->scene, body->common.line, place);
         return diag_fail(d, ERR_GUARD,
                          "%s: [relax]: [solid %s] has moved by %.3g m as a whole, further than the "
                          "scene is large (%.3g m): nothing holds it, so there is no state of rest; "
                          "give it a `clamp`, put a [wall] below it, or leave [relax] out",
-                         place, body->common.name, sqrt(least[b]), extent(s));
+                         place, body->common.name, sqrt(least[b]), extent(sim));
     }
     return ERR_OK;
 }
 
 /* Fluid that falls within the domain is never faster, on average, than after a fall through
  * all of it. One that is faster falls through periodic sides for ever. */
-static enum err check_held_fluid(const struct simulation *s, struct diag *d)
+static enum err check_held_fluid(const struct simulation *sim, struct diag *d)
 {
-    const struct particles *const p = &s->kind[KIND_FLUID];
-    const struct scene *const scene = s->scene;
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct scene *const scene = sim->scene;
     double g[2], mean[2] = {0, 0}, size[2];
     char place[LOCATION_TEXT];
-    if (!(s->effects & FX_FLUID)) return ERR_OK;
+    if (!(sim->effects & FX_FLUID)) return ERR_OK;
     scene_location(scene, scene->fluid[0].common.line, place);
-    if (p->n == 0)
+    if (particles->n == 0)
         return diag_fail(d, ERR_GUARD,
                          "%s: [relax]: all fluid has left the domain: nothing holds it, so there "
                          "is no state of rest; put a [wall] below it, or leave [relax] out",
                          place);
-    for (int64_t i = 0; i < p->n; i++) mean[0] += p->vx[i], mean[1] += p->vy[i];
+    for (int64_t i = 0; i < particles->n; i++)
+        mean[0] += particles->vx[i], mean[1] += particles->vy[i];
     for (int c = 0; c < 2; c++) size[c] = scene->domain_upper[c] - scene->domain_lower[c];
     scene_gravity_at(scene, 0, g);
     const double pull = elementary_hypot(g[0], g[1]), high = elementary_hypot(size[0], size[1]);
-    const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)p->n);
+    const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)particles->n);
     if (!(pull > 0 && fall > sqrt(2 * pull * high))) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
                      "%s: [relax]: the fluid falls with %.3g m/s on average, more than a fall "
@@ -162,29 +166,31 @@ static enum err check_held_fluid(const struct simulation *s, struct diag *d)
                      place, fall);
 }
 
-enum err relax_step(struct simulation *s, struct diag *d)
+enum err relax_step(struct simulation *sim, struct diag *d)
 {
     enum { BATCH = 16 }; /* steps of a solid alone in a call */
-    struct state *const st = &s->state;
-    const double fixed = s->scene->numerics.fixed_step;
-    const double limit = s->effects & FX_FLUID ? timestep_fluid_limit(s) : BATCH * s->dt_solid;
+    struct state *const st = &sim->state;
+    const double fixed = sim->scene->numerics.fixed_step;
+    const double limit =
+        sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : BATCH * sim->dt_solid;
     const double begin = -1.01 * max2(limit, BATCH * fixed);
     st->time = begin;
-    if (s->effects & FX_CLAMP_MOTION) solid_place_clamps(&s->solid, &s->kind[KIND_SOLID], begin);
-    if (s->effects & FX_MOTION) move_walls(s, begin);
-    const enum err e = simulation_step(s, begin + 1e6 * limit, d);
+    if (sim->effects & FX_CLAMP_MOTION)
+        solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], begin);
+    if (sim->effects & FX_MOTION) move_walls(sim, begin);
+    const enum err e = simulation_step(sim, begin + 1e6 * limit, d);
     const double elapsed = st->time - begin;
     st->time = 0;
     st->substeps_needed = max2(st->substeps_needed, 0);
     st->gain_since = max2(st->gain_since, 0);
     TRY(e);
-    s->guard.case_at_fault = true; /* for what follows */
-    TRY(check_fall(s, d));
-    TRY(check_held_fluid(s, d));
-    judge(s, elapsed);
-    const double longest = st->relax_longest, most = s->scene->relax.limit * longest;
+    sim->guard.case_at_fault = true; /* for what follows */
+    TRY(check_fall(sim, d));
+    TRY(check_held_fluid(sim, d));
+    judge(sim, elapsed);
+    const double longest = st->relax_longest, most = sim->scene->relax.limit * longest;
     const bool goes_on = st->relaxed || st->relax_swings == 0 || st->relax_time < most;
-    s->guard.case_at_fault = !goes_on;
+    sim->guard.case_at_fault = !goes_on;
     if (goes_on) return ERR_OK;
     return diag_fail(
         d, ERR_GUARD,
@@ -192,31 +198,31 @@ enum err relax_step(struct simulation *s, struct diag *d)
         "between two stops): the speed is still %.2g of its largest value; a larger tolerance or "
         "limit, "
         "`mass_damping` in a [solid]%s may help",
-        st->relax_time, s->scene->relax.limit, longest, sqrt(st->relax_left / st->relax_most),
-        s->effects & FX_FLUID && s->scene->top.scheme == SCHEME_PAPER
+        st->relax_time, sim->scene->relax.limit, longest, sqrt(st->relax_left / st->relax_most),
+        sim->effects & FX_FLUID && sim->scene->top.scheme == SCHEME_PAPER
             ? " or `scheme = standard`, which keeps water still,"
             : "");
 }
 
-enum err relax_to_rest(struct simulation *s, struct diag *d)
+enum err relax_to_rest(struct simulation *sim, struct diag *d)
 {
-    while (relax_due(s)) TRY(relax_step(s, d));
+    while (relax_due(sim)) TRY(relax_step(sim, d));
     return ERR_OK;
 }
 
-void relax_progress(const struct simulation *s, char text[RELAX_TEXT])
+void relax_progress(const struct simulation *sim, char text[RELAX_TEXT])
 {
-    const struct state *const st = &s->state;
+    const struct state *const st = &sim->state;
     const double share = st->relax_most > 0 ? sqrt(st->relax_energy / st->relax_most) : 0;
     snprintf(text, RELAX_TEXT,
              "seeking rest: after %.3g s and %lld stops the speed is %.2g of its largest value, "
              "tolerance = %g",
-             st->relax_time, (long long)st->relax_swings, share, s->scene->relax.tolerance);
+             st->relax_time, (long long)st->relax_swings, share, sim->scene->relax.tolerance);
 }
 
-void relax_text(const struct simulation *s, char text[RELAX_TEXT])
+void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
 {
-    const struct state *const st = &s->state;
+    const struct state *const st = &sim->state;
     if (st->relax_swings == 0)
         snprintf(text, RELAX_TEXT, "nothing moves: the state at the start is one of rest");
     else
@@ -225,7 +231,7 @@ void relax_text(const struct simulation *s, char text[RELAX_TEXT])
             "at rest after %.3g s and %lld stops: over the last %.3g s, twice the longest time "
             "between two stops, the speed stayed below %g of its largest value",
             st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
-            s->scene->relax.tolerance);
+            sim->scene->relax.tolerance);
     const size_t n = strlen(text);
     if (st->lost > 0)
         snprintf(text + n, RELAX_TEXT - n, "; %lld fluid particles have left the domain meanwhile",

@@ -33,19 +33,19 @@ struct repulsion {
 static void add_repulsion(void *context, int64_t i, double x, double y, double r)
 {
     struct repulsion *const at = context;
-    const struct fluid *const f = &at->sim->fluid;
-    const struct particles *const p = &at->sim->kind[at->kind];
+    const struct fluid *const fluid = &at->sim->fluid;
+    const struct particles *const particles = &at->sim->kind[at->kind];
     (void)x, (void)y;
-    const double over = f->volume[at->kind][p->body[i]];
-    const double r0 = REPULSION_REACH * 0.5 * (1 + sqrt(over)) * f->k.dp;
+    const double over = fluid->volume[at->kind][particles->body[i]];
+    const double r0 = REPULSION_REACH * 0.5 * (1 + sqrt(over)) * fluid->k.dp;
     if (r < r0)
-        at->sum +=
-            over * f->k.mass / (f->k.rho0 * (1 + p->dens[i])) * repulsion_held(r, r0, f->k.h);
+        at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
+                   repulsion_held(r, r0, fluid->k.h);
 }
 
 void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
 {
-    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     const double reach = REPULSION_REACH * k->dp; /* solids are as fine as the fluid, or finer */
@@ -59,10 +59,11 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
                 if (!sim->cells.kind[kind].n_active) continue;
                 at.kind = (enum kind)kind;
                 cells_each_near(&sim->cells, at.kind, &sim->kind[kind],
-                                (double[]){p->x[i], p->y[i]}, reach, add_repulsion, &at);
+                                (double[]){particles->x[i], particles->y[i]}, reach, add_repulsion,
+                                &at);
             }
-            of[p->body[i]] += particle_mass(k, p, i) / (1 + p->dens[i]) * k->model->wall_repulsion *
-                              square(k->c0) * at.sum;
+            of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
+                                      k->model->wall_repulsion * square(k->c0) * at.sum;
         }
     }
 }

@@ -72,11 +72,11 @@ static double shift_fluid(struct simulation *sim, double clock)
 /* Magnitude of the impulse exchanged between fluid and structure in the last step. */
 static void add_exchange(struct simulation *sim)
 {
-    const struct particles *const p = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
     double fx = 0, fy = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        fx += p->fx[i];
-        fy += p->fy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        fx += particles->fx[i];
+        fy += particles->fy[i];
     }
     sim->state.exchanged += sim->state.dt * sqrt(fx * fx + fy * fy);
 }

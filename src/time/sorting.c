@@ -20,10 +20,11 @@ static void add_crossings(struct simulation *sim)
     }
 }
 
-void clear_fluid_sums(struct particles *p)
+void clear_fluid_sums(struct particles *particles)
 {
-    double *const sums[] = {p->p, p->dens, p->fx, p->fy, p->wet_x, p->wet_y};
-    for (size_t k = 0; k < COUNT_OF(sums); k++) particles_clear(sums[k], p->n);
+    double *const sums[] = {particles->p,  particles->dens,  particles->fx,
+                            particles->fy, particles->wet_x, particles->wet_y};
+    for (size_t k = 0; k < COUNT_OF(sums); k++) particles_clear(sums[k], particles->n);
 }
 
 /* Sets the cells' skin from a new measurement. The next evaluation uses the present state; the

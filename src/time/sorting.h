@@ -20,6 +20,6 @@ void find_skin_left(struct simulation *sim);
 
 /* Clears what the fluid has given to particles of walls or structures. Evaluations skip those
  * without fluid nearby, so this is done before the cells change. */
-void clear_fluid_sums(struct particles *p);
+void clear_fluid_sums(struct particles *particles);
 
 #endif

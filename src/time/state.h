@@ -49,8 +49,8 @@ struct extremes {
 };
 
 /* Accelerations from outside, added to those of the model by a program that uses the library. */
-typedef void external_function(void *context, double time, const struct particles *p, double *ax,
-                               double *ay);
+typedef void external_function(void *context, double time, const struct particles *particles,
+                               double *ax, double *ay);
 struct external {
     external_function *at; /* NULL: none */
     void *context;

@@ -8,128 +8,129 @@
 #include "time/integrator.h"
 #include "time/timestep.h"
 
-static void predict_fluid(struct particles *p, double half)
+static void predict_fluid(struct particles *particles, double half)
 {
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x0[i] = p->x[i];
-        p->y0[i] = p->y[i];
-        p->vx0[i] = p->vx[i];
-        p->vy0[i] = p->vy[i];
-        p->dens0[i] = p->dens[i];
-        p->x[i] += half * p->vx[i]; /* Eq. 22a */
-        p->y[i] += half * p->vy[i];
-        p->vx[i] += half * p->ax[i]; /* Eq. 22b */
-        p->vy[i] += half * p->ay[i];
-        p->dens[i] += half * p->ddens[i]; /* Eq. 24a */
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x0[i] = particles->x[i];
+        particles->y0[i] = particles->y[i];
+        particles->vx0[i] = particles->vx[i];
+        particles->vy0[i] = particles->vy[i];
+        particles->dens0[i] = particles->dens[i];
+        particles->x[i] += half * particles->vx[i]; /* Eq. 22a */
+        particles->y[i] += half * particles->vy[i];
+        particles->vx[i] += half * particles->ax[i]; /* Eq. 22b */
+        particles->vy[i] += half * particles->ay[i];
+        particles->dens[i] += half * particles->ddens[i]; /* Eq. 24a */
     }
 }
 
-static void correct_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+static void correct_rows(struct particles *particles, const void *by, int64_t from, int64_t end)
 {
     const double dt = *(const double *)by;
 #pragma omp simd
     for (int64_t i = from; i < end; i++) {
-        p->vx[i] = p->vx0[i] + dt * p->ax[i]; /* Eq. 23a */
-        p->vy[i] = p->vy0[i] + dt * p->ay[i];
-        p->x[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]); /* Eq. 23b */
-        p->y[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
+        particles->vx[i] = particles->vx0[i] + dt * particles->ax[i]; /* Eq. 23a */
+        particles->vy[i] = particles->vy0[i] + dt * particles->ay[i];
+        particles->x[i] =
+            particles->x0[i] + 0.5 * dt * (particles->vx[i] + particles->vx0[i]); /* Eq. 23b */
+        particles->y[i] = particles->y0[i] + 0.5 * dt * (particles->vy[i] + particles->vy0[i]);
         /* Eq. 24b, less 1, without cancellation. */
-        const double eps = -p->ddens[i] / (1 + p->dens[i]) * dt;
-        p->dens[i] = p->dens0[i] - (1 + p->dens0[i]) * 2 * eps / (2 + eps);
+        const double eps = -particles->ddens[i] / (1 + particles->dens[i]) * dt;
+        particles->dens[i] = particles->dens0[i] - (1 + particles->dens0[i]) * 2 * eps / (2 + eps);
     }
 }
 
-static void rates_of_solid(struct simulation *s)
+static void rates_of_solid(struct simulation *sim)
 {
-    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
-    solid_forces(&s->solid, &s->kind[KIND_SOLID]);
-    s->state.solid_evaluations++;
+    solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+    solid_forces(&sim->solid, &sim->kind[KIND_SOLID]);
+    sim->state.solid_evaluations++;
 }
 
 /* The solid has the same two stages as the fluid. */
-static void predict_solid(struct particles *p, double half)
+static void predict_solid(struct particles *particles, double half)
 {
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x0[i] = p->ux[i];
-        p->y0[i] = p->uy[i];
-        p->vx0[i] = p->vx[i];
-        p->vy0[i] = p->vy[i];
-        p->ux[i] += half * p->vx[i]; /* Eq. 22 */
-        p->uy[i] += half * p->vy[i];
-        p->vx[i] += half * p->sx[i];
-        p->vy[i] += half * p->sy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x0[i] = particles->ux[i];
+        particles->y0[i] = particles->uy[i];
+        particles->vx0[i] = particles->vx[i];
+        particles->vy0[i] = particles->vy[i];
+        particles->ux[i] += half * particles->vx[i]; /* Eq. 22 */
+        particles->uy[i] += half * particles->vy[i];
+        particles->vx[i] += half * particles->sx[i];
+        particles->vy[i] += half * particles->sy[i];
     }
 }
 
-static void correct_solid(struct particles *p, double dt)
+static void correct_solid(struct particles *particles, double dt)
 {
 #pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
-        p->vy[i] = p->vy0[i] + dt * p->sy[i];
-        p->ux[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]);
-        p->uy[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = particles->vx0[i] + dt * particles->sx[i]; /* Eq. 23 */
+        particles->vy[i] = particles->vy0[i] + dt * particles->sy[i];
+        particles->ux[i] = particles->x0[i] + 0.5 * dt * (particles->vx[i] + particles->vx0[i]);
+        particles->uy[i] = particles->y0[i] + 0.5 * dt * (particles->vy[i] + particles->vy0[i]);
     }
 }
 
-static void symplectic_step(struct simulation *s, double t_limit)
+static void symplectic_step(struct simulation *sim, double t_limit)
 {
-    struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
-    const bool coupled = s->effects & FX_COUPLING, multirate = s->effects & FX_MULTIRATE;
-    const double time = s->state.time;
-    evaluate_start(s);
+    struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
+    const bool coupled = sim->effects & FX_COUPLING, multirate = sim->effects & FX_MULTIRATE;
+    const double time = sim->state.time;
+    evaluate_start(sim);
     double clock = wall_clock();
-    if (coupled && !multirate) rates_of_solid(s);
-    clock = phase_add(s, PHASE_solid, clock);
+    if (coupled && !multirate) rates_of_solid(sim);
+    clock = phase_add(sim, PHASE_solid, clock);
 
     bool hits;
-    const double dt = timestep_choose(s, t_limit, &hits);
-    energy_test_due(s);
+    const double dt = timestep_choose(sim, t_limit, &hits);
+    energy_test_due(sim);
     predict_fluid(fluid, 0.5 * dt);
-    if (coupled && multirate) coupling_predict(&s->coupling, dt, s->state.dt);
+    if (coupled && multirate) coupling_predict(&sim->coupling, dt, sim->state.dt);
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
-        s->solid.time = time + 0.5 * dt;
-        solid_place_clamps(&s->solid, solid, s->solid.time);
-        motion_at_single_rate(&s->coupling, 0);
+        sim->solid.time = time + 0.5 * dt;
+        solid_place_clamps(&sim->solid, solid, sim->solid.time);
+        motion_at_single_rate(&sim->coupling, 0);
     }
-    phase_add(s, PHASE_update, clock);
+    phase_add(sim, PHASE_update, clock);
 
-    evaluate_fluid(s, time + 0.5 * dt);
-    energy_of_midpoint(s, dt);
+    evaluate_fluid(sim, time + 0.5 * dt);
+    energy_of_midpoint(sim, dt);
     clock = wall_clock();
-    if (coupled && multirate) advance_structure(s, dt, dt);
-    if (coupled && !multirate) rates_of_solid(s);
-    clock = phase_add(s, PHASE_solid, clock);
+    if (coupled && multirate) advance_structure(sim, dt, dt);
+    if (coupled && !multirate) rates_of_solid(sim);
+    clock = phase_add(sim, PHASE_solid, clock);
 
-    advance_fluid(s, correct_rows, &dt);
+    advance_fluid(sim, correct_rows, &dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
-        energy_of_solid(s, dt, 1, true);
-        solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
-        solid_place_clamps(&s->solid, solid, time + dt);
-        motion_at_single_rate(&s->coupling, dt / (dt + averaging_time(&s->coupling)));
-        s->state.solid_substeps++;
-        s->substeps = 1;
+        energy_of_solid(sim, dt, 1, true);
+        solid_book_work(&sim->solid, solid, solid->vx0, solid->vy0, dt);
+        solid_place_clamps(&sim->solid, solid, time + dt);
+        motion_at_single_rate(&sim->coupling, dt / (dt + averaging_time(&sim->coupling)));
+        sim->state.solid_substeps++;
+        sim->substeps = 1;
     }
-    timestep_book(s, dt, t_limit, hits);
-    phase_add(s, PHASE_update, clock);
+    timestep_book(sim, dt, t_limit, hits);
+    phase_add(sim, PHASE_update, clock);
 }
 
-static void symplectic_solid(struct simulation *s, double dt)
+static void symplectic_solid(struct simulation *sim, double dt)
 {
-    struct particles *const p = &s->kind[KIND_SOLID];
-    rates_of_solid(s);
-    predict_solid(p, 0.5 * dt);
-    s->solid.time += 0.5 * dt;
-    solid_place_clamps(&s->solid, p, s->solid.time);
-    rates_of_solid(s);
-    correct_solid(p, dt);
-    solid_book_work(&s->solid, p, p->vx0, p->vy0, dt);
-    s->solid.time += 0.5 * dt;
-    solid_place_clamps(&s->solid, p, s->solid.time);
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    rates_of_solid(sim);
+    predict_solid(particles, 0.5 * dt);
+    sim->solid.time += 0.5 * dt;
+    solid_place_clamps(&sim->solid, particles, sim->solid.time);
+    rates_of_solid(sim);
+    correct_solid(particles, dt);
+    solid_book_work(&sim->solid, particles, particles->vx0, particles->vy0, dt);
+    sim->solid.time += 0.5 * dt;
+    solid_place_clamps(&sim->solid, particles, sim->solid.time);
 }
 
 const struct integrator integrator_symplectic = {

@@ -28,18 +28,20 @@ void limit_isolated_tension(struct simulation *sim)
     const double factor = sim->scene->numerics.sound_factor;
     const double lowest = max2(-1 / factor, -2.0 / 3 * sim->guard.dens_limit);
     if (!(sim->extremes.dens_low < lowest)) return;
-    struct particles *const p = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->kind[KIND_FLUID];
     /* Particles within reach: a third of the number inside the fluid, fewer than a corner of
      * it has. */
     const double reach = KERNEL_REACH * sim->fluid.k.h / sim->scene->top.dp;
     const int most = (int)(PI / 3 * reach * reach);
-    for (int64_t i = 0; i < p->n; i++) {
-        if (!(p->dens[i] < lowest) || particles_near(sim, p->x[i], p->y[i]) > most) continue;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (!(particles->dens[i] < lowest) ||
+            particles_near(sim, particles->x[i], particles->y[i]) > most)
+            continue;
         energy_drop_density(sim, i);
-        p->dens[i] = 0;
-        if (p->dens_slow) p->dens_slow[i] = 0;
-        if (p->dens_old) p->dens_old[i] = 0;
-        if (p->ddens_old) p->ddens_old[i] = p->ddens_older[i] = 0;
+        particles->dens[i] = 0;
+        if (particles->dens_slow) particles->dens_slow[i] = 0;
+        if (particles->dens_old) particles->dens_old[i] = 0;
+        if (particles->ddens_old) particles->ddens_old[i] = particles->ddens_older[i] = 0;
         sim->state.tension_limited++;
     }
 }

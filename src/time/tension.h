@@ -10,6 +10,6 @@ int particles_near(const struct simulation *sim, double x, double y);
 
 /* T-45: removes the tension of fluid particles far below the reference density with almost no
  * neighbours. To be called after a step, while cells are valid. */
-void limit_isolated_tension(struct simulation *s);
+void limit_isolated_tension(struct simulation *sim);
 
 #endif

@@ -13,41 +13,42 @@ struct step_sizes {
     bool euler;
 };
 
-static void update_verlet_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+static void update_verlet_rows(struct particles *particles, const void *by, int64_t from,
+                               int64_t end)
 {
     const struct step_sizes *const step = by;
     const bool euler = step->euler;
     const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
 #pragma omp simd
     for (int64_t i = from; i < end; i++) {
-        const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
-        p->x[i] += dt * vx + 0.5 * dt * dt * p->ax[i];
-        p->y[i] += dt * vy + 0.5 * dt * dt * p->ay[i];
-        p->vx[i] = (euler ? vx : p->vx_old[i]) + kick * p->ax[i];
-        p->vy[i] = (euler ? vy : p->vy_old[i]) + kick * p->ay[i];
-        p->dens[i] = (euler ? dens : p->dens_old[i]) + kick * p->ddens[i];
-        p->vx_old[i] = vx;
-        p->vy_old[i] = vy;
-        p->dens_old[i] = dens;
+        const double vx = particles->vx[i], vy = particles->vy[i], dens = particles->dens[i];
+        particles->x[i] += dt * vx + 0.5 * dt * dt * particles->ax[i];
+        particles->y[i] += dt * vy + 0.5 * dt * dt * particles->ay[i];
+        particles->vx[i] = (euler ? vx : particles->vx_old[i]) + kick * particles->ax[i];
+        particles->vy[i] = (euler ? vy : particles->vy_old[i]) + kick * particles->ay[i];
+        particles->dens[i] = (euler ? dens : particles->dens_old[i]) + kick * particles->ddens[i];
+        particles->vx_old[i] = vx;
+        particles->vy_old[i] = vy;
+        particles->dens_old[i] = dens;
     }
 }
 
-static void verlet_step(struct simulation *s, double t_limit)
+static void verlet_step(struct simulation *sim, double t_limit)
 {
-    evaluate_start(s);
+    evaluate_start(sim);
     double clock = wall_clock();
     bool hits;
-    const double dt = timestep_choose(s, t_limit, &hits);
-    const bool euler = s->state.verlet_count == 0;
-    s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
-    energy_of_step(s, dt);
-    if (euler) energy_of_restart(s);
-    advance_fluid(s, update_verlet_rows, &(struct step_sizes){dt, s->state.dt, euler});
-    clock = phase_add(s, PHASE_update, clock);
-    if (s->effects & FX_COUPLING) advance_structure(s, dt, dt);
-    clock = phase_add(s, PHASE_solid, clock);
-    timestep_book(s, dt, t_limit, hits);
-    phase_add(s, PHASE_update, clock);
+    const double dt = timestep_choose(sim, t_limit, &hits);
+    const bool euler = sim->state.verlet_count == 0;
+    sim->state.verlet_count = (sim->state.verlet_count + 1) % sim->scene->numerics.verlet_reset;
+    energy_of_step(sim, dt);
+    if (euler) energy_of_restart(sim);
+    advance_fluid(sim, update_verlet_rows, &(struct step_sizes){dt, sim->state.dt, euler});
+    clock = phase_add(sim, PHASE_update, clock);
+    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
+    clock = phase_add(sim, PHASE_solid, clock);
+    timestep_book(sim, dt, t_limit, hits);
+    phase_add(sim, PHASE_update, clock);
 }
 
 const struct integrator integrator_verlet = {

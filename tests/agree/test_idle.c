@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Work only where something happens: leaving dry and resting walls alone changes no bit. A dam breaks
- * behind a plate that is lifted and stops; another wall starts later; a gate stands far from the water. */
+ * Work only where something happens: leaving dry and resting walls alone changes no bit. A dam
+ * breaks behind a plate that is lifted and stops; another wall starts later; a gate stands far from
+ * the water. */
 #include "rig.h"
 #include "unity.h"
 
@@ -57,16 +58,16 @@ static void test_walls_are_all_listed(void)
     for (int k = 0; k < 30; k++) {
         rig_steps(&rig, 10, 1);
         const struct cell_list *const list = &rig.sim.cells.kind[KIND_WALL];
-        const struct particles *const p = &rig.sim.kind[KIND_WALL];
+        const struct particles *const particles = &rig.sim.kind[KIND_WALL];
         int64_t seen = 0;
         for (int32_t m = 0; m < list->n_active; m++) {
             const int32_t cell = list->active[m];
             for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
-                TEST_ASSERT_EQUAL_INT32(cell, p->cell[list->order[j]]);
+                TEST_ASSERT_EQUAL_INT32(cell, particles->cell[list->order[j]]);
                 seen++;
             }
         }
-        TEST_ASSERT_EQUAL_INT64(p->n, seen);
+        TEST_ASSERT_EQUAL_INT64(particles->n, seen);
     }
 }
 

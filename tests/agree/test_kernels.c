@@ -20,7 +20,8 @@ static const char scene[] =
     "water.diffusion_form=antuono", "water.diffusion_limiter=strain", "water.wall_repulsion=0.3", \
         "water.wall_damping=1"
 
-/* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel. */
+/* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel.
+ */
 static const struct {
     const char *name, *alpha, *delta, *set, *another, *third, *fourth, *mass;
     effect_set effects;
@@ -111,23 +112,27 @@ static const char all[] =
     "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
     "density = 1100\nyoung = 1e6\npoisson = 0.4\nslip = none\n";
 
-/* Hashes of the sums of an evaluation with a set of effects: over the fluid, and the force on the solid. */
+/* Hashes of the sums of an evaluation with a set of effects: over the fluid, and the force on the
+ * solid. */
 static void sums_with(effect_set effects, uint64_t *fluid, uint64_t *force)
 {
     rig.sim.fluid.effects = effects;
     rig_evaluate(&rig);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID], *const s =
-                                                                     &rig.sim.kind[KIND_SOLID];
-    const double *const of_fluid[] = {p->ax, p->ay, p->ddens, p->grad_c_x, p->grad_c_y, p->div_r};
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
+                                                                             &rig.sim
+                                                                                  .kind[KIND_SOLID];
+    const double *const of_fluid[] = {particles->ax,       particles->ay,       particles->ddens,
+                                      particles->grad_c_x, particles->grad_c_y, particles->div_r};
     *fluid = *force = HASH_START;
     for (size_t k = 0; k < COUNT_OF(of_fluid); k++)
-        *fluid = hash_bytes(*fluid, of_fluid[k], (size_t)p->n * sizeof(double));
+        *fluid = hash_bytes(*fluid, of_fluid[k], (size_t)particles->n * sizeof(double));
     *force = hash_bytes(*force, s->fx, (size_t)s->n * sizeof(double));
     *force = hash_bytes(*force, s->fy, (size_t)s->n * sizeof(double));
 }
 
-/* Each effect that case/effects.def gives a law in the pair sums changes them; those of surfaces change
- * the force on the solid too. An effect without its law, or without its key in the case above, fails. */
+/* Each effect that case/effects.def gives a law in the pair sums changes them; those of surfaces
+ * change the force on the solid too. An effect without its law, or without its key in the case
+ * above, fails. */
 static void test_every_pair_effect_has_a_law(void)
 {
     rig_switches.generic_kernel = true;
@@ -135,15 +140,15 @@ static void test_every_pair_effect_has_a_law(void)
     rig_switches.generic_kernel = false;
     uint64_t seed = 3, fluid, force, fluid_without, force_without;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const p = &rig.sim.kind[kind];
-        for (int64_t i = 0; i < p->n; i++) {
-            p->x[i] += 0.002 * noise(&seed);
-            p->y[i] += 0.002 * noise(&seed);
+        struct particles *const particles = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->x[i] += 0.002 * noise(&seed);
+            particles->y[i] += 0.002 * noise(&seed);
             if (kind != KIND_FLUID) continue;
-            p->vx[i] = noise(&seed);
-            p->vy[i] = noise(&seed);
-            p->dens[i] = 0.02 * noise(&seed);
-            p->m[i] = 1 + 0.1 * noise(&seed);
+            particles->vx[i] = noise(&seed);
+            particles->vy[i] = noise(&seed);
+            particles->dens[i] = 0.02 * noise(&seed);
+            particles->m[i] = 1 + 0.1 * noise(&seed);
         }
     }
     rig_sort(&rig);

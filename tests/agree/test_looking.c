@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Looking at a run must not change it: ledgers, hashes and checkpoints between two steps, and output
- * times that nearly meet. */
+ * Looking at a run must not change it: ledgers, hashes and checkpoints between two steps, and
+ * output times that nearly meet. */
 #include "rig.h"
 
 #include "unity.h"
@@ -86,8 +86,8 @@ static void test_walls_forget_the_fluid(void)
     rig_close(&rig);
 }
 
-/* A step of the solid that would go thousands of times into the fluid's is refused, not counted in an int.
- * The remedy names what causes it. */
+/* A step of the solid that would go thousands of times into the fluid's is refused, not counted in
+ * an int. The remedy names what causes it. */
 static void refuses_ratio(const char *young, const char *more, const char *remedy)
 {
     char text[600];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Mixed against double precision: what float lanes cost, and that it does not grow with the distance
- * from the origin. */
+ * Mixed against double precision: what float lanes cost, and that it does not grow with the
+ * distance from the origin. */
 #include "rig.h"
 #include "unity.h"
 
@@ -28,20 +28,20 @@ struct picture {
 /* Fields by id, since the fluid is sorted. */
 static void take(struct picture *q)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    TEST_ASSERT_EQUAL_INT64(MOST, p->n);
-    for (int64_t i = 0; i < p->n; i++) {
-        q->x[p->id[i]] = p->x[i];
-        q->y[p->id[i]] = p->y[i];
-        q->ax[p->id[i]] = p->ax[i];
-        q->ay[p->id[i]] = p->ay[i];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    TEST_ASSERT_EQUAL_INT64(MOST, particles->n);
+    for (int64_t i = 0; i < particles->n; i++) {
+        q->x[particles->id[i]] = particles->x[i];
+        q->y[particles->id[i]] = particles->y[i];
+        q->ax[particles->id[i]] = particles->ax[i];
+        q->ay[particles->id[i]] = particles->ay[i];
     }
 }
 
 /* A dam breaks for 0.1 s in both precisions. Each step's error of some 1e-6 of the forces, rho g H/
  * (rho dp) = 200 m/s^2, would by itself have moved a particle by 1e-6 * 200 * t^2/2 = 1e-6 m, a
- * ten-thousandth of dp; neighbours that part amplify it. A hundredth of dp on the mean shows that the
- * two are the same flow; a wrong law or a wrong origin of the lanes is off by more than dp. */
+ * ten-thousandth of dp; neighbours that part amplify it. A hundredth of dp on the mean shows that
+ * the two are the same flow; a wrong law or a wrong origin of the lanes is off by more than dp. */
 static void test_dam_break_is_the_same_flow(void)
 {
     static struct picture mixed, both;
@@ -62,8 +62,9 @@ static void test_dam_break_is_the_same_flow(void)
 }
 
 /* Lanes hold offsets from a cell's centre: a kilometre from the origin the accelerations are off by
- * the round-off of the positions themselves, 1e-13 m/h, and not by that of floats, 6e-5 m/h. The start
- * is a lattice, whose offsets round differently in other cells: 2e-6 of the sizes (test_twin.c). */
+ * the round-off of the positions themselves, 1e-13 m/h, and not by that of floats, 6e-5 m/h. The
+ * start is a lattice, whose offsets round differently in other cells: 2e-6 of the sizes
+ * (test_twin.c). */
 static void test_far_from_the_origin(void)
 {
     static struct picture near, far;
@@ -105,9 +106,9 @@ static void test_tiny_densities_keep_their_digits(void)
     assert_at_most(2e-6, top / size, "acceleration");
 }
 
-/* Two drops approach each other from cells that do not touch, over others between them. Lanes that fill up a
- * pack with candidates of the next cell must not show them to the bound of Eq. 28b: it would depend on how
- * many lanes there are, 16 floats and 8 doubles here. */
+/* Two drops approach each other from cells that do not touch, over others between them. Lanes that
+ * fill up a pack with candidates of the next cell must not show them to the bound of Eq. 28b: it
+ * would depend on how many lanes there are, 16 floats and 8 doubles here. */
 static void test_the_bound_does_not_depend_on_lanes(void)
 {
     static const char drops[] =

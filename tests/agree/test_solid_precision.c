@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Pairs of the solid in float against double: what float costs, that it does not grow with strain going
- * down or displacement going up, how it grows as a body turns, that both find the same step, and where it
- * is taken. */
+ * Pairs of the solid in float against double: what float costs, that it does not grow with strain
+ * going down or displacement going up, how it grows as a body turns, that both find the same step,
+ * and where it is taken. */
 #include "rig.h"
 #include "solid/packed.h"
 #include "unity.h"
@@ -48,8 +48,9 @@ static double apart(const struct picture *a, const struct picture *b)
     return top / size;
 }
 
-/* A bar bends until its end has gone by some 10 dp and swings back: 0.2 s, some 4000 steps. Forces are off by
- * 1e-6 of those of neighbours; they average out, and the motion differs by no more than that. */
+/* A bar bends until its end has gone by some 10 dp and swings back: 0.2 s, some 4000 steps. Forces
+ * are off by 1e-6 of those of neighbours; they average out, and the motion differs by no more than
+ * that. */
 static void test_the_same_oscillation(void)
 {
     static struct picture at[2];
@@ -101,9 +102,10 @@ static double forces_apart(const char *law, const char *plane, double strain, do
     return apart(&of[0], &of[1]);
 }
 
-/* Laws in U = F - I keep the digits of small strains, down to the 1e-9 of a stiff plate, and differences of
- * displacements in two parts those of a body that has gone a kilometre: 1e-13 m of round-off of its position
- * over strains of 0.1 over dp = 1e-10. A float alone would have 6e-5 m. */
+/* Laws in U = F - I keep the digits of small strains, down to the 1e-9 of a stiff plate, and
+ * differences of displacements in two parts those of a body that has gone a kilometre: 1e-13 m of
+ * round-off of its position over strains of 0.1 over dp = 1e-10. A float alone would have 6e-5 m.
+ */
 static void test_small_strains_and_long_ways(void)
 {
     const char *const laws[] = {"bar.law=paper", "bar.law=svk", "bar.law=neo_hookean"};
@@ -115,8 +117,8 @@ static void test_small_strains_and_long_ways(void)
     }
 }
 
-/* The step is found by trying out small displacements and velocities, about the body at rest and stretched by
- * half, whose stress float must still tell from that of the base. */
+/* The step is found by trying out small displacements and velocities, about the body at rest and
+ * stretched by half, whose stress float must still tell from that of the base. */
 static void test_the_same_step(void)
 {
     const char *const laws[] = {"bar.law=paper", "bar.law=svk", "bar.law=neo_hookean"};
@@ -136,8 +138,8 @@ static void test_the_same_step(void)
     }
 }
 
-/* A gradient has as much as the angle of a turn, of which float keeps 1e-7: stresses are off by that times
- * Young's modulus, and by kappa = 50 times as much of the hourglass error. */
+/* A gradient has as much as the angle of a turn, of which float keeps 1e-7: stresses are off by
+ * that times Young's modulus, and by kappa = 50 times as much of the hourglass error. */
 static void test_turned_bodies(void)
 {
     for (double angle = 0.01; angle < 4; angle *= 4) {
@@ -193,8 +195,8 @@ static void test_where_float_is_taken(void)
     }
 }
 
-/* What the sweeps work on is what the particles have, those of a clamp that moves among them, after each
- * step. */
+/* What the sweeps work on is what the particles have, those of a clamp that moves among them, after
+ * each step. */
 static void test_lanes_follow_the_particles(void)
 {
     static const char moved[] = "clamp_motion = way\n[motion way]\nkind = sine\n"
@@ -202,16 +204,18 @@ static void test_lanes_follow_the_particles(void)
     char text[1024];
     snprintf(text, sizeof text, "%s%s", bar, moved);
     RIG_OPEN_SOLID(text, precisions[1], "integrator=leapfrog");
-    const struct solid *const s = &rig.sim.solid;
+    const struct solid *const solid = &rig.sim.solid;
     for (int step = 0; step < 5; step++) {
         solid_advance(&rig.sim.solid, p, 1e-5, 1, true);
         for (int64_t i = 0; i < p->n; i++) {
-            const double x = solid_get(s, s->lane[S_UX], i) + solid_get(s, s->lane[S_LOW_X], i),
-                         y = solid_get(s, s->lane[S_UY], i) + solid_get(s, s->lane[S_LOW_Y], i);
+            const double x = solid_get(solid, solid->lane[S_UX], i) +
+                             solid_get(solid, solid->lane[S_LOW_X], i),
+                         y = solid_get(solid, solid->lane[S_UY], i) +
+                             solid_get(solid, solid->lane[S_LOW_Y], i);
             assert_near(1e-14 * (1e-3 + fabs(p->ux[i])), p->ux[i], x, "ux");
             assert_near(1e-14 * (1e-3 + fabs(p->uy[i])), p->uy[i], y, "uy");
-            TEST_ASSERT_TRUE(solid_get(s, s->lane[S_VX], i) == (double)(float)p->vx[i]);
-            TEST_ASSERT_TRUE(solid_get(s, s->lane[S_VY], i) == (double)(float)p->vy[i]);
+            TEST_ASSERT_TRUE(solid_get(solid, solid->lane[S_VX], i) == (double)(float)p->vx[i]);
+            TEST_ASSERT_TRUE(solid_get(solid, solid->lane[S_VY], i) == (double)(float)p->vy[i]);
         }
     }
     TEST_ASSERT_TRUE(fabs(p->ux[0]) > 1e-3);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Several threads step a solid with the bits of one: every form of the laws, bodies that are joined, a
- * structure in water, and pushes from outside. */
+ * Several threads step a solid with the bits of one: every form of the laws, bodies that are
+ * joined, a structure in water, and pushes from outside. */
 #include "rig.h"
 #include "unity.h"
 
@@ -95,25 +95,26 @@ static uint64_t push(int threads)
 {
     thread_use(threads);
     rig_open(&rig, bar, "precision=mixed", NULL);
-    struct solid *const s = &rig.sim.solid;
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    s->threads = threads;
+    struct solid *const solid = &rig.sim.solid;
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    solid->threads = threads;
     double force[2][1200];
-    TEST_ASSERT_TRUE(p->n <= 1200);
-    for (int64_t i = 0; i < p->n; i++) force[0][i] = force[1][i] = (double)i;
+    TEST_ASSERT_TRUE(particles->n <= 1200);
+    for (int64_t i = 0; i < particles->n; i++) force[0][i] = force[1][i] = (double)i;
     for (int round = 0; round < 4; round++) {
-        solid_advance(s, p, rig.sim.dt_solid, 7, round % 2);
-        s->external[0] = force[0];
-        s->external[1] = force[1];
-        solid_advance(s, p, rig.sim.dt_solid, 5, round % 2);
-        s->external[0] = s->external[1] = NULL;
+        solid_advance(solid, particles, rig.sim.dt_solid, 7, round % 2);
+        solid->external[0] = force[0];
+        solid->external[1] = force[1];
+        solid_advance(solid, particles, rig.sim.dt_solid, 5, round % 2);
+        solid->external[0] = solid->external[1] = NULL;
         if (round == 2) simulation_hash(&rig.sim);
     }
-    solid_show(s, p);
+    solid_show(solid, particles);
     uint64_t shown = HASH_START;
-    const double *const fields[] = {p->Uxx, p->Uyx, p->Pxy, p->sx, p->sy};
+    const double *const fields[] = {particles->Uxx, particles->Uyx, particles->Pxy, particles->sx,
+                                    particles->sy};
     for (int k = 0; k < (int)COUNT_OF(fields); k++)
-        shown = hash_bytes(shown, fields[k], (size_t)p->n * sizeof(double));
+        shown = hash_bytes(shown, fields[k], (size_t)particles->n * sizeof(double));
     return simulation_hash(&rig.sim) ^ shown;
 }
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * A run stopped after any of its steps and continued, on another number of threads, ends with the bits,
- * the rows and the snapshots of the run that was not stopped: between two sortings, within a cycle of
- * Verlet, with sub-steps, right at an output that has not been written yet, after the last step. Every
- * other time the run goes on behind the checkpoint, so that rows and snapshots have to be dropped. */
+ * A run stopped after any of its steps and continued, on another number of threads, ends with the
+ * bits, the rows and the snapshots of the run that was not stopped: between two sortings, within a
+ * cycle of Verlet, with sub-steps, right at an output that has not been written yet, after the last
+ * step. Every other time the run goes on behind the checkpoint, so that rows and snapshots have to
+ * be dropped. */
 #include "base/files.h"
 #include "case/params.h"
 #include "output/snapshot_file.h"
@@ -227,8 +228,8 @@ static void every_integrator_at_a_single_rate(void)
 
 enum { MORE = 5 }; /* settings that are added to those of a line */
 
-/* The next word, without its quotes, ends the text where it stood; NULL: there is none. A line that ends
- * in a backslash goes on in the next one. */
+/* The next word, without its quotes, ends the text where it stood; NULL: there is none. A line that
+ * ends in a backslash goes on in the next one. */
 static char *next_word(char **at)
 {
     char *c = *at + strspn(*at, " \\");

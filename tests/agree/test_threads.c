@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The same bits on any number of threads: fluid, walls that move, a structure, both integrators, both
- * precisions, with and without sub-steps. */
+ * The same bits on any number of threads: fluid, walls that move, a structure, both integrators,
+ * both precisions, with and without sub-steps. */
 #define _DEFAULT_SOURCE /* syscall */
 #include "rig.h"
 #include "unity.h"
@@ -126,8 +126,8 @@ static void test_open_boundaries(void)
     }
 }
 
-/* Fluid that goes round through periodic sides, over a bed that it sticks to, with a wall that drifts
- * through them; gradients, shifting and what else has sums of its own. */
+/* Fluid that goes round through periodic sides, over a bed that it sticks to, with a wall that
+ * drifts through them; gradients, shifting and what else has sums of its own. */
 static void test_periodic_sides(void)
 {
     static const char round[] =
@@ -166,7 +166,8 @@ static void find_threads(long id[TEAM])
     id[thread_index()] = syscall(SYS_gettid);
 }
 
-/* libgomp ends the threads that a smaller team leaves over, and the next large one waits for new ones. */
+/* libgomp ends the threads that a smaller team leaves over, and the next large one waits for new
+ * ones. */
 static void test_threads_outlive_the_steps(void)
 {
     static const char *const sizes[] = {"dp=5 mm", "dp=2.5 mm"};

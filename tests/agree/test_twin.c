@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * The fluid's sweeps against a second, plain implementation of the paper's equations (support/twin.c)
- * on disordered particles in a wall corner with a structure.
+ * The fluid's sweeps against a second, plain implementation of the paper's equations
+ * (support/twin.c) on disordered particles in a wall corner with a structure.
  *
  * Tolerances, relative to the largest sum of the sizes of a particle's terms (what its round-off is
- * relative to). Double: coordinates of some 30 h are known to 4e-15 h, and a term changes by at most
- * a few times its size per h; with densities near rho0 the pressure B ((1 + d)^7 - 1) of the twin
- * loses a digit or two: 1e-12 of the terms. Mixed: lanes hold offsets up to 4 h from a cell's centre
- * as floats, known to 2.4e-7 h each; a term t^3 xi, whose slope is at most 1.5 a unit of its own
- * size near the particle, is off by some 1e-6 of itself, and a dozen neighbours of random sign do not
- * add up to more than that: 2e-6 of the terms. */
+ * relative to). Double: coordinates of some 30 h are known to 4e-15 h, and a term changes by at
+ * most a few times its size per h; with densities near rho0 the pressure B ((1 + d)^7 - 1) of the
+ * twin loses a digit or two: 1e-12 of the terms. Mixed: lanes hold offsets up to 4 h from a cell's
+ * centre as floats, known to 2.4e-7 h each; a term t^3 xi, whose slope is at most 1.5 a unit of its
+ * own size near the particle, is off by some 1e-6 of itself, and a dozen neighbours of random sign
+ * do not add up to more than that: 2e-6 of the terms. */
 #include "twin.h"
 
 #include "rig.h"
@@ -54,19 +54,20 @@ static void disorder(void)
 {
     uint64_t seed = 42, other = 7; /* places are the same whatever fields there are */
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const p = &rig.sim.kind[kind];
-        for (int64_t i = 0; i < p->n; i++) {
-            p->x[i] += 0.002 * noise(&seed);
-            p->y[i] += 0.002 * noise(&seed);
-            p->vx[i] = noise(&seed);
-            p->vy[i] = noise(&seed);
-            if (p->ax) p->ax[i] = 20 * noise(&seed);
-            if (p->ay) p->ay[i] = 20 * noise(&seed);
-            if (kind == KIND_FLUID) p->dens[i] = 0.01 + 0.02 * noise(&seed);
-            if (kind == KIND_FLUID && p->m) p->m[i] = 1 + 0.2 * noise(&other);
-            if (kind == KIND_FLUID && p->dens_slow) p->dens_slow[i] = 0.01 + 0.02 * noise(&other);
-            if (kind == KIND_SOLID) p->wx[i] = noise(&seed);
-            if (kind == KIND_SOLID) p->wy[i] = noise(&seed);
+        struct particles *const particles = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->x[i] += 0.002 * noise(&seed);
+            particles->y[i] += 0.002 * noise(&seed);
+            particles->vx[i] = noise(&seed);
+            particles->vy[i] = noise(&seed);
+            if (particles->ax) particles->ax[i] = 20 * noise(&seed);
+            if (particles->ay) particles->ay[i] = 20 * noise(&seed);
+            if (kind == KIND_FLUID) particles->dens[i] = 0.01 + 0.02 * noise(&seed);
+            if (kind == KIND_FLUID && particles->m) particles->m[i] = 1 + 0.2 * noise(&other);
+            if (kind == KIND_FLUID && particles->dens_slow)
+                particles->dens_slow[i] = 0.01 + 0.02 * noise(&other);
+            if (kind == KIND_SOLID) particles->wx[i] = noise(&seed);
+            if (kind == KIND_SOLID) particles->wy[i] = noise(&seed);
         }
     }
     rig_sort(&rig);
@@ -74,22 +75,24 @@ static void disorder(void)
 
 static void compare_fluid(double tolerance)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     const double rho0 = twin.rho0;
     double top_a = 0, top_rho = 0, size_a = 0, size_rho = 0, size_p = 0, top_p = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_point *const q = &twin.point[KIND_FLUID][i];
         size_a = fmax(size_a, q->size_a);
         size_rho = fmax(size_rho, q->size_drho);
         size_p = fmax(size_p, fabs(q->p_state));
-        top_a = fmax(top_a, hypot(p->ax[i] - q->ax, p->ay[i] - q->ay));
-        top_rho = fmax(top_rho, fabs(rho0 * p->ddens[i] - q->drho));
+        top_a = fmax(top_a, hypot(particles->ax[i] - q->ax, particles->ay[i] - q->ay));
+        top_rho = fmax(top_rho, fabs(rho0 * particles->ddens[i] - q->drho));
         top_p = fmax(top_p, fabs(rig_pressure(&rig.sim, i) - q->p_state));
-        if (!p->div_r) continue;
+        if (!particles->div_r) continue;
         /* Both are of the size of 1/h and 1. */
-        assert_near(tolerance / twin.h, q->cx, p->grad_c_x[i], "gradient of the concentration, x");
-        assert_near(tolerance / twin.h, q->cy, p->grad_c_y[i], "gradient of the concentration, y");
-        assert_near(2 * tolerance, q->div_r, p->div_r[i], "divergence of the positions");
+        assert_near(tolerance / twin.h, q->cx, particles->grad_c_x[i],
+                    "gradient of the concentration, x");
+        assert_near(tolerance / twin.h, q->cy, particles->grad_c_y[i],
+                    "gradient of the concentration, y");
+        assert_near(2 * tolerance, q->div_r, particles->div_r[i], "divergence of the positions");
     }
     TEST_ASSERT_TRUE(size_a > 100 && size_rho > 1e4);
     assert_at_most(tolerance, top_a / size_a, "acceleration of the fluid");
@@ -106,22 +109,22 @@ static void compare_fluid(double tolerance)
  * compared with the others' all the same. */
 static void compare_dummies(enum kind kind, double tolerance)
 {
-    const struct particles *const p = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.kind[kind];
     const double c2 = twin.rho0 * twin.c0 * twin.c0;
     double top = 0, top_rho = 0, size = 0;
     int64_t wet = 0, dry = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_point *const q = &twin.point[kind][i];
         size = fmax(size, q->size_p);
         if (q->weight == 0) {
             dry++;
-            TEST_ASSERT_TRUE(p->p[i] == 0);
-            TEST_ASSERT_TRUE(p->dens[i] == 0);
+            TEST_ASSERT_TRUE(particles->p[i] == 0);
+            TEST_ASSERT_TRUE(particles->dens[i] == 0);
         }
         if (q->weight < 1e-3) continue;
         wet++;
-        top = fmax(top, fabs(p->p[i] - q->p));
-        top_rho = fmax(top_rho, fabs(twin.rho0 * (1 + p->dens[i]) - q->rho) / twin.rho0);
+        top = fmax(top, fabs(particles->p[i] - q->p));
+        top_rho = fmax(top_rho, fabs(twin.rho0 * (1 + particles->dens[i]) - q->rho) / twin.rho0);
     }
     TEST_ASSERT_TRUE(wet > 30);
     TEST_ASSERT_TRUE(dry > 30);
@@ -131,12 +134,12 @@ static void compare_dummies(enum kind kind, double tolerance)
 
 static void compare_forces(double tolerance)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     double top = 0, size = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_point *const q = &twin.point[KIND_SOLID][i];
         size = fmax(size, q->size_f);
-        top = fmax(top, hypot(p->fx[i] - q->fx, p->fy[i] - q->fy));
+        top = fmax(top, hypot(particles->fx[i] - q->fx, particles->fy[i] - q->fy));
     }
     TEST_ASSERT_TRUE(size > 0);
     assert_at_most(tolerance, top / size, "force on the solid");
@@ -157,7 +160,8 @@ static void agree(const char *text, const char *precision, const char *set, cons
     twin_free(&twin);
 }
 
-/* The fluid after a while: other places and densities, but the gradients of the density found before. */
+/* The fluid after a while: other places and densities, but the gradients of the density found
+ * before. */
 static void agree_with_earlier_slopes(const char *text, const char *precision, double tolerance)
 {
     struct twin before;
@@ -168,15 +172,15 @@ static void agree_with_earlier_slopes(const char *text, const char *precision, d
     twin_copy(&before, &rig.sim);
     rig_evaluate(&rig);
     twin_evaluate(&before);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] += 2e-4 * noise(&seed);
-        p->y[i] += 2e-4 * noise(&seed);
-        p->dens[i] += 0.01 * noise(&seed);
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x[i] += 2e-4 * noise(&seed);
+        particles->y[i] += 2e-4 * noise(&seed);
+        particles->dens[i] += 0.01 * noise(&seed);
     }
     twin_copy(&twin, &rig.sim);
     twin.given_slopes = true;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         twin.point[KIND_FLUID][i].sx = before.point[KIND_FLUID][i].sx;
         twin.point[KIND_FLUID][i].sy = before.point[KIND_FLUID][i].sy;
     }

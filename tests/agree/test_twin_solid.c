@@ -2,10 +2,10 @@
  * The solid's packs against a second, plain implementation of Eqs. 9-18 (support/twin_solid.c): two
  * bodies of different material, deformed and in motion without a pattern.
  *
- * Tolerances: F to 1e-12 (sums of some 20 terms of order 1, coordinates known to 1e-14 of dp), stress
- * to 1e-12 of Young's modulus, and accelerations to 1e-12 of the largest sum of the sizes of the terms
- * of a particle, which the round-off of its sum is relative to. With pairs in float: the same sums,
- * 1e-6. */
+ * Tolerances: F to 1e-12 (sums of some 20 terms of order 1, coordinates known to 1e-14 of dp),
+ * stress to 1e-12 of Young's modulus, and accelerations to 1e-12 of the largest sum of the sizes of
+ * the terms of a particle, which the round-off of its sum is relative to. With pairs in float: the
+ * same sums, 1e-6. */
 #include "twin_solid.h"
 
 #include "rig.h"
@@ -35,20 +35,20 @@ void tearDown(void)
 }
 
 /* A rotation by 0.7, stretches of +20 % and -15 %, and noise of 5 % of dp; velocities at random. */
-static void deform(struct particles *p)
+static void deform(struct particles *particles)
 {
     uint64_t seed = 99;
-    for (int64_t i = 0; i < p->n; i++) {
-        const double a = 1.2 * p->X[i] + 0.1 * p->Y[i], b = 0.85 * p->Y[i];
-        p->ux[i] = cos(0.7) * a - sin(0.7) * b - p->X[i] + 5e-4 * noise(&seed);
-        p->uy[i] = sin(0.7) * a + cos(0.7) * b - p->Y[i] + 5e-4 * noise(&seed);
-        p->vx[i] = noise(&seed);
-        p->vy[i] = noise(&seed);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double a = 1.2 * particles->X[i] + 0.1 * particles->Y[i], b = 0.85 * particles->Y[i];
+        particles->ux[i] = cos(0.7) * a - sin(0.7) * b - particles->X[i] + 5e-4 * noise(&seed);
+        particles->uy[i] = sin(0.7) * a + cos(0.7) * b - particles->Y[i] + 5e-4 * noise(&seed);
+        particles->vx[i] = noise(&seed);
+        particles->vy[i] = noise(&seed);
     }
 }
 
-/* The viscous stress counts in: it is large, since velocities are at random. So does, in float, the share of
- * hourglass control, of whose errors the noise makes a twentieth of dp. */
+/* The viscous stress counts in: it is large, since velocities are at random. So does, in float, the
+ * share of hourglass control, of whose errors the noise makes a twentieth of dp. */
 static double scale_of_stress(const struct scene_solid *b)
 {
     const double hourglass = tolerance > 1e-9 ? 0.05 * b->hourglass : 0;
@@ -61,18 +61,20 @@ static double difference(struct twin_mat t, double xx, double xy, double yx, dou
                 fmax(fabs(t.m[1][0] - yx), fabs(t.m[1][1] - yy)));
 }
 
-static void compare_stress(const struct particles *p)
+static void compare_stress(const struct particles *particles)
 {
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_solid_point *const q = &twin.point[i];
         const double young = scale_of_stress(&twin.body[q->body]);
-        const double off = difference(q->F, 1 + p->Uxx[i], p->Uxy[i], p->Uyx[i], 1 + p->Uyy[i]);
+        const double off = difference(q->F, 1 + particles->Uxx[i], particles->Uxy[i],
+                                      particles->Uyx[i], 1 + particles->Uyy[i]);
         assert_at_most(tolerance, off, "deformation gradient");
         assert_at_most(tolerance * young,
-                       difference(q->P, p->Pxx[i], p->Pxy[i], p->Pyx[i], p->Pyy[i]),
+                       difference(q->P, particles->Pxx[i], particles->Pxy[i], particles->Pyx[i],
+                                  particles->Pyy[i]),
                        "first Piola-Kirchhoff stress");
         double sigma[4], det;
-        solid_cauchy(&rig.sim.solid, p, i, sigma, &det);
+        solid_cauchy(&rig.sim.solid, particles, i, sigma, &det);
         assert_at_most(tolerance * young,
                        difference(q->sigma, sigma[0], sigma[2], sigma[2], sigma[1]),
                        "Cauchy stress");
@@ -82,22 +84,23 @@ static void compare_stress(const struct particles *p)
 static void compare(const char *set, const char *another, const char *third)
 {
     rig_open(&rig, text, precision, set, another, third, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    deform(p);
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    deform(particles);
     timestep_watch_contact(&rig.sim, 0, 1);
-    solid_stress(&rig.sim.solid, p);
-    solid_forces(&rig.sim.solid, p);
+    solid_stress(&rig.sim.solid, particles);
+    solid_forces(&rig.sim.solid, particles);
     twin_solid_copy(&twin, &rig.sim);
     twin_solid_evaluate(&twin);
-    compare_stress(p);
+    compare_stress(particles);
     double size[2] = {0}, top[2] = {0};
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_solid_point *const q = &twin.point[i];
         size[q->body] = fmax(size[q->body], q->size);
-        if (p->free[i] > 0)
-            top[q->body] = fmax(top[q->body], hypot(p->sx[i] - q->ax, p->sy[i] - q->ay));
+        if (particles->free[i] > 0)
+            top[q->body] =
+                fmax(top[q->body], hypot(particles->sx[i] - q->ax, particles->sy[i] - q->ay));
         else
-            TEST_ASSERT_TRUE(p->sx[i] == 0 && p->sy[i] == 0);
+            TEST_ASSERT_TRUE(particles->sx[i] == 0 && particles->sy[i] == 0);
     }
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_TRUE(size[k] > 1e3);

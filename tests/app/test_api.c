@@ -96,8 +96,8 @@ static void rates_are_up_to_date(void)
     TEST_ASSERT_TRUE(memcmp(seen, rate.data, sizeof seen) != 0);
 }
 
-/* The force on a structure is that of the fluid at the present positions, neither what the coupling weighs
- * nor that of the last step: as the sweeps find it in the same state. */
+/* The force on a structure is that of the fluid at the present positions, neither what the coupling
+ * weighs nor that of the last step: as the sweeps find it in the same state. */
 static void force_on_solids_is_the_present_one(void)
 {
     static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
@@ -119,19 +119,19 @@ static void force_on_solids_is_the_present_one(void)
         TEST_ASSERT_TRUE(sphfsi_time(s) == rig.sim.state.time);
         for (int64_t i = 0; i < x.count; i++)
             TEST_ASSERT_TRUE(((const double *)x.data)[i] == rig.sim.kind[KIND_FLUID].x[i]);
-        const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+        const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
         double before[64], changed = 0, top = 0;
-        TEST_ASSERT_TRUE(p->n <= 64);
-        for (int64_t i = 0; i < p->n; i++) before[i] = p->fx[i];
+        TEST_ASSERT_TRUE(particles->n <= 64);
+        for (int64_t i = 0; i < particles->n; i++) before[i] = particles->fx[i];
         rig_evaluate(&rig);
         struct sphfsi_view fx, fy;
         TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_SOLID, "fx", &fx));
         TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_SOLID, "fy", &fy));
-        for (int64_t i = 0; i < p->n; i++) {
-            TEST_ASSERT_TRUE(((const double *)fx.data)[i] == p->fx[i]);
-            TEST_ASSERT_TRUE(((const double *)fy.data)[i] == p->fy[i]);
-            changed = fmax(changed, fabs(p->fx[i] - before[i]));
-            top = fmax(top, fabs(p->fx[i]));
+        for (int64_t i = 0; i < particles->n; i++) {
+            TEST_ASSERT_TRUE(((const double *)fx.data)[i] == particles->fx[i]);
+            TEST_ASSERT_TRUE(((const double *)fy.data)[i] == particles->fy[i]);
+            changed = fmax(changed, fabs(particles->fx[i] - before[i]));
+            top = fmax(top, fabs(particles->fx[i]));
         }
         TEST_ASSERT_TRUE(top > 1 && changed > 1e-6 * top);
         rig_close(&rig);
@@ -281,8 +281,8 @@ static int checkpoints(const char *folder)
     return n;
 }
 
-/* Within an hour there is one call, the last, and no checkpoint but that at the end. No phase took a
- * negative time. */
+/* Within an hour there is one call, the last, and no checkpoint but that at the end. No phase took
+ * a negative time. */
 static void nothing_is_due_within_an_hour(void)
 {
     const char *const sets[] = {"output.checkpoint_minutes=60"};

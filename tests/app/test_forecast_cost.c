@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The cost of a run from given costs of a step, bytes of its files; and how costs are measured. The linker
- * puts these in between:
+ * The cost of a run from given costs of a step, bytes of its files; and how costs are measured. The
+ * linker puts these in between:
  * --wrap: wall_clock simulation_step */
 #include "app/forecast.h"
 
@@ -19,7 +19,8 @@ void setUp(void)
 
 void tearDown(void) { rig_close(&rig); }
 
-/* Steps, and an evaluation for each row of the ledger, of all particles; rows of probes and ledger. */
+/* Steps, and an evaluation for each row of the ledger, of all particles; rows of probes and ledger.
+ */
 static void test_seconds(void)
 {
     struct unit_costs with = costs;
@@ -33,8 +34,8 @@ static void test_seconds(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3 + own.seconds, forecast_run(&with, &rig.sim).seconds);
 }
 
-/* Five snapshots of 140 bytes a particle twice, two checkpoints of all arrays, and rows of 18 bytes a number:
- * 20 of the ledger with 12, 200 of the three probes with 7. */
+/* Five snapshots of 140 bytes a particle twice, two checkpoints of all arrays, and rows of 18 bytes
+ * a number: 20 of the ledger with 12, 200 of the three probes with 7. */
 static void test_bytes_of_the_files(void)
 {
     double state = 0;
@@ -57,12 +58,12 @@ double __wrap_wall_clock(void)
     return clock_step > 0 ? now : __real_wall_clock();
 }
 
-enum err __real_simulation_step(struct simulation *s, double limit, struct diag *d);
-enum err __wrap_simulation_step(struct simulation *s, double limit, struct diag *d);
-enum err __wrap_simulation_step(struct simulation *s, double limit, struct diag *d)
+enum err __real_simulation_step(struct simulation *sim, double limit, struct diag *d);
+enum err __wrap_simulation_step(struct simulation *sim, double limit, struct diag *d);
+enum err __wrap_simulation_step(struct simulation *sim, double limit, struct diag *d)
 {
     steps++;
-    return __real_simulation_step(s, limit, d);
+    return __real_simulation_step(sim, limit, d);
 }
 
 /* By a clock of 1 ms a reading each row takes 1 ms: 20 of the ledger, 200 of the probes. */
@@ -75,8 +76,8 @@ static void test_rows_are_measured(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 220e-3, c.rows);
 }
 
-/* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then repeats of
- * 5 ms, of one reading at their begin and one for each step, until 0.2 s are over. */
+/* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then
+ * repeats of 5 ms, of one reading at their begin and one for each step, until 0.2 s are over. */
 static void test_steps_are_measured_in_repeats(void)
 {
     struct unit_costs c;

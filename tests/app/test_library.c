@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The library as other programs use it: own forces and motions, probes, several simulations in several
- * threads. */
+ * The library as other programs use it: own forces and motions, probes, several simulations in
+ * several threads. */
 #include "sphfsi.h"
 #include "tiny.h"
 #include "unity.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the program says of itself is true: examples are accepted, templates run, sources fit the scene. */
+ * What the program says of itself is true: examples are accepted, templates run, sources fit the
+ * scene. */
 #include "case/effects.h"
 #include "app/evidence.h"
 #include "app/actions.h"
@@ -51,63 +52,65 @@ static const char scene_text[] =
     "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
     "[reference more]\nprobe = tip_dx_m\nformula = 0\n";
 
-static bool is(const struct param *p, const char *section, const char *key)
+static bool is(const struct param *param, const char *section, const char *key)
 {
-    return strcmp(section_table[p->section].word, section) == 0 && strcmp(p->key, key) == 0;
+    return strcmp(section_table[param->section].word, section) == 0 && strcmp(param->key, key) == 0;
 }
 
 /* Keys that mean something only beside another one, or at a place of this scene. */
-static const char *companion(const struct param *p)
+static const char *companion(const struct param *param)
 {
-    if (is(p, "domain", "lower")) return "domain.upper=2.5,1";
-    if (is(p, "domain", "upper")) return "domain.lower=-0.2,-0.1";
-    if (is(p, "solid", "minus") || is(p, "solid", "clamp"))
+    if (is(param, "domain", "lower")) return "domain.upper=2.5,1";
+    if (is(param, "domain", "upper")) return "domain.lower=-0.2,-0.1";
+    if (is(param, "solid", "minus") || is(param, "solid", "clamp"))
         return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
-    if (is(p, "solid", "joined")) return "solid more.shape=box 0.52, 0, 0.54, 0.1";
-    if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
-    if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
-    if (is(p, "probe", "point")) return "probe more.quantity=pressure";
-    if (is(p, "probe", "to")) return "probe more.quantity=flux";
-    if (is(p, "probe", "on")) return "probe more.quantity=pressure";
-    if (is(p, "probe", "average")) return "probe more.interval=0.01";
-    if (is(p, "motion", "poly_x") || is(p, "motion", "poly_y"))
+    if (is(param, "solid", "joined")) return "solid more.shape=box 0.52, 0, 0.54, 0.1";
+    if (is(param, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
+    if (is(param, "probe", "body")) return "probe more.point=0.51,0.1";
+    if (is(param, "probe", "point")) return "probe more.quantity=pressure";
+    if (is(param, "probe", "to")) return "probe more.quantity=flux";
+    if (is(param, "probe", "on")) return "probe more.quantity=pressure";
+    if (is(param, "probe", "average")) return "probe more.interval=0.01";
+    if (is(param, "motion", "poly_x") || is(param, "motion", "poly_y"))
         return "motion more.kind=polynomial";
-    if (is(p, "motion", "x") || is(p, "motion", "y") || is(p, "motion", "turn"))
+    if (is(param, "motion", "x") || is(param, "motion", "y") || is(param, "motion", "turn"))
         return "motion more.kind=expression";
-    if (is(p, "motion", "file")) return "motion more.kind=table";
-    if (is(p, "reference", "file")) return "reference more.label=x";
-    if (is(p, "inflow", "absorb")) return "inflow more.pressure=1";
+    if (is(param, "motion", "file")) return "motion more.kind=table";
+    if (is(param, "reference", "file")) return "reference more.label=x";
+    if (is(param, "inflow", "absorb")) return "inflow more.pressure=1";
     return NULL;
 }
 
-static void example_is_accepted(const struct param *p)
+static void example_is_accepted(const struct param *param)
 {
     char example[SCENE_TEXT], set[2 * SCENE_TEXT], text[4096];
     struct scene scene;
-    manual_example(p, example, sizeof example);
+    manual_example(param, example, sizeof example);
     if (!example[0]) return;
-    const char *const word = section_table[p->section].word;
+    const char *const word = section_table[param->section].word;
     /* All fluid is of one kind, so that what the first is given the second takes over. */
     const bool first =
-        p->section == SECTION_fluid && p->type != PARAM_SHAPES && p->type != PARAM_TEXT;
-    if (p->section == SECTION_top)
-        snprintf(set, sizeof set, "%s=%s", p->key, example);
+        param->section == SECTION_fluid && param->type != PARAM_SHAPES && param->type != PARAM_TEXT;
+    if (param->section == SECTION_top)
+        snprintf(set, sizeof set, "%s=%s", param->key, example);
     else
         snprintf(set, sizeof set, "%s%s.%s=%s", word,
-                 !section_table[p->section].named ? ""
-                 : first                          ? " water"
-                                                  : " more",
-                 p->key, example);
-    const char *sets[] = {set, companion(p)};
+                 !section_table[param->section].named ? ""
+                 : first                              ? " water"
+                                                      : " more",
+                 param->key, example);
+    const char *sets[] = {set, companion(param)};
     snprintf(text, sizeof text, "%s", scene_text);
     /* Of the two ways to give a reference one is to go, as `body` is where the fluid is probed. */
-    if (is(p, "reference", "file")) *strstr(text, "formula") = '#';
-    if (is(p, "inflow", "velocity") || is(p, "inflow", "pressure") || is(p, "inflow", "absorb"))
+    if (is(param, "reference", "file")) *strstr(text, "formula") = '#';
+    if (is(param, "inflow", "velocity") || is(param, "inflow", "pressure") ||
+        is(param, "inflow", "absorb"))
         *strstr(text, "speed = 1") = '#';
-    if (is(p, "outflow", "velocity") || is(p, "outflow", "speed") || is(p, "outflow", "level"))
+    if (is(param, "outflow", "velocity") || is(param, "outflow", "speed") ||
+        is(param, "outflow", "level"))
         *strstr(text, "pressure = 0") = '#';
-    if (is(p, "load", "traction")) *strstr(text, "force") = '#';
-    if (is(p, "probe", "point") || is(p, "probe", "to") || is(p, "probe", "on"))
+    if (is(param, "load", "traction")) *strstr(text, "force") = '#';
+    if (is(param, "probe", "point") || is(param, "probe", "to") || is(param, "probe", "on"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);
     diag.code = ERR_OK;
     const enum err e = scene_load_text(&scene, text, "examples.cfg", sets[1] ? 2 : 1, sets, &diag);

@@ -102,7 +102,8 @@ static void test_pieces_are_zero_aligned_and_have_margins(void)
     }
 }
 
-/* Arrays of a loop that began at the same line of a page would share few lines of the first cache. */
+/* Arrays of a loop that began at the same line of a page would share few lines of the first cache.
+ */
 static void test_large_pieces_begin_at_different_lines(void)
 {
     enum { PIECES = 20 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Elementary functions: rounded correctly where long double can tell, and the same bits everywhere. */
+ * Elementary functions: rounded correctly where long double can tell, and the same bits everywhere.
+ */
 #include "base/elementary.h"
 #include "base/hash.h"
 #include "unity.h"

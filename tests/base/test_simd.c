@@ -168,7 +168,8 @@ static void test_sum_follows_the_tree(void)
     }
 }
 
-/* Four items in each group, an item for each group, and the groups' sums: the same as lane by lane. */
+/* Four items in each group, an item for each group, and the groups' sums: the same as lane by lane.
+ */
 static void test_groups(void)
 {
     float f[2 * LANES_FLOAT], sum_f[GROUPS_FLOAT];

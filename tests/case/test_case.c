@@ -263,21 +263,23 @@ static void same_shapes(const struct shape_list *a, const struct shape_list *b)
     }
 }
 
-static void same_value(const struct param *p, const char *mine, const char *its)
+static void same_value(const struct param *param, const char *mine, const char *its)
 {
-    const void *a = mine + p->offset, *b = its + p->offset;
-    if (strstr(p->key, "file")) return; /* the same file, seen from another folder */
-    switch (p->type) {
-    case PARAM_REAL: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(double), p->key); break;
+    const void *a = mine + param->offset, *b = its + param->offset;
+    if (strstr(param->key, "file")) return; /* the same file, seen from another folder */
+    switch (param->type) {
+    case PARAM_REAL: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(double), param->key); break;
     case PARAM_TIME_VECTOR:
-        same_expressions((const void *)(mine + p->expr_offset),
-                         (const void *)(its + p->expr_offset));
-        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), p->key);
+        same_expressions((const void *)(mine + param->expr_offset),
+                         (const void *)(its + param->expr_offset));
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), param->key);
         break;
-    case PARAM_VECTOR: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), p->key); break;
+    case PARAM_VECTOR:
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), param->key);
+        break;
     case PARAM_INTEGER:
-    case PARAM_CHOICE: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(int), p->key); break;
-    case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, p->key); break;
+    case PARAM_CHOICE: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(int), param->key); break;
+    case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, param->key); break;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR: same_expressions(a, b); break;
@@ -312,10 +314,10 @@ static void round_trip(void)
         const int n = section_count(&scene, (enum section_id)id);
         TEST_ASSERT_EQUAL_INT(n, section_count(&again, (enum section_id)id));
         for (int k = 0; k < n * PARAM_COUNT; k++) {
-            const struct param *p = &param_table[k % PARAM_COUNT];
-            if ((int)p->section == id)
-                same_value(p, section_at(&scene, p->section, k / PARAM_COUNT),
-                           section_at(&again, p->section, k / PARAM_COUNT));
+            const struct param *param = &param_table[k % PARAM_COUNT];
+            if ((int)param->section == id)
+                same_value(param, section_at(&scene, param->section, k / PARAM_COUNT),
+                           section_at(&again, param->section, k / PARAM_COUNT));
         }
     }
     for (int kind = 0; kind < 3; kind++) same_points(&scene.points[kind], &again.points[kind]);

@@ -413,10 +413,10 @@ void tearDown(void) {}
 static void test_each_is_refused_with_its_sentence(void)
 {
     for (size_t k = 0; k < COUNT_OF(bad); k++) {
-        struct scene s;
+        struct scene scene;
         struct diag d = {0};
         const enum err err =
-            scene_load_text(&s, bad[k].text, "bad.cfg", bad[k].set != NULL, &bad[k].set, &d);
+            scene_load_text(&scene, bad[k].text, "bad.cfg", bad[k].set != NULL, &bad[k].set, &d);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, err, bad[k].text);
         d.text[strlen(bad[k].message)] = '\0';
         TEST_ASSERT_EQUAL_STRING_MESSAGE(bad[k].message, d.text, bad[k].text);
@@ -425,25 +425,26 @@ static void test_each_is_refused_with_its_sentence(void)
 }
 
 /* What is wrong with `*value` for a key of this type, or NULL where every text is right. */
-static const char *wrong(const struct param *p, const char **value)
+static const char *wrong(const struct param *param, const char **value)
 {
     static char why[400];
-    switch (p->type) {
+    switch (param->type) {
     case PARAM_REAL:
     case PARAM_INTEGER: *value = "9e300"; return "out of range: it must be ";
     case PARAM_CHOICE:
         *value = "zebra";
-        snprintf(why, sizeof why, "unknown choice; known: %s", p->choices);
+        snprintf(why, sizeof why, "unknown choice; known: %s", param->choices);
         return why;
     case PARAM_VECTOR:
     case PARAM_TIME_VECTOR:
         *value = "1";
-        snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1", p->key);
+        snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1",
+                 param->key);
         return why;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR:
-    case PARAM_NUMBERS: *value = "(1"; return p->count > 1 ? "" : "`(` is not closed";
+    case PARAM_NUMBERS: *value = "(1"; return param->count > 1 ? "" : "`(` is not closed";
     case PARAM_SHAPES: *value = "cube 1"; return "";
     case PARAM_TEXT: break;
     }
@@ -455,20 +456,20 @@ static void test_each_key_refuses_a_wrong_value_by_name(void)
 {
     int tried = 0;
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *p = &param_table[k];
-        const struct section_info *section = &section_table[p->section];
-        const char *value, *why = wrong(p, &value);
+        const struct param *param = &param_table[k];
+        const struct section_info *section = &section_table[param->section];
+        const char *value, *why = wrong(param, &value);
         if (!why) continue;
         char text[1000], message[600], head[100] = "";
-        if (p->section != SECTION_top)
+        if (param->section != SECTION_top)
             snprintf(head, sizeof head, section->named ? "[%s a]\n" : "[%s]\n", section->word);
-        snprintf(text, sizeof text, "%s%s = %s\n", head, p->key, value);
-        snprintf(message, sizeof message, "bad.cfg:%d: %s = %s: %s", *head ? 2 : 1, p->key, value,
-                 why);
-        struct scene s;
+        snprintf(text, sizeof text, "%s%s = %s\n", head, param->key, value);
+        snprintf(message, sizeof message, "bad.cfg:%d: %s = %s: %s", *head ? 2 : 1, param->key,
+                 value, why);
+        struct scene scene;
         struct diag d = {0};
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d),
-                                      text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT,
+                                      scene_load_text(&scene, text, "bad.cfg", 0, NULL, &d), text);
         char said[sizeof d.text + sizeof d.more + 1]; /* what is missing in the case is said, too */
         snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
         if (!strstr(said, message)) TEST_ASSERT_EQUAL_STRING_MESSAGE(message, said, text);
@@ -483,9 +484,9 @@ static void test_each_key_refuses_a_wrong_value_by_name(void)
 static void refuses_all(const char *text, int n_sets, const char *const *sets, const char *want)
 {
     static char said[sizeof((struct diag *)0)->text + sizeof((struct diag *)0)->more];
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", n_sets, sets, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, text, "bad.cfg", n_sets, sets, &d));
     snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
@@ -539,9 +540,9 @@ static void test_twenty_problems_are_enough(void)
 {
     char text[2000] = TOP;
     for (int k = 0; k < 30; k++) sprintf(text + strlen(text), "bad%d\n", k);
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, text, "bad.cfg", 0, NULL, &d));
     int lines = 0;
     for (const char *c = d.more; *c; c++) lines += *c == '\n';
     TEST_ASSERT_EQUAL_INT(20, lines);
@@ -558,9 +559,9 @@ static void read_bytes(const char *bytes, size_t n, const char *message)
     TEST_ASSERT_NOT_NULL(file);
     fwrite(bytes, 1, n, file);
     fclose(file);
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, path, 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, path, 0, NULL, &d));
     remove(path);
     TEST_ASSERT_EQUAL_STRING(message, d.text);
 }
@@ -573,9 +574,9 @@ static void test_a_zero_byte_is_refused(void)
 
 static void test_a_file_that_is_not_there(void)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, "no/such.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, "no/such.cfg", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING("no/such.cfg: cannot be opened: No such file or directory", d.text);
 }
 

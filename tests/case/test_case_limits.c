@@ -243,10 +243,10 @@ static void test_paths_that_are_too_long(void)
 {
     memset(long_text, 'a', 5000);
     long_text[5000] = '\0';
-    struct scene s;
+    struct scene scene;
     setUp();
     memset(long_text, 'a', 5000);
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, TOP SOLID, long_text, 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, TOP SOLID, long_text, 0, NULL, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "the path of the case file is longer than"),
                                  diag.text);
 }

@@ -15,10 +15,10 @@ void tearDown(void) {}
 
 static void refuses_all(const char *text, const char *want)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
     char said[sizeof d.text + sizeof d.more];
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, text, "bad.cfg", 0, NULL, &d));
     snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
@@ -88,9 +88,9 @@ static void test_a_comment_of_other_languages_behind_a_wrong_unit(void)
 
 static void test_a_folder_is_no_file(void)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, ".", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, ".", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 

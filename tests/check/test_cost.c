@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Settings that make a run slow: said where they are, by how much, and not of settings that do not. */
+ * Settings that make a run slow: said where they are, by how much, and not of settings that do not.
+ */
 #include "check/check.h"
 #include "rig.h"
 #include "time/timestep.h"
@@ -38,8 +39,8 @@ static void warn_of(const char *text, const char *set)
     check_simulation(&rig.sim, &d);
 }
 
-/* Damping by eta = E t of modes of frequency w: a step of dt is stable to (w dt)^2 + 2 zeta w dt = 4, the
- * share of the undamped 2/w falls with t. Said from a half on. */
+/* Damping by eta = E t of modes of frequency w: a step of dt is stable to (w dt)^2 + 2 zeta w dt =
+ * 4, the share of the undamped 2/w falls with t. Said from a half on. */
 static void test_damping(void)
 {
     char set[64], want[100];
@@ -121,7 +122,8 @@ static void test_bounds(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "a larger fixed_step may help"), said);
 }
 
-/* A light body bounds the step of the fluid by T-35d, a stiff one by its own step without sub-steps. */
+/* A light body bounds the step of the fluid by T-35d, a stiff one by its own step without
+ * sub-steps. */
 static void test_bodies(void)
 {
     static const char post[] = "[solid post]\nshape = box 0.1, 0, 0.14, 0.1\ndensity = 1000\n"
@@ -141,7 +143,8 @@ static void test_bodies(void)
              "time step to %.3g s, while sound waves would allow %.3g times as much",
              bound, sound / bound);
     TEST_ASSERT_EQUAL_STRING_LEN(want, said, strlen(want));
-    /* The step of the solid alone falls with the root of its modulus: 1 MPa has 0.3 of the fluid's. */
+    /* The step of the solid alone falls with the root of its modulus: 1 MPa has 0.3 of the fluid's.
+     */
     warn_of(text, "numerics.multirate=off");
     TEST_ASSERT_EQUAL_STRING("", said);
     snprintf(text, sizeof text, "%s%s[numerics]\nmultirate = off\n", water, post);

@@ -25,7 +25,8 @@ static void test_a_sound_tank_gets_no_warning(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
-/* Four particles about a point clamp the bar; one is a hinge, and its area is no doubt of either. */
+/* Four particles about a point clamp the bar; one is a hinge, and its area is no doubt of either.
+ */
 static void test_a_hinge_is_one_particle(void)
 {
 #define BAR "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST "clamp = circle 0.01, 0.09, "
@@ -387,7 +388,8 @@ static void test_shifting_where_nothing_gives_way(void)
 #define IN "[inflow i]\nfrom = 0, 0.2\nto = 0, 0\nspeed = 0.1\n"
 #define OUT(how) "[outflow o]\nfrom = 0.4, 0\nto = 0.4, 0.2\n" how "\n"
 
-/* Beside the run: the density of a closed channel between two inflows deviates by 10 % after 56 ms. */
+/* Beside the run: the density of a closed channel between two inflows deviates by 10 % after 56 ms.
+ */
 static void test_velocities_that_do_not_balance(void)
 {
     read(OPEN_CHANNEL IN OUT("pressure = 0") SIDE_WALLS);

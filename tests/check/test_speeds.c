@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Speeds that the materials cannot follow are warned of before a run, and known to it; bodies that are
- * joined but apart are refused where a case is drawn. */
+ * Speeds that the materials cannot follow are warned of before a run, and known to it; bodies that
+ * are joined but apart are refused where a case is drawn. */
 #include "warned.h"
 
 void setUp(void) { warnings[0] = '\0'; }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Starts that are hardly meant are warned of: fluid beside its container, fluid without its weight's
- * pressure, motions near the speed of sound, inflows above the surface, probes inside walls. */
+ * Starts that are hardly meant are warned of: fluid beside its container, fluid without its
+ * weight's pressure, motions near the speed of sound, inflows above the surface, probes inside
+ * walls. */
 #include "warned.h"
 
 #include <stdio.h>

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Free oscillation of a cantilever plate (Sec. 3.1 of the paper, Eq. 31), coarse.
  *
- * Reference: converged two-dimensional plane-strain elasticity, T = 0.25515 s and amplitude 0.02302 m;
- * with finite deflection T = 0.2549 s. The clamp holds the particles whose centres lie up to dp/2
- * behind the clamped edge, so that its place is known to dp/2; since T ~ L^2 the period is known to
- * dp/L: 2.5 % at ts/dp = 4, 1.25 % at 8. Measured: 0.25978 s (+1.9 %) and 0.25738 s (+0.9 %). */
+ * Reference: converged two-dimensional plane-strain elasticity, T = 0.25515 s and amplitude 0.02302
+ * m; with finite deflection T = 0.2549 s. The clamp holds the particles whose centres lie up to
+ * dp/2 behind the clamped edge, so that its place is known to dp/2; since T ~ L^2 the period is
+ * known to dp/L: 2.5 % at ts/dp = 4, 1.25 % at 8. Measured: 0.25978 s (+1.9 %) and 0.25738 s (+0.9
+ * %). */
 #include "rig.h"
 #include "unity.h"
 
@@ -27,17 +28,17 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-/* Deflection of the free end: mean of the two particles at its middle, carried on to the edge by the
- * slope there, 1.38/L of the deflection for the first mode. */
+/* Deflection of the free end: mean of the two particles at its middle, carried on to the edge by
+ * the slope there, 1.38/L of the deflection for the first mode. */
 static double tip(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     const double dp = rig.scene.top.dp;
     double sum = 0;
     int n = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->X[i] < 0.2 - dp || fabs(p->Y[i]) > dp) continue;
-        sum += p->uy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->X[i] < 0.2 - dp || fabs(particles->Y[i]) > dp) continue;
+        sum += particles->uy[i];
         n++;
     }
     TEST_ASSERT_EQUAL_INT(2, n);
@@ -67,8 +68,8 @@ static double period(double *top)
     return 0;
 }
 
-/* Amplitude: a period that is off by e is an amplitude off by e as well, v = omega u; a percent more
- * for what the viscosity takes in a quarter period. */
+/* Amplitude: a period that is off by e is an amplitude off by e as well, v = omega u; a percent
+ * more for what the viscosity takes in a quarter period. */
 static void swing(const char *ratio, double ts_over_dp, const char *integrator, double *off)
 {
     rig_open(&rig, plate, ratio, integrator, NULL);
@@ -97,8 +98,8 @@ static void test_period_and_amplitude_converge(void)
 
 /* The equations as printed (Eqs. 13 and 17) at ts/dp = 10 against an independent prototype of them
  * that was written before this program: periods of 0.2589 s for kappa = 10 and 0.2303 s for kappa =
- * 50, 10 % too stiff. Half of their last digit is 2e-4 of them; 1e-3 leaves room for how either tells
- * a passage through rest. */
+ * 50, 10 % too stiff. Half of their last digit is 2e-4 of them; 1e-3 leaves room for how either
+ * tells a passage through rest. */
 static void test_printed_form_agrees_with_the_prototype(void)
 {
     const char *const kappa[] = {"plate.hourglass=10", "plate.hourglass=50"};

@@ -32,7 +32,8 @@ static double exact(double y, double t, double viscosity)
 }
 
 /* What the discrete operator makes of nu on a square lattice, for u = y^2/2: sum of
- * V 2 (-x . grad W)/(r^2 + eta^2) y^2/2. 0.971228 for h/dp = 1.35, 0.984879 for 1.5; eta costs 1.2 %. */
+ * V 2 (-x . grad W)/(r^2 + eta^2) y^2/2. 0.971228 for h/dp = 1.35, 0.984879 for 1.5; eta costs 1.2
+ * %. */
 static double lattice_viscosity(double h)
 {
     double sum = 0;
@@ -50,16 +51,17 @@ static double lattice_viscosity(double h)
 /* Largest difference from the series, in units of the final top speed. */
 static double difference(double viscosity)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double worst = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        worst = fmax(worst, fabs(p->vx[i] - exact(p->y[i], rig.sim.state.time, viscosity)));
+    for (int64_t i = 0; i < particles->n; i++)
+        worst = fmax(worst, fabs(particles->vx[i] -
+                                 exact(particles->y[i], rig.sim.state.time, viscosity)));
     return worst / top_speed;
 }
 
-/* Against nu times the lattice's factor the profile is right to 0.8 % of the top speed at 20 particles
- * across (measured 0.55 %, 1.8 % at 10), at all times; half of dp makes the error at least 2.5 times
- * smaller. Against nu itself the factor adds its 1/0.9712 - 1 = 3.0 %. */
+/* Against nu times the lattice's factor the profile is right to 0.8 % of the top speed at 20
+ * particles across (measured 0.55 %, 1.8 % at 10), at all times; half of dp makes the error at
+ * least 2.5 times smaller. Against nu itself the factor adds its 1/0.9712 - 1 = 3.0 %. */
 static void test_flow_between_plates(void)
 {
     const double factor = lattice_viscosity(1.35), times[] = {0.0225, 0.1125, 0.5, 1};
@@ -78,13 +80,15 @@ static void test_flow_between_plates(void)
     TEST_ASSERT_TRUE(rig.sim.state.bound_steps[BOUND_viscous] > 1000);
 }
 
-/* Along plates that do not hold it the fluid falls freely: u = F t, to a float's round-off a step. */
+/* Along plates that do not hold it the fluid falls freely: u = F t, to a float's round-off a step.
+ */
 static void test_plates_without_friction(void)
 {
     rig_open(&rig, channel, "plates.slip=free", "dp=0.1 mm", NULL);
     rig_run(&rig, 0.1);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) assert_near(1e-6 * F * 0.1, F * 0.1, p->vx[i], "speed");
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++)
+        assert_near(1e-6 * F * 0.1, F * 0.1, particles->vx[i], "speed");
 }
 
 #define VORTICES                                            \
@@ -92,10 +96,11 @@ static void test_plates_without_friction(void)
     "[fluid w]\nshape = box 0, 0, 1, 1\n"                   \
     "velocity = -cos(2*pi*x)*sin(2*pi*y), sin(2*pi*x)*cos(2*pi*y)\n"
 
-/* Taylor-Green vortices, L = 1 m, U = 1 m/s, Re = 10: the velocity decays as exp(-8 pi^2 nu t/L^2), to
- * 0.454 in 0.1 s; the rate is right to 2.5 % with h/dp = 1.5, whose lattice gives 0.985 of it (measured
- * 0.989 at 50 particles, 0.974 at 25). Later the particles line up along the stretching streamlines and
- * dissipate more: that is what particle shifting is for. Momentum stays at nothing. */
+/* Taylor-Green vortices, L = 1 m, U = 1 m/s, Re = 10: the velocity decays as exp(-8 pi^2 nu t/L^2),
+ * to 0.454 in 0.1 s; the rate is right to 2.5 % with h/dp = 1.5, whose lattice gives 0.985 of it
+ * (measured 0.989 at 50 particles, 0.974 at 25). Later the particles line up along the stretching
+ * streamlines and dissipate more: that is what particle shifting is for. Momentum stays at nothing.
+ */
 static void test_taylor_green(void)
 {
     rig_open(&rig,
@@ -113,8 +118,8 @@ static void test_taylor_green(void)
     TEST_ASSERT_EQUAL_INT64(2500, rig.sim.kind[KIND_FLUID].n);
 }
 
-/* At Re = 100 the particles line up and the amplitude, exp(-8 pi^2 0.01 0.4) = 0.729 by theory, is 0.36 at
- * 0.4 s; with shifting 0.52. Held to: at most two thirds of the error are left. */
+/* At Re = 100 the particles line up and the amplitude, exp(-8 pi^2 0.01 0.4) = 0.729 by theory, is
+ * 0.36 at 0.4 s; with shifting 0.52. Held to: at most two thirds of the error are left. */
 static void test_shifting_keeps_vortices_alive(void)
 {
     double amplitude[2];
@@ -133,8 +138,8 @@ static void test_shifting_keeps_vortices_alive(void)
     assert_at_most((exact - amplitude[0]) * 2 / 3, exact - amplitude[1], "missing amplitude");
 }
 
-/* In a box without walls the mean density can only be that of the start: without L-9 shifting had raised
- * it by 3 % at 0.4 s at this resolution, with it by 0.3 %. */
+/* In a box without walls the mean density can only be that of the start: without L-9 shifting had
+ * raised it by 3 % at 0.4 s at this resolution, with it by 0.3 %. */
 static void test_shifting_keeps_the_mean_density(void)
 {
     rig_open(&rig,
@@ -143,15 +148,15 @@ static void test_shifting_keeps_the_mean_density(void)
              "pressure = -250*(cos(4*pi*x) + cos(4*pi*y))\n",
              NULL);
     rig_run(&rig, 0.4);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double sum = 0;
-    for (int64_t i = 0; i < p->n; i++) sum += p->dens[i];
-    assert_at_most(0.01, fabs(sum / (double)p->n), "mean of rho/rho0 - 1");
+    for (int64_t i = 0; i < particles->n; i++) sum += particles->dens[i];
+    assert_at_most(0.01, fabs(sum / (double)particles->n), "mean of rho/rho0 - 1");
 }
 
-/* As above with h/dp = 2 and the shift at c0/10 for all, which works at the stagnation points where the
- * lattice is torn: kinetic energy 0.957 of the exact one at 0.4 s (0.554 without shifting, 0.747 with each
- * particle's own speed). */
+/* As above with h/dp = 2 and the shift at c0/10 for all, which works at the stagnation points where
+ * the lattice is torn: kinetic energy 0.957 of the exact one at 0.4 s (0.554 without shifting,
+ * 0.747 with each particle's own speed). */
 static void test_shifting_at_one_speed_keeps_vortices_whole(void)
 {
     rig_open(&rig,
@@ -169,15 +174,16 @@ static void test_shifting_at_one_speed_keeps_vortices_whole(void)
 /* Mean of rho/rho0 - 1 in units of U^2/c0^2, which is the mean pressure over rho U^2. */
 static double mean_pressure(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double sum = 0;
-    for (int64_t i = 0; i < p->n; i++) sum += p->dens[i];
-    return 10 * 10 * sum / (double)p->n;
+    for (int64_t i = 0; i < particles->n; i++) sum += particles->dens[i];
+    return 10 * 10 * sum / (double)particles->n;
 }
 
-/* 20 s with the standard scheme, long after the vortices have died away (Re = 100). The mean pressure rises
- * once, while the lattice is torn: to 0.41, 0.21 and 0.18 rho U^2 after 1 s with `shifting` 0, 2 and 10. It
- * falls with the flow, to 0.02 at the end. Without L-9 it is 1.1 (2) and 1.7 (10) after 1 s and stays. */
+/* 20 s with the standard scheme, long after the vortices have died away (Re = 100). The mean
+ * pressure rises once, while the lattice is torn: to 0.41, 0.21 and 0.18 rho U^2 after 1 s with
+ * `shifting` 0, 2 and 10. It falls with the flow, to 0.02 at the end. Without L-9 it is 1.1 (2)
+ * and 1.7 (10) after 1 s and stays. */
 static void test_no_mean_pressure_is_left_of_vortices(void)
 {
     static const char *const shifting[] = {"w.shifting=0", "w.shifting=2", "w.shifting=10"};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Kelvin-Voigt damping: a uniform rate of strain by hand, balances, the exact decay of a vibrating bar,
- * and the step that it allows. */
+ * Kelvin-Voigt damping: a uniform rate of strain by hand, balances, the exact decay of a vibrating
+ * bar, and the step that it allows. */
 #include "rig.h"
 #include "unity.h"
 
@@ -24,7 +24,8 @@ static const char block[] = "dp = 1 cm\nend_time = 1\n[solid b]\nshape = box 0, 
                             "poisson = 0.25\nartificial_viscosity = 0\ndamping_time = 1 ms\n";
 
 /* lambda = mu = 0.4 E. Undeformed, dv_x/dX = 3/s and dv_x/dY = 2/s: S_xx = tau (lambda + 2 mu) 3,
- * S_yy = tau lambda 3, S_xy = tau 2 mu (2/2). Turned by 90 degrees, P = F S is S with its rows turned. */
+ * S_yy = tau lambda 3, S_xy = tau 2 mu (2/2). Turned by 90 degrees, P = F S is S with its rows
+ * turned. */
 static void test_uniform_rate_by_hand(void)
 {
     const double mu = 8e5, tau = 1e-3;
@@ -47,8 +48,8 @@ static void test_uniform_rate_by_hand(void)
     }
 }
 
-/* Without a pattern: forces and torques close, and what the forces take from the motion is the rate of
- * strain times the viscous stress, which is never negative. */
+/* Without a pattern: forces and torques close, and what the forces take from the motion is the rate
+ * of strain times the viscous stress, which is never negative. */
 static void test_balances(void)
 {
     open(block, "b.damping_time=0.1 s", "b.hourglass=0");
@@ -77,9 +78,9 @@ static void test_balances(void)
     TEST_ASSERT_TRUE(power[0] - power[1] < -0.1 * size);
 }
 
-/* A free bar, nu = 0, in its first mode u = A cos(pi x/L): w = pi c/L, share of the critical damping
- * z = tau w/2, u(0, t) = A exp(-z w t) (cos(wd t) + z w/wd sin(wd t)), wd = w sqrt(1 - z^2). Largest
- * error over three periods. */
+/* A free bar, nu = 0, in its first mode u = A cos(pi x/L): w = pi c/L, share of the critical
+ * damping z = tau w/2, u(0, t) = A exp(-z w t) (cos(wd t) + z w/wd sin(wd t)), wd = w sqrt(1 -
+ * z^2). Largest error over three periods. */
 static double error_of_decay(const char *dp, const char *tau_text, double tau)
 {
     static const char bar[] =
@@ -114,14 +115,15 @@ static void test_decay_of_a_bar(void)
     assert_at_most(0.002, error_of_decay("dp=5 mm", text, tau), "error of 8 particles across");
 }
 
-/* Damping that bounds the step: noise dies out at that step, and at 1.5 times that step it grows. */
+/* Damping that bounds the step: noise dies out at that step, and at 1.5 times that step it grows.
+ */
 static void test_stable_step(void)
 {
     const double factors[] = {1, 1.5};
     for (int k = 0; k < 2; k++) {
         open(block, "b.damping_time=1 ms", "integrator=verlet");
-        const struct solid *const s = &rig.sim.solid;
-        TEST_ASSERT_TRUE(s->stable_step < 0.5 * solid_step_of(square(s->omega_max), 0));
+        const struct solid *const solid = &rig.sim.solid;
+        TEST_ASSERT_TRUE(solid->stable_step < 0.5 * solid_step_of(square(solid->omega_max), 0));
         uint64_t seed = 3;
         for (int64_t i = 0; i < p->n; i++)
             p->vx[i] = 1e-3 * noise(&seed), p->vy[i] = 1e-3 * noise(&seed);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A disc that oscillates in viscous fluid inside a fixed circle, both without slip: the force in phase with
- * the acceleration (added mass) and with the velocity (drag), against the exact solution of the unsteady
- * Stokes equations (Chen, Wambsganss and Jendrzejczyk 1976). */
+ * A disc that oscillates in viscous fluid inside a fixed circle, both without slip: the force in
+ * phase with the acceleration (added mass) and with the velocity (drag), against the exact solution
+ * of the unsteady Stokes equations (Chen, Wambsganss and Jendrzejczyk 1976). */
 #include "rig.h"
 #include "unity.h"
 
@@ -23,9 +23,9 @@ static const char disc[] =
 
 static const double speed = 6e-3, period = 0.5, rho = 1000;
 
-/* The force per depth is -rho (mass dv/dt + drag v): m^2 and m^2/s, with the radii, the viscosity and the
- * period of the case. The velocity of the fluid is that of a stream function
- * (A r + B/r + C I1(l r) + D K1(l r)) sin(theta), l^2 = i w/nu, whose constants follow from no slip. */
+/* The force per depth is -rho (mass dv/dt + drag v): m^2 and m^2/s, with the radii, the viscosity
+ * and the period of the case. The velocity of the fluid is that of a stream function (A r + B/r + C
+ * I1(l r) + D K1(l r)) sin(theta), l^2 = i w/nu, whose constants follow from no slip. */
 static const double exact_mass = 0.0134456, exact_drag = 0.0679560;
 
 static struct rig rig;
@@ -49,15 +49,16 @@ static struct response response_of(const char *set)
         double force = 0;
         rig_run(&rig, t);
         rig_evaluate(&rig); /* the force of a step is that at its start */
-        const struct particles *const p = &rig.sim.kind[KIND_SOLID];
-        for (int64_t i = 0; i < p->n; i++) force += p->fy[i];
+        const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+        for (int64_t i = 0; i < particles->n; i++) force += particles->fy[i];
         r.mass -= 2 * force * cos(w * t) / (SAMPLES * speed * w * rho);
         r.drag -= 2 * force * sin(w * t) / (SAMPLES * speed * rho);
     }
     return r;
 }
 
-/* The added mass is too large by the layer of docs/turek_hron_notes.md, which L-6 and L-6a leave. */
+/* The added mass is too large by the layer of docs/turek_hron_notes.md, which L-6 and L-6a leave.
+ */
 static void test_oscillation(void)
 {
     const struct response r = response_of("n=10");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The small cases that each show an effect, made coarse: a beam pressed onto another, two posts in a dam
- * break, a patch of fluid under tension, an accelerated and a rolling tank. */
+ * The small cases that each show an effect, made coarse: a beam pressed onto another, two posts in
+ * a dam break, a patch of fluid under tension, an accelerated and a rolling tank. */
 #include "rig.h"
 #include "unity.h"
 #include "geometry/load.h"
@@ -37,22 +37,23 @@ static void run(double time)
 /* Mean displacement of a body's particles within 0.8 dp of a place. */
 static double displacement(int body, double X, double Y, bool upright)
 {
-    const struct particles *const p = &sim.kind[KIND_SOLID];
+    const struct particles *const particles = &sim.kind[KIND_SOLID];
     const double reach = 0.8 * sim.solid.body[body].dp;
     double sum = 0;
     int n = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != body || hypot(p->X[i] - X, p->Y[i] - Y) > reach) continue;
-        sum += upright ? p->uy[i] : p->ux[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->body[i] != body || hypot(particles->X[i] - X, particles->Y[i] - Y) > reach)
+            continue;
+        sum += upright ? particles->uy[i] : particles->ux[i];
         n++;
     }
     TEST_ASSERT_TRUE(n > 0);
     return sum / n;
 }
 
-/* By symmetry the lower beam goes down by half of what the clamp has gone beyond the gap. Measured in half
- * the case's time: 0.6 %. What the clamp has put in is in the beams, but for what has died out,
- * and stays as it is once the clamp has stopped. */
+/* By symmetry the lower beam goes down by half of what the clamp has gone beyond the gap. Measured
+ * in half the case's time: 0.6 %. What the clamp has put in is in the beams, but for what has died
+ * out, and stays as it is once the clamp has stopped. */
 static void test_beam_on_beam(void)
 {
     const char *const sets[] = {"across=4", "press=0.5 s", "end_time=0.7 s"};
@@ -88,8 +89,8 @@ static void test_two_posts(void)
     TEST_ASSERT_EQUAL_INT64(0, sim.state.lost);
 }
 
-/* The end of the bar follows the exact decay with Kelvin-Voigt damping, to 0.6 % of its peak (measured: 0.4);
- * without it the bar rings on with the energy it had. */
+/* The end of the bar follows the exact decay with Kelvin-Voigt damping, to 0.6 % of its peak
+ * (measured: 0.4); without it the bar rings on with the energy it had. */
 static void test_ringing_bar(void)
 {
     const double pi = 3.14159265358979323846, omega = pi * sqrt(1e3) / 0.2, peak = 0.1 / omega;
@@ -119,30 +120,33 @@ static void test_ringing_bar(void)
 /* Momentum that the fluid has about a point, N s m/m, with the velocity that leapfrog carries. */
 static double angular_momentum(double x, double y)
 {
-    const struct particles *const p = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.kind[KIND_FLUID];
     double sum = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        sum += sim.fluid.k.mass * ((p->x[i] - x) * p->vy_half[i] - (p->y[i] - y) * p->vx_half[i]);
+    for (int64_t i = 0; i < particles->n; i++)
+        sum += sim.fluid.k.mass * ((particles->x[i] - x) * particles->vy_half[i] -
+                                   (particles->y[i] - y) * particles->vx_half[i]);
     return sum;
 }
 
 /* Share of the fluid whose nearest neighbour is within half of the spacing. */
 static double clumped(void)
 {
-    const struct particles *const p = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.kind[KIND_FLUID];
     const double near2 = square(0.5 * scene.top.dp);
     int64_t count = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         bool close = false;
-        for (int64_t j = 0; j < p->n && !close; j++)
-            close = j != i && square(p->x[i] - p->x[j]) + square(p->y[i] - p->y[j]) < near2;
+        for (int64_t j = 0; j < particles->n && !close; j++)
+            close = j != i && square(particles->x[i] - particles->x[j]) +
+                                      square(particles->y[i] - particles->y[j]) <
+                                  near2;
         count += close;
     }
-    return (double)count / (double)p->n;
+    return (double)count / (double)particles->n;
 }
 
-/* Control of tension is what holds the patch together; its forces are central, so that momentum and angular
- * momentum are kept either way. */
+/* Control of tension is what holds the patch together; its forces are central, so that momentum and
+ * angular momentum are kept either way. */
 static void test_rotating_patch(void)
 {
     for (int with = 0; with < 2; with++) {
@@ -163,24 +167,25 @@ static void test_rotating_patch(void)
     }
 }
 
-/* Height of the water's centre above its inclined bed, and the error of its pressure over that at the bed. */
+/* Height of the water's centre above its inclined bed, and the error of its pressure over that at
+ * the bed. */
 static void level(double *height, double *error)
 {
-    const struct particles *const p = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.kind[KIND_FLUID];
     const double way = 9.81 / 4 * square(sim.state.time) / 2, dp = scene.top.dp;
     double sum = 0, square_sum = 0;
     simulation_refresh(&sim);
-    for (int64_t i = 0; i < p->n; i++) {
-        const double x = p->x[i] - way, depth = 0.2 - p->y[i] - (x - 0.2) / 4;
-        sum += p->y[i] + x / 4;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double x = particles->x[i] - way, depth = 0.2 - particles->y[i] - (x - 0.2) / 4;
+        sum += particles->y[i] + x / 4;
         if (depth > 2 * dp) square_sum += square(rig_pressure(&sim, i) - 1000 * 9.81 * depth);
     }
-    *height = sum / (double)p->n;
-    *error = sqrt(square_sum / (double)p->n) / (1000 * 9.81 * 0.2);
+    *height = sum / (double)particles->n;
+    *error = sqrt(square_sum / (double)particles->n) / (1000 * 9.81 * 0.2);
 }
 
-/* Water at rest in an accelerated tank stays where it is, at the exact pressure, if diffusion leaves the
- * gradient alone: Antuono's form; Eq. 6 makes it sink. */
+/* Water at rest in an accelerated tank stays where it is, at the exact pressure, if diffusion
+ * leaves the gradient alone: Antuono's form; Eq. 6 makes it sink. */
 static void test_accelerated_tank(void)
 {
     double sunk[3];
@@ -206,8 +211,9 @@ static void test_accelerated_tank(void)
     TEST_ASSERT_TRUE(sunk[0] > 5e-4);
 }
 
-/* A tank that rolls the other way does the same, mirrored: the tip of the baffle, momentum, work; nothing is
- * lost, energy only dissipated, and the foot of the baffle stands where the roll has put it. */
+/* A tank that rolls the other way does the same, mirrored: the tip of the baffle, momentum, work;
+ * nothing is lost, energy only dissipated, and the foot of the baffle stands where the roll has put
+ * it. */
 static void test_rolling_tank(void)
 {
     double tip[2], momentum[2], work[2];
@@ -230,12 +236,14 @@ static void test_rolling_tank(void)
         assert_at_most(0.03, fmax(-sim.state.dens_low, sim.state.dens_high), "density");
         /* 4 degrees (1 - cos(2 pi 0.4/1.6)) = 4 degrees. */
         const double angle = (k ? -4 : 4) * 3.14159265358979323846 / 180;
-        const struct particles *const p = &sim.kind[KIND_SOLID];
+        const struct particles *const particles = &sim.kind[KIND_SOLID];
         TEST_ASSERT_TRUE(sim.loads.n_held > 0);
         for (int64_t h = 0; h < sim.loads.n_held; h++) {
             const int32_t i = sim.loads.held[h];
-            assert_near(1e-12, cos(angle) * p->X[i] - sin(angle) * p->Y[i], p->x[i], "foot, x");
-            assert_near(1e-12, sin(angle) * p->X[i] + cos(angle) * p->Y[i], p->y[i], "foot, y");
+            assert_near(1e-12, cos(angle) * particles->X[i] - sin(angle) * particles->Y[i],
+                        particles->x[i], "foot, x");
+            assert_near(1e-12, sin(angle) * particles->X[i] + cos(angle) * particles->Y[i],
+                        particles->y[i], "foot, y");
         }
         tearDown();
     }

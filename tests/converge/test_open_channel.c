@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Plane Poiseuille flow from a parabolic inflow to an outlet of given pressure: u = 4 U y (H - y)/H^2 and a
- * pressure that falls by 8 nu rho U/H^2 a metre, Re = 20 by the mean velocity. */
+ * Plane Poiseuille flow from a parabolic inflow to an outlet of given pressure: u = 4 U y (H -
+ * y)/H^2 and a pressure that falls by 8 nu rho U/H^2 a metre, Re = 20 by the mean velocity. */
 #include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
@@ -30,7 +30,8 @@ struct errors {
     double drop;    /* of the pressure from 0.4 to 1.6 m, relative */
 };
 
-/* After all fluid but that next to the plates has been replaced: means over a stretch and a second. */
+/* After all fluid but that next to the plates has been replaced: means over a stretch and a second.
+ */
 static struct errors errors_at(int n, const char *set)
 {
     enum { MOST = 64, TIMES = 20 };
@@ -38,12 +39,12 @@ static struct errors errors_at(int n, const char *set)
     rig_open(&rig, channel, set, NULL);
     for (int k = 0; k < TIMES; k++) {
         rig_run(&rig, 2 + 0.05 * k);
-        const struct particles *const p = &rig.sim.kind[KIND_FLUID];
-        for (int64_t i = 0; i < p->n; i++) {
-            if (p->x[i] < 1.2 || p->x[i] > 1.7) continue;
-            const int row = (int)fmin(n - 1, fmax(0, p->y[i] * n));
-            sum[row] += p->vx[i];
-            place[row] += 6 * p->y[i] * (1 - p->y[i]);
+        const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < particles->n; i++) {
+            if (particles->x[i] < 1.2 || particles->x[i] > 1.7) continue;
+            const int row = (int)fmin(n - 1, fmax(0, particles->y[i] * n));
+            sum[row] += particles->vx[i];
+            place[row] += 6 * particles->y[i] * (1 - particles->y[i]);
             count[row]++;
         }
         drop +=

@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-/* The aluminium plate of Sec. 3.2 without its water, four particles across, let go under its weight. */
+/* The aluminium plate of Sec. 3.2 without its water, four particles across, let go under its
+ * weight. */
 static const char plate[] =
     "dp = 12.5 mm\nend_time = 1\ngravity = 0, -9.81\n"
     "[solid plate]\nshape = box -0.05, -0.05, 1.05, 0\nclamp = box -0.05, -0.05, 0, 0\n"
@@ -31,8 +32,8 @@ static double dissipated(const char *form, const char *integrator)
     return share;
 }
 
-/* Eq. 18 as printed drives bending modes (with it this plate blows up within 0.2 s); with the mean of
- * both particles' tensors they are damped. Measured: -0.7 % and +0.014 % a period. */
+/* Eq. 18 as printed drives bending modes (with it this plate blows up within 0.2 s); with the mean
+ * of both particles' tensors they are damped. Measured: -0.7 % and +0.014 % a period. */
 static void test_viscous_force_dissipates(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};

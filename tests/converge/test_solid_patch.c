@@ -37,8 +37,8 @@ static double off(int64_t i, double xx, double xy, double yx, double yy)
                   larger(fabs(p->Uyx[i] - yx), fabs(p->Uyy[i] - yy)));
 }
 
-/* A linear field is exact everywhere, surfaces and corners included, for both gradients. Values up to
- * 0.4 m with 3e-17 of round-off over distances of 1 cm and 20 terms: 1e-13. */
+/* A linear field is exact everywhere, surfaces and corners included, for both gradients. Values up
+ * to 0.4 m with 3e-17 of round-off over distances of 1 cm and 20 terms: 1e-13. */
 static void test_linear_fields_are_exact(void)
 {
     double top = 0;
@@ -56,8 +56,9 @@ static void test_linear_fields_are_exact(void)
     assert_at_most(1e-13, top, "error of U");
 }
 
-/* A quadratic field is exact everywhere with the quadratic gradient, where there are three particles
- * across; with the linear one it is off at surfaces by the order of h u'' = 0.01 to 0.1. */
+/* A quadratic field is exact everywhere with the quadratic gradient, where there are three
+ * particles across; with the linear one it is off at surfaces by the order of h u'' = 0.01 to 0.1.
+ */
 static void test_quadratic_fields_are_exact_with_the_quadratic_gradient(void)
 {
     for (int k = 0; k < 4; k++) {
@@ -98,8 +99,8 @@ static double error_of_smooth_field(const char *gradient, const char *dp)
     return top;
 }
 
-/* At surfaces the linear gradient is of first order, the quadratic one of second: errors fall by 2 and
- * by 4 as dp is halved, within a quarter for the next order. */
+/* At surfaces the linear gradient is of first order, the quadratic one of second: errors fall by 2
+ * and by 4 as dp is halved, within a quarter for the next order. */
 static void test_orders_of_accuracy(void)
 {
     const char *const gradients[] = {"b.gradient=linear", "b.gradient=quadratic"};
@@ -112,9 +113,9 @@ static void test_orders_of_accuracy(void)
 }
 
 /* Inside the body (three supports from the surface, the reach of a variational hourglass force) a
- * quadratic displacement of 1e-6 has the exact acceleration of linear elasticity; the hourglass force
- * leaves quadratic fields alone, since (F_a + F_b) X_ab/2 is exact for them. Relative error: that of
- * the strain's square, some 1e-6, and round-off 1e-16/1e-6. */
+ * quadratic displacement of 1e-6 has the exact acceleration of linear elasticity; the hourglass
+ * force leaves quadratic fields alone, since (F_a + F_b) X_ab/2 is exact for them. Relative error:
+ * that of the strain's square, some 1e-6, and round-off 1e-16/1e-6. */
 static void test_divergence_of_the_stress(void)
 {
     /* nu = 0.25: lambda = mu = 0.4 E */
@@ -131,8 +132,8 @@ static void test_divergence_of_the_stress(void)
         }
         solid_stress(&rig.sim.solid, p);
         solid_forces(&rig.sim.solid, p);
-        /* div sigma = (lambda + 2 mu) u_x,xx + mu u_x,yy + (lambda + mu) u_y,xy and likewise in y, with
-         * u_x,xx = 4e, u_x,yy = 2e, u_x,xy = -3e, u_y,xx = -2e, u_y,yy = 8e, u_y,xy = 2e. */
+        /* div sigma = (lambda + 2 mu) u_x,xx + mu u_x,yy + (lambda + mu) u_y,xy and likewise in y,
+         * with u_x,xx = 4e, u_x,yy = 2e, u_x,xy = -3e, u_y,xx = -2e, u_y,yy = 8e, u_y,xy = 2e. */
         const double ax = mu / 1000 * e * (3 * 4 + 2 + 2 * 2);
         const double ay = mu / 1000 * e * (3 * 8 - 2 + 2 * -3);
         int64_t inside = 0;

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * A cantilever of 200 x 20 mm with a load at its tip, drawn at an angle, against beam theory with shear.
+ * A cantilever of 200 x 20 mm with a load at its tip, drawn at an angle, against beam theory with
+ * shear.
  *
- * The load is raised over two periods of the first mode, and the deflection is the mean over the next one.
- * Measured over that of theory: 1.0126 at 10 particles across at every angle, 1.035 at 5; the clamped
- * centres lie half a spacing behind the edge, which makes the beam that much longer. With a clamp that is a
- * circle of 30 mm, whose side is 0.57 mm behind the edge on average: 1.0434 at 5 across, 1.0207 at 10. */
+ * The load is raised over two periods of the first mode, and the deflection is the mean over the
+ * next one. Measured over that of theory: 1.0126 at 10 particles across at every angle, 1.035 at 5;
+ * the clamped centres lie half a spacing behind the edge, which makes the beam that much longer.
+ * With a clamp that is a circle of 30 mm, whose side is 0.57 mm behind the edge on average: 1.0434
+ * at 5 across, 1.0207 at 10. */
 #include "rig.h"
 #include "unity.h"
 
@@ -33,7 +35,7 @@ void tearDown(void) { rig_close(&rig); }
 /* Mean deflection of the particles that carry the load, over that of theory at their distance. */
 static double deflection(double angle, double across)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     const double L = 0.2, thick = 0.02, dp = thick / across, rise = 0.985, period = 0.4925;
     const double E = 2e6, I = thick * thick * thick / 12, P = 3 * E * I / (L * L * L) * 2e-3;
     const double arm = L - 0.5 * dp;
@@ -44,9 +46,9 @@ static double deflection(double angle, double across)
         rig_run(&rig, rise + (k + 0.5) * period / SAMPLES);
         double mean = 0;
         int n = 0;
-        for (int64_t i = 0; i < p->n; i++) {
-            if (p->X[i] * cos(angle) + p->Y[i] * sin(angle) < L - dp) continue;
-            mean += p->uy[i] * cos(angle) - p->ux[i] * sin(angle);
+        for (int64_t i = 0; i < particles->n; i++) {
+            if (particles->X[i] * cos(angle) + particles->Y[i] * sin(angle) < L - dp) continue;
+            mean += particles->uy[i] * cos(angle) - particles->ux[i] * sin(angle);
             n++;
         }
         TEST_ASSERT_EQUAL_INT((int)across, n);

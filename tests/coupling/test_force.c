@@ -59,23 +59,24 @@ static void disorder(void)
 {
     uint64_t seed = 3;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const p = &rig.sim.kind[kind];
-        for (int64_t i = 0; i < p->n; i++) {
-            p->x[i] += 0.002 * noise(&seed);
-            p->y[i] += 0.002 * noise(&seed);
-            p->vx[i] = noise(&seed);
-            p->vy[i] = noise(&seed);
-            if (kind == KIND_FLUID) p->dens[i] = 0.02 + 0.01 * noise(&seed);
-            if (kind == KIND_SOLID) p->wx[i] = noise(&seed);
-            if (kind == KIND_SOLID) p->ax[i] = 30 * noise(&seed);
+        struct particles *const particles = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->x[i] += 0.002 * noise(&seed);
+            particles->y[i] += 0.002 * noise(&seed);
+            particles->vx[i] = noise(&seed);
+            particles->vy[i] = noise(&seed);
+            if (kind == KIND_FLUID) particles->dens[i] = 0.02 + 0.01 * noise(&seed);
+            if (kind == KIND_SOLID) particles->wx[i] = noise(&seed);
+            if (kind == KIND_SOLID) particles->ax[i] = 30 * noise(&seed);
         }
     }
     rig_sort(&rig);
 }
 
-static void carry_off(void *context, double time, const struct particles *p, double *ax, double *ay)
+static void carry_off(void *context, double time, const struct particles *particles, double *ax,
+                      double *ay)
 {
-    (void)context, (void)time, (void)p, (void)ax, (void)ay;
+    (void)context, (void)time, (void)particles, (void)ax, (void)ay;
     for (int64_t i = 0; i < fluid->n; i++) fluid->x[i] += 1;
 }
 

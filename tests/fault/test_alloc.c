@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart, a
- * fork, the parts of a solid, --inspect, --explain and --preview: a sentence and a status each
- * time, nothing leaks, no lock is left, and what was good stays good. The linker puts these in between:
+ * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart,
+ * a fork, the parts of a solid, --inspect, --explain and --preview: a sentence and a status each
+ * time, nothing leaks, no lock is left, and what was good stays good. The linker puts these in
+ * between:
  * --wrap: malloc calloc realloc aligned_alloc free fopen fdopen opendir open_memstream
- * Those within HDF5, a shared library, are not: it says itself that it does not survive all of them; a
- * snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
+ * Those within HDF5, a shared library, are not: it says itself that it does not survive all of
+ * them; a snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
 #include "base/files.h"
 #include "base/threads.h"
 #include "geometry/load.h"

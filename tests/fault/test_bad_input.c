@@ -37,25 +37,26 @@ void tearDown(void) { arena_fail_after(-1); }
 
 static enum err try(const char *text, int n_sets, const char *const *sets)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    const enum err err = scene_load_text(&s, text, "x.cfg", n_sets, sets, &d);
+    const enum err err = scene_load_text(&scene, text, "x.cfg", n_sets, sets, &d);
     if (err) {
         TEST_ASSERT_EQUAL_INT(err, d.code);
         TEST_ASSERT_TRUE_MESSAGE(strlen(d.text) > 10, text);
-        TEST_ASSERT_NULL(s.arena.blocks);
+        TEST_ASSERT_NULL(scene.arena.blocks);
     } else {
-        scene_free(&s);
+        scene_free(&scene);
     }
     return err;
 }
 
 static void test_the_text_itself_is_good(void)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&s, good, "x.cfg", 0, NULL, &d), d.text);
-    scene_free(&s);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, good, "x.cfg", 0, NULL, &d),
+                                  d.text);
+    scene_free(&scene);
 }
 
 static void test_every_allocation_fails_once(void)

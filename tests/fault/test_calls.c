@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * The n-th call of the system fails, alone or with all after it, for every n of a run, a restart, a run
- * that a guard stops, --explain, --preview and --inspect. What must not be lost is said; after that the run
- * goes on from its last checkpoint to the same bits, or is begun anew. test_inject.sh does so to the whole
- * program, but kills it, too, and takes every thirtieth call only. The linker puts these in between:
- * --wrap: access stat lstat fstat flock ftruncate fsync rename unlink link lseek read write fclose fflush
- * --wrap: fread fdopen readlink getcwd realpath sysconf newlocale clock_gettime pthread_create rmdir
+ * The n-th call of the system fails, alone or with all after it, for every n of a run, a restart, a
+ * run that a guard stops, --explain, --preview and --inspect. What must not be lost is said; after
+ * that the run goes on from its last checkpoint to the same bits, or is begun anew. test_inject.sh
+ * does so to the whole program, but kills it, too, and takes every thirtieth call only. The linker
+ * puts these in between:
+ * --wrap: access stat lstat fstat flock ftruncate fsync rename unlink link lseek read write fclose
+ * --wrap: fflush
+ * --wrap: fread fdopen readlink getcwd realpath sysconf newlocale clock_gettime pthread_create
+ * --wrap: rmdir
  * --wrap: mkdir posix_fallocate open_memstream */
 #include "base/files.h"
 #include "sphfsi.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Replays the inputs that the fuzzers have kept (corpus/<target>/ in tests/fuzz/corpus.tar.gz), each of
- * which once reached code that no other did, and what once failed. In any build, under any sanitizer.
- * With an argument: writes fresh seeds of the checkpoint fuzzer to that folder. */
+ * Replays the inputs that the fuzzers have kept (corpus/<target>/ in tests/fuzz/corpus.tar.gz),
+ * each of which once reached code that no other did, and what once failed. In any build, under any
+ * sanitizer. With an argument: writes fresh seeds of the checkpoint fuzzer to that folder. */
 #include "base/files.h"
 #include "fuzz.h"
 #include "tiny.h"

@@ -11,8 +11,8 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-/* From -25 % to +30 %, and down to 1e-14 on both sides: six roundings of Horner's rule, none of which
- * cancels for small d. */
+/* From -25 % to +30 %, and down to 1e-14 on both sides: six roundings of Horner's rule, none of
+ * which cancels for small d. */
 static void test_power_keeps_its_digits(void)
 {
     for (double d = 0.3; d > 1e-14; d *= 0.7) {
@@ -66,8 +66,8 @@ static void test_tension_beyond_the_law_stays_finite(void)
     assert_near(1e-14, lowest, eos_dens(-1e9, 1000, 20), "d");
 }
 
-/* To the bit, in blocks whose values need one round up to all of them, and with what is not a number among
- * them. */
+/* To the bit, in blocks whose values need one round up to all of them, and with what is not a
+ * number among them. */
 static void test_a_block_is_as_one_by_one(void)
 {
     const double rho0 = 1000, c0 = 20, B = rho0 * c0 * c0 / 7;

@@ -74,8 +74,8 @@ static void test_pressure(void)
 }
 
 /* Masses of 1.5 and 0.5 m: as test_pressure, of a with the mass of b and of b with that of a,
- *   0.5 * 0.6822899792818219 and 1.5 * 0.6822899792818219 m/s^2: momentum is kept. Eq. 4a likewise has the
- * volumes 1.5 m/rho_a and 0.5 m/rho_b. */
+ *   0.5 * 0.6822899792818219 and 1.5 * 0.6822899792818219 m/s^2: momentum is kept. Eq. 4a likewise
+ * has the volumes 1.5 m/rho_a and 0.5 m/rho_b. */
 static void test_particles_of_unlike_mass(void)
 {
     place("w.particle_mass=hydrostatic", "w.pressure=0");
@@ -93,8 +93,8 @@ static void test_particles_of_unlike_mass(void)
     assert_near(1e-9, 640 * (1.5 - 0.5), row.momentum_x, "momentum");
 }
 
-/* A column starts with as much mass in each place as the density of its depth says, so that particles fill
- * their places: m/(1 + d) = 1. */
+/* A column starts with as much mass in each place as the density of its depth says, so that
+ * particles fill their places: m/(1 + d) = 1. */
 static void test_masses_carry_the_density(void)
 {
     rig_open(&rig, pair, "w.particle_mass=hydrostatic", "w.surface=3", "gravity=0,-9.81", NULL);
@@ -105,8 +105,9 @@ static void test_masses_carry_the_density(void)
     }
 }
 
-/* T-9a: where dens is 0.004 and -0.001 above its value with delay, 1000 * 10^2 * 0.003 = 300 Pa are added
- * to the sum of both pressures, 3154.5859965184296 Pa. The pressure of the state stays as it is. */
+/* T-9a: where dens is 0.004 and -0.001 above its value with delay, 1000 * 10^2 * 0.003 = 300 Pa are
+ * added to the sum of both pressures, 3154.5859965184296 Pa. The pressure of the state stays as it
+ * is. */
 static void test_acoustic_damper(void)
 {
     place("w.acoustic_damper=4", "gravity=0,0");
@@ -117,7 +118,8 @@ static void test_acoustic_damper(void)
     assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
 }
 
-/* T-9b, h/c0 = 0.1 s: after 0.1 s with alpha_D = 4 a fifth of the difference is left out, 0.1/(0.1 + 0.4). */
+/* T-9b, h/c0 = 0.1 s: after 0.1 s with alpha_D = 4 a fifth of the difference is left out, 0.1/(0.1
+ * + 0.4). */
 static void test_damper_follows_density(void)
 {
     place("w.acoustic_damper=4", "gravity=0,0");
@@ -151,7 +153,8 @@ static void test_continuity(void)
 }
 
 /* Eq. 7 with alpha = 0.1 and v.x = -0.4: Pi = 0.1 * 10/1015 * 0.4/1.01, which adds
- *   640 * Pi * 0.3481514 = 0.08694022155924634 m/s^2. Nothing for the same pair on its way apart. */
+ *   640 * Pi * 0.3481514 = 0.08694022155924634 m/s^2. Nothing for the same pair on its way apart.
+ */
 static void test_viscosity_acts_on_approaching_pairs(void)
 {
     place("w.artificial_viscosity=0.1", "gravity=0,0");
@@ -163,9 +166,9 @@ static void test_viscosity_acts_on_approaching_pairs(void)
     assert_near(1e-11, -88.2529762870353, 1000 * p->ddens[a], "drho_a");
 }
 
-/* Morris et al. 1997 with nu = 0.3 m^2/s and v_ab = (2, -2): 2 nu rho0 m/(rho_a rho_b) |x . grad W|/1.01
- * = 600 * 640/1030200 * 0.3481514/1.01 = 0.12848620396423277 1/s against the velocity, on its way together
- * and apart, where Eq. 7 has two laws. */
+/* Morris et al. 1997 with nu = 0.3 m^2/s and v_ab = (2, -2): 2 nu rho0 m/(rho_a rho_b) |x . grad
+ * W|/1.01 = 600 * 640/1030200 * 0.3481514/1.01 = 0.12848620396423277 1/s against the velocity, on
+ * its way together and apart, where Eq. 7 has two laws. */
 static void test_laminar_viscosity(void)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
@@ -179,7 +182,8 @@ static void test_laminar_viscosity(void)
     }
 }
 
-/* Viscosity that vanishes leaves the bits of a scene without: 1e-30 m^2/s is not zero but nothing. */
+/* Viscosity that vanishes leaves the bits of a scene without: 1e-30 m^2/s is not zero but nothing.
+ */
 static void test_no_viscosity_is_the_limit(void)
 {
     double ax[2], ay[2];
@@ -205,8 +209,8 @@ static void test_diffusion_levels_densities(void)
 }
 
 /* Fourtakas et al. 2019: b lies 0.8 m lower and is to be denser by rho0 g 0.8/c0^2 = 78.48 kg/m^3;
- * it is so by 10, so that a loses: 4.3257022 * (10 - 78.48)/10 = -29.622408666484546. A pair with just
- * the hydrostatic difference does not diffuse. */
+ * it is so by 10, so that a loses: 4.3257022 * (10 - 78.48)/10 = -29.622408666484546. A pair with
+ * just the hydrostatic difference does not diffuse. */
 static void test_diffusion_spares_the_hydrostatic_part(void)
 {
     place("w.density_diffusion=0.1", "w.diffusion_form=fourtakas");
@@ -228,9 +232,9 @@ static void test_diffusion_spares_the_hydrostatic_part(void)
     assert_near(1e-14, 0, p->ddens[a], "hydrostatic difference");
 }
 
-/* Antuono et al. 2010: a density that rises linearly is taken out of the difference exactly, at the free
- * surface and among disordered particles as well: dens = 0.01 + 0.02 x - 0.03 y. A disordered one diffuses
- * without making mass: the sum of V D vanishes. */
+/* Antuono et al. 2010: a density that rises linearly is taken out of the difference exactly, at the
+ * free surface and among disordered particles as well: dens = 0.01 + 0.02 x - 0.03 y. A disordered
+ * one diffuses without making mass: the sum of V D vanishes. */
 static void disordered_block(const char *form, bool linear)
 {
     rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35", "gravity=0, 0",
@@ -267,9 +271,9 @@ static void test_diffusion_spares_linear_densities(void)
     assert_near(1e-13 * size, 0, sum, "sum of V D");
 }
 
-/* L-5b: v.x = 0.003 m^2/s is a rate of strain of 0.003/1.01 1/s along the pair. So the diffusivity is
- * (6*2)^2 * 0.003/1.01 = 0.4277228 m^2/s instead of 0.1 * 10 = 1: D_a = 1.8502011 kg/(m^3 s). Eq. 4a adds
- * 0.003/0.4 times the 88.252976 of above. */
+/* L-5b: v.x = 0.003 m^2/s is a rate of strain of 0.003/1.01 1/s along the pair. So the diffusivity
+ * is (6*2)^2 * 0.003/1.01 = 0.4277228 m^2/s instead of 0.1 * 10 = 1: D_a = 1.8502011 kg/(m^3 s).
+ * Eq. 4a adds 0.003/0.4 times the 88.252976 of above. */
 static void test_diffusion_is_limited_by_the_strain(void)
 {
     static const struct {
@@ -289,8 +293,9 @@ static void test_diffusion_is_limited_by_the_strain(void)
     }
 }
 
-/* Neighbours that all but lie on a line with the particle: the gradient is exact down to a determinant of a
- * thousandth of the trace squared, and 0 below, where it would be noise. Here that ratio is 0.08 and 6e-4. */
+/* Neighbours that all but lie on a line with the particle: the gradient is exact down to a
+ * determinant of a thousandth of the trace squared, and 0 below, where it would be noise. Here that
+ * ratio is 0.08 and 6e-4. */
 static void test_gradient_of_neighbours_almost_on_a_line(void)
 {
     static const double height[] = {0.25, 0.02};
@@ -371,8 +376,9 @@ static void test_coincident_and_lone_particles(void)
 }
 
 /* Monaghan 2000 with epsilon = 0.2: rho = 990 and 1020 kg/m^3 have P_a = 1e5/7 (0.99^7 - 1) =
- * -970.4950, P_b = 2124.0810 Pa. W(1)/W(0.8) = ((1/2)^4 3)/((0.6)^4 2.6) = 0.55644587, to the fourth
- * 0.09587198, so that 0.2 * 970.4950 * 0.09587198 = 18.608656 Pa are added to P_a + P_b = 1153.5859 Pa. */
+ * -970.4950, P_b = 2124.0810 Pa. W(1)/W(0.8) = ((1/2)^4 3)/((0.6)^4 2.6) = 0.55644587, to the
+ * fourth 0.09587198, so that 0.2 * 970.4950 * 0.09587198 = 18.608656 Pa are added to P_a + P_b =
+ * 1153.5859 Pa. */
 static void test_tension_is_pushed_against(void)
 {
     double ax[2];
@@ -426,16 +432,17 @@ static double closest_after(const char *control)
     return closest / 0.1;
 }
 
-/* Stretched fluid at -1000 Pa, a lattice disturbed by 2 % of dp, clumps within 1.5 s: its closest pair is
- * 0.67 dp apart. With epsilon = 0.2 the lattice stays, 0.98 dp. */
+/* Stretched fluid at -1000 Pa, a lattice disturbed by 2 % of dp, clumps within 1.5 s: its closest
+ * pair is 0.67 dp apart. With epsilon = 0.2 the lattice stays, 0.98 dp. */
 static void test_stretched_fluid_does_not_clump(void)
 {
     assert_at_most(0.75, closest_after("w.tensile_control=0"), "closest pair over dp, without");
     assert_at_most(-0.95, -closest_after("w.tensile_control=0.2"), "closest pair over dp, less");
 }
 
-/* Lind et al. 2012, on b: grad C = m/rho_a grad_b W = 640/1010 * 0.3481514380135211 (0.6, 0.8), and the
- * divergence of the positions 640/1010 * 0.3481514 |x|^2 = 0.2206108122065876: too little for a shift. */
+/* Lind et al. 2012, on b: grad C = m/rho_a grad_b W = 640/1010 * 0.3481514380135211 (0.6, 0.8), and
+ * the divergence of the positions 640/1010 * 0.3481514 |x|^2 = 0.2206108122065876: too little for a
+ * shift. */
 static void test_concentration_by_hand(void)
 {
     place("w.shifting=2", "gravity=0,0");

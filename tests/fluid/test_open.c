@@ -38,8 +38,9 @@ static int64_t made_less_ended(void)
     return n;
 }
 
-/* A jet without walls, to the right or up: whatever momentum it has got came through its ends, to round-off,
- * and so did its particles; the predictor-corrector keeps the momentum of all forces within the fluid. */
+/* A jet without walls, to the right or up: whatever momentum it has got came through its ends, to
+ * round-off, and so did its particles; the predictor-corrector keeps the momentum of all forces
+ * within the fluid. */
 static void test_mass_and_momentum_are_booked(void)
 {
 #define IN "speed = 1 + 0.2*sin(9*t)\n"
@@ -68,8 +69,8 @@ static void test_mass_and_momentum_are_booked(void)
     }
 }
 
-/* Buffers have the given velocity at the start, before the first step. What they then have is no gain,
- * although the fluid beside them rests. */
+/* Buffers have the given velocity at the start, before the first step. What they then have is no
+ * gain, although the fluid beside them rests. */
 static void test_a_sudden_inflow_is_no_gain(void)
 {
     rig_open(&rig, TOP WATER PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n", NULL);
@@ -86,20 +87,21 @@ static void test_a_uniform_stream_passes(void)
     rig_open(&rig, TOP WATER "velocity = 1, 0\n" PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n",
              NULL);
     rig_run(&rig, 2);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        assert_near(5e-3, 1, p->vx[i], "velocity along the plates");
-        assert_near(5e-3, 0, p->vy[i], "velocity across");
-        assert_near(1e-3, 0, p->dens[i], "density");
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        assert_near(5e-3, 1, particles->vx[i], "velocity along the plates");
+        assert_near(5e-3, 0, particles->vy[i], "velocity across");
+        assert_near(1e-3, 0, particles->dens[i], "density");
     }
     TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] >= 390);
     TEST_ASSERT_FALSE(rig.sim.open.warned);
     assert_near(3, 0, simulation_ledger(&rig.sim).dissipated, "energy lost of 500 J/m that pass");
 }
 
-/* A vortex with three times the velocity of the stream that carries it out: fluid returns through a part of
- * the outlet. Velocities that varied along the normal would cram particles into the buffer, where a
- * particle that returned was then thrown out at once, and a guard stopped the run at 0.70 s. */
+/* A vortex with three times the velocity of the stream that carries it out: fluid returns through a
+ * part of the outlet. Velocities that varied along the normal would cram particles into the buffer,
+ * where a particle that returned was then thrown out at once, and a guard stopped the run at 0.70
+ * s. */
 static void test_a_vortex_stronger_than_the_stream_leaves(void)
 {
     rig_open(&rig,
@@ -113,12 +115,12 @@ static void test_a_vortex_stronger_than_the_stream_leaves(void)
              "[inflow left]\nfrom = -0.6, 0.5\nto = -0.6, -0.5\nspeed = 1\n"
              "[outflow right]\nfrom = 0.8, -0.5\nto = 0.8, 0.5\npressure = 0\nabsorb = 0.5\n",
              NULL);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     rig_run(&rig, 2);
-    for (int64_t i = 0; i < p->n; i++) {
-        assert_near(0.1, 1, p->vx[i], "velocity along the plates");
-        assert_near(0.1, 0, p->vy[i], "velocity across");
-        assert_near(5e-3, 0, p->dens[i], "density");
+    for (int64_t i = 0; i < particles->n; i++) {
+        assert_near(0.1, 1, particles->vx[i], "velocity along the plates");
+        assert_near(0.1, 0, particles->vy[i], "velocity across");
+        assert_near(5e-3, 0, particles->dens[i], "density");
     }
 }
 
@@ -135,16 +137,16 @@ static void test_any_angle(void)
         "[outflow o]\nfrom = 1.5*c, 1.5*d\nto = 1.5*c - 0.8*d, 1.5*d + 0.8*c\npressure = 0\n",
         NULL);
     rig_run(&rig, 2);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double along = 0, across = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        along += p->vx[i] * cos(0.5) + p->vy[i] * sin(0.5);
-        across += p->vy[i] * cos(0.5) - p->vx[i] * sin(0.5);
+    for (int64_t i = 0; i < particles->n; i++) {
+        along += particles->vx[i] * cos(0.5) + particles->vy[i] * sin(0.5);
+        across += particles->vy[i] * cos(0.5) - particles->vx[i] * sin(0.5);
     }
-    assert_near(0.02, 1, along / (double)p->n, "mean velocity along");
-    assert_near(0.02, 0, across / (double)p->n, "mean velocity across");
+    assert_near(0.02, 1, along / (double)particles->n, "mean velocity along");
+    assert_near(0.02, 0, across / (double)particles->n, "mean velocity across");
     TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 500);
-    assert_near(0.04 * (double)p->n, 0, (double)made_less_ended(), "particles gained");
+    assert_near(0.04 * (double)particles->n, 0, (double)made_less_ended(), "particles gained");
 }
 
 /* An expression need have values on the line only. */
@@ -177,23 +179,23 @@ static void test_a_flow_that_reverses(void)
              "w.pressure=3000", "w.sound_speed=40", NULL);
     const int64_t n = rig.sim.kind[KIND_FLUID].n;
     rig_run(&rig, 2);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_TRUE(rig.sim.open.count[k][OPEN_ENTERED] > 20);
         TEST_ASSERT_TRUE(rig.sim.open.count[k][OPEN_LEFT] > 20);
     }
-    assert_near(20, (double)n, (double)p->n, "particles");
+    assert_near(20, (double)n, (double)particles->n, "particles");
     int64_t id[1000];
-    TEST_ASSERT_TRUE(p->n < 1000);
-    memcpy(id, p->id, (size_t)p->n * sizeof *id);
-    qsort(id, (size_t)p->n, sizeof *id, by_value);
-    for (int64_t i = 1; i < p->n; i++) TEST_ASSERT_TRUE(id[i] != id[i - 1]);
+    TEST_ASSERT_TRUE(particles->n < 1000);
+    memcpy(id, particles->id, (size_t)particles->n * sizeof *id);
+    qsort(id, (size_t)particles->n, sizeof *id, by_value);
+    for (int64_t i = 1; i < particles->n; i++) TEST_ASSERT_TRUE(id[i] != id[i - 1]);
 }
 
 enum { POINTS = 120 };
 
-/* A pulse of sound that goes right, some 1.2 m long: the pressure, Pa, of places up to 3 m when it would be
- * back at the middle from an outlet at 3 m. */
+/* A pulse of sound that goes right, some 1.2 m long: the pressure, Pa, of places up to 3 m when it
+ * would be back at the middle from an outlet at 3 m. */
 static void pulse(const char *length, const char *absorb, double p[POINTS])
 {
     rig_open(&rig,
@@ -218,8 +220,8 @@ static double most_difference(const double a[POINTS], const double b[POINTS])
     return most;
 }
 
-/* T-53: held at its pressure the outlet sends back nearly all of the pulse of 100 Pa, and absorbing, below
- * 2 %, beside a channel twice as long, whose end it has not reached. */
+/* T-53: held at its pressure the outlet sends back nearly all of the pulse of 100 Pa, and
+ * absorbing, below 2 %, beside a channel twice as long, whose end it has not reached. */
 static void test_sound_leaves(void)
 {
     double without[POINTS], held[POINTS], absorbed[POINTS];
@@ -247,7 +249,8 @@ static void test_a_level(void)
     assert_near(0.02 * 3924, 3924 * 0.75, fluid_pressure_at(&rig.sim, 0.5, 0.1), "pressure");
 }
 
-/* A channel with a free surface, Froude number 0.5: inflow of given discharge, outflow of given level. */
+/* A channel with a free surface, Froude number 0.5: inflow of given discharge, outflow of given
+ * level. */
 static void test_a_channel_with_a_level(void)
 {
     rig_open(&rig,
@@ -287,7 +290,8 @@ static void test_a_surge_over_an_inflow(void)
     TEST_ASSERT_TRUE(rig.sim.open.warned);
 }
 
-/* Water that stands above the level of an inflow runs off over it; it does not pile up behind the line. */
+/* Water that stands above the level of an inflow runs off over it; it does not pile up behind the
+ * line. */
 static void test_water_above_the_level_of_an_inflow(void)
 {
     rig_open(&rig,
@@ -349,24 +353,24 @@ static void test_refused(void)
 static void test_members_are_checked(void)
 {
     rig_open(&rig, TOP WATER PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n", NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    const int32_t kept = p->open[0];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const int32_t kept = particles->open[0];
     const int32_t wrong[] = {3, -1};
     for (int k = 0; k < 2; k++) {
         char why[100];
         rig.diag.code = ERR_OK;
-        p->open[0] = wrong[k];
+        particles->open[0] = wrong[k];
         snprintf(why, sizeof why, "belongs to open boundary %d, but the case has only 2", wrong[k]);
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, open_list(&rig.sim.open, p, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, open_list(&rig.sim.open, particles, &rig.diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, why), rig.diag.text);
     }
-    p->open[0] = kept;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, p, &rig.diag));
+    particles->open[0] = kept;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, particles, &rig.diag));
     rig.sim.open.capacity = rig.sim.open.n_members;
     rig.diag.code = ERR_OK;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, p, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, particles, &rig.diag));
     rig.sim.open.capacity--;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, open_list(&rig.sim.open, p, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, open_list(&rig.sim.open, particles, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text,
                                         "four times as many particles as at the start"),
                                  rig.diag.text);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the buffers of open boundaries take from the fluid, against sums over all particles, with noise in
- * every field: T-50, T-51. */
+ * What the buffers of open boundaries take from the fluid, against sums over all particles, with
+ * noise in every field: T-50, T-51. */
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "rig.h"
@@ -34,8 +34,8 @@ void setUp(void)
     }
 }
 
-/* The fluid around a point: weighted sums of 1, x, y, xx, xy, yy with x from the point, and of a field with
- * 1, x, y. */
+/* The fluid around a point: weighted sums of 1, x, y, xx, xy, yy with x from the point, and of a
+ * field with 1, x, y. */
 struct fit {
     double w, x, y, xx, xy, yy, f, fx, fy;
 };
@@ -54,7 +54,8 @@ static struct fit around(const double at[2], double (*field)(int64_t i))
     return s;
 }
 
-/* The value at the point of the plane with the least weighted squares of differences: Cramer's rule. */
+/* The value at the point of the plane with the least weighted squares of differences: Cramer's
+ * rule. */
 static double plane(const struct fit *s)
 {
     const double det = s->w * (s->xx * s->yy - s->xy * s->xy) -
@@ -68,15 +69,16 @@ static double pressure_of(int64_t i) { return eos_pressure(p->dens[i], 1000, 10)
 static double u_of(int64_t i) { return p->vx[i]; }
 
 static double wall_at[2];
-/* T-10: the pressure that a wall at that place, with an acceleration of 2 along x, gets from a particle. */
+/* T-10: the pressure that a wall at that place, with an acceleration of 2 along x, gets from a
+ * particle. */
 static double wall_pressure_of(int64_t i)
 {
     return pressure_of(i) + 1000 * (1 + p->dens[i]) *
                                 ((3 - 2) * (wall_at[0] - p->x[i]) - 9 * (wall_at[1] - p->y[i]));
 }
 
-/* Pressures are those at the mirror image, velocities those at the line. From the mirror to the buffer's
- * particle the fluid has the density at rest. */
+/* Pressures are those at the mirror image, velocities those at the line. From the mirror to the
+ * buffer's particle the fluid has the density at rest. */
 static void test_buffers_see_the_fluid_across_the_line(void)
 {
     struct open *const o = &rig.sim.open;

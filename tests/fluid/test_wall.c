@@ -2,7 +2,8 @@
  * Walls as the fluid sees them: Eqs. 19-20 in the form of Adami et al. 2012, free slip.
  *
  * Pairs by hand: h = 1 m, m = 640 kg/m, rho0 = 1000 kg/m^3, c0 = 10 m/s; a fluid particle of rho =
- * 1010 (P = 1030.5050301001436 Pa) one metre above a wall particle: |grad W| = 0.3481514380135211. */
+ * 1010 (P = 1030.5050301001436 Pa) one metre above a wall particle: |grad W| = 0.3481514380135211.
+ */
 #include "rig.h"
 #include "unity.h"
 
@@ -61,8 +62,8 @@ static void test_acceleration_of_the_wall(void)
     assert_near(1e-9, 1030.5050301001436, wall->p[0], "P_s");
 }
 
-/* Eq. 4a counts the wall's own velocity: v_ab = (0, -1.5), drho = 1010 * 640/1084.6108 * 1.5 * 0.34815
- * = 311.2338838121733 kg/(m^3 s). */
+/* Eq. 4a counts the wall's own velocity: v_ab = (0, -1.5), drho = 1010 * 640/1084.6108 * 1.5 *
+ * 0.34815 = 311.2338838121733 kg/(m^3 s). */
 static void test_velocity_of_the_wall(void)
 {
     place(0, "w.density=1000");
@@ -92,10 +93,10 @@ static void test_walls_slip_freely(void)
     TEST_ASSERT_TRUE(ddens[0] == 0);
 }
 
-/* No slip: the fluid, v = (3, -1), is all that the wall, v = (0.5, 0.25), sees, so that the mirrored velocity
- * is 2 (0.5, 0.25) - (3, -1), and the difference to the fluid's is 2 (2.5, -1.25). With nu = 0.3 m^2/s the
- * factor is 600 * 640/(1010 * 1084.6108) 0.3481514/1.01 = 0.12083221653174106 1/s. What drags the fluid
- * pulls at the wall. */
+/* No slip: the fluid, v = (3, -1), is all that the wall, v = (0.5, 0.25), sees, so that the
+ * mirrored velocity is 2 (0.5, 0.25) - (3, -1), and the difference to the fluid's is 2 (2.5,
+ * -1.25). With nu = 0.3 m^2/s the factor is 600 * 640/(1010 * 1084.6108) 0.3481514/1.01 =
+ * 0.12083221653174106 1/s. What drags the fluid pulls at the wall. */
 static void test_fluid_sticks_to_a_wall(void)
 {
     double ay[2], fy[2];
@@ -123,9 +124,9 @@ static void test_fluid_sticks_to_a_wall(void)
     assert_near(1e-9, -640 * 2.5 * 0.12083221653174106, fy[1] - fy[0], "force on the wall");
 }
 
-/* Repulsion of a fluid particle 0.4 m, half a spacing, above the wall's, beta = 0.1: |grad W| = 35/(4 pi) 0.4
- * 0.8^3 = 0.57041 1/m^3, and 0.1 * 1e5 ((0.64^2 + 0.01)/(0.4^2 + 0.01) - 1) = 14682.35 Pa, the same on
- * both. Nothing at 0.65 m. */
+/* Repulsion of a fluid particle 0.4 m, half a spacing, above the wall's, beta = 0.1: |grad W| =
+ * 35/(4 pi) 0.4 0.8^3 = 0.57041 1/m^3, and 0.1 * 1e5 ((0.64^2 + 0.01)/(0.4^2 + 0.01) - 1) =
+ * 14682.35 Pa, the same on both. Nothing at 0.65 m. */
 static void test_a_wall_pushes_back(void)
 {
     double ay[2], fy[2];
@@ -181,8 +182,8 @@ static void test_a_wall_resists_approach(void)
     }
 }
 
-/* One particle of fluid is all that the wall sees: whose pressure it has makes no difference, not to one that
- * pulls either. */
+/* One particle of fluid is all that the wall sees: whose pressure it has makes no difference, not
+ * to one that pulls either. */
 static void test_one_particle_has_one_side(void)
 {
     for (int k = 0; k < 2; k++) {
@@ -206,9 +207,10 @@ static void test_one_particle_has_one_side(void)
     }
 }
 
-/* Two particles of fluid, one on each side of a wall of one particle, P_f = 1030.505 Pa on one and 0 on the
- * other, without gravity. With the mean of both on the wall the one without pressure is pushed away by 515
- * Pa of it; with its own it is left alone, and the other is pushed with 2 P_f. */
+/* Two particles of fluid, one on each side of a wall of one particle, P_f = 1030.505 Pa on one and
+ * 0 on the other, without gravity. With the mean of both on the wall the one without pressure is
+ * pushed away by 515 Pa of it; with its own it is left alone, and the other is pushed with 2 P_f.
+ */
 static void test_pressure_behind_a_wall_is_not_felt(void)
 {
     double ay[2][2];
@@ -236,8 +238,8 @@ static void test_pressure_behind_a_wall_is_not_felt(void)
 /* Where the first wall particle began. */
 static double wall_at(int axis)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_WALL];
-    return axis ? p->Y[0] : p->X[0];
+    const struct particles *const particles = &rig.sim.kind[KIND_WALL];
+    return axis ? particles->Y[0] : particles->X[0];
 }
 
 static void test_dry_walls_have_no_pressure(void)
@@ -250,8 +252,8 @@ static void test_dry_walls_have_no_pressure(void)
     TEST_ASSERT_TRUE(fluid->ay[0] == -9.81);
 }
 
-/* Below still water the extrapolation is exact but for the lift's own density: P_s = rho0 g (H - y_s)
- * within the largest dens, g H/c0^2 = 2.5e-5. */
+/* Below still water the extrapolation is exact but for the lift's own density: P_s = rho0 g (H -
+ * y_s) within the largest dens, g H/c0^2 = 2.5e-5. */
 static void test_hydrostatic_pressure_continues_into_the_wall(void)
 {
     rig_open(&rig,
@@ -294,8 +296,8 @@ static void test_moving_walls_follow_their_motion(void)
     }
 }
 
-/* Water in a tank that turns quickly by a quarter and back lags behind, but none of it gets through the
- * walls, which do work on it. */
+/* Water in a tank that turns quickly by a quarter and back lags behind, but none of it gets through
+ * the walls, which do work on it. */
 static void test_a_turning_tank_holds_its_water(void)
 {
     rig_open(&rig,
@@ -315,7 +317,8 @@ static void test_a_turning_tank_holds_its_water(void)
     for (int64_t i = 0; i < n; i++) {
         const double dx = fluid->x[i] - 0.1, dy = fluid->y[i];
         const double x = c * dx + s * dy + 0.1, y = -s * dx + c * dy;
-        /* ... within its faces, but for a quarter of dp: the wall's own particles begin at half of it. */
+        /* ... within its faces, but for a quarter of dp: the wall's own particles begin at half of
+         * it. */
         TEST_ASSERT_TRUE(x > -0.0025 && x < 0.2025 && y > -0.0025 && y < 0.3025);
     }
     TEST_ASSERT_TRUE(rig.sim.state.wall_work != 0);

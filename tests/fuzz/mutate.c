@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * libFuzzer's mutator for checkpoints: it keeps the frame of header, blocks and footer whole and puts the
- * sums right, so that what it changes reaches the reader behind them. */
+ * libFuzzer's mutator for checkpoints: it keeps the frame of header, blocks and footer whole and
+ * puts the sums right, so that what it changes reaches the reader behind them. */
 #include "base/hash.h"
 #include "output/checkpoint.h"
 
@@ -100,7 +100,8 @@ static void change_payload(uint8_t *data, const size_t *at, int k)
     }
 }
 
-/* The counts of the header and of the file follow from the blocks, unless they are what is changed. */
+/* The counts of the header and of the file follow from the blocks, unless they are what is changed.
+ */
 static void put_right(uint8_t *data, size_t size, bool counts)
 {
     size_t at[MAX_BLOCKS + 1];

@@ -23,8 +23,9 @@ static const char tank[] =
     "[solid floor]\nshape = box 0, -0.03, 0.4, 0\nclamp = box 0, -0.03, 0.4, 0\n"
     "density = 2000\nyoung = 1e7\npoisson = 0.3\n";
 
-/* Weight of the water 800 N/m; measured 769, 777 and 777 on the whole floor, 389, 394 and 394 of 400 on its
- * middle half: the fluid's own discretisation, to which the floor's spacing adds a percent. */
+/* Weight of the water 800 N/m; measured 769, 777 and 777 on the whole floor, 389, 394 and 394 of
+ * 400 on its middle half: the fluid's own discretisation, to which the floor's spacing adds a
+ * percent. */
 static void test_force_of_still_water(void)
 {
     double coarse[2] = {0};
@@ -47,8 +48,8 @@ static void test_force_of_still_water(void)
     }
 }
 
-/* Fluid at rest stands half of both spacings away: nothing pushes it back, and no bit of a force changes. One
- * that is nearer than 0.8 of that is pushed. */
+/* Fluid at rest stands half of both spacings away: nothing pushes it back, and no bit of a force
+ * changes. One that is nearer than 0.8 of that is pushed. */
 static void test_repulsion_begins_nearer(void)
 {
     for (int k = 0; k < 3; k++) {
@@ -87,8 +88,8 @@ static void test_mass_and_step(void)
     }
 }
 
-/* A drop hits a free plate of half the spacing: both together keep their momentum to the round-off of
- * pairs in double precision. */
+/* A drop hits a free plate of half the spacing: both together keep their momentum to the round-off
+ * of pairs in double precision. */
 static void momentum_with(const char *set)
 {
     RIG_OPEN_SOLID("dp = 10 mm\nend_time = 1\nprecision = double\nintegrator = symplectic\n"

@@ -117,8 +117,8 @@ static void test_regions_that_abut_share_no_particle(void)
                                        "tilt=0.5 mm"};
     for (size_t k = 0; k < COUNT_OF(sets); k++) {
         must_read(text, sets[k]);
-        /* Layers along the slope meet the fluid's lattice: where that leaves too little space, fluid is
-         * left out, a tenth of a layer of 20 on average. */
+        /* Layers along the slope meet the fluid's lattice: where that leaves too little space,
+         * fluid is left out, a tenth of a layer of 20 on average. */
         TEST_ASSERT_INT64_WITHIN_MESSAGE(k == 0 ? 0 : 12, 800, total(), sets[k]);
         TEST_ASSERT_TRUE_MESSAGE(nearest() > (k == 0 ? 0.99 : 0.64), sets[k]);
     }

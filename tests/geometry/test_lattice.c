@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Bodies and walls at any angle: lattices turned with them and fitted to their edges, layers along walls. */
+ * Bodies and walls at any angle: lattices turned with them and fitted to their edges, layers along
+ * walls. */
 #include "particles/particles.h"
 #include "case/scene.h"
 #include "check/check.h"
@@ -93,7 +94,8 @@ static void test_lattice_angle_overrides(void)
     TEST_ASSERT_TRUE(scene.solid_lattice[0].angle == 0);
 }
 
-/* No direction has more than half of the outline: the lattice is not turned, and stays symmetric. */
+/* No direction has more than half of the outline: the lattice is not turned, and stays symmetric.
+ */
 static void test_shapes_without_a_main_direction(void)
 {
     must_read("dp = 1 mm\nend_time = 1\n[solid b]\n" RUBBER
@@ -214,7 +216,8 @@ static void test_cells_begin_at_a_clamp(void)
         }
         TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-9, value[k], 0.5 * (held + free), sets[k]);
         TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-9, 50e-3, tip + 0.5 * (free - held), sets[k]);
-        /* So the free part has its area, which is what bends, though the whole has not: no warning. */
+        /* So the free part has its area, which is what bends, though the whole has not: no warning.
+         */
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, scene.solid_lattice[0].area_error);
         TEST_ASSERT_EQUAL_STRING("", warnings);
     }
@@ -359,8 +362,8 @@ static void test_space_is_filled(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1, mean / (double)n);
 }
 
-/* The particles of water beside slopes and a hump have its area, of water around a cylinder also. With
- * `scheme = paper` those too near to a wall are missing. */
+/* The particles of water beside slopes and a hump have its area, of water around a cylinder also.
+ * With `scheme = paper` those too near to a wall are missing. */
 static void test_fluid_beside_slopes_has_its_area(void)
 {
     static const char slope[] = "scheme = standard\ndp = 1 mm\nend_time = 1\n[constants]\na = 30 "
@@ -402,8 +405,8 @@ static void test_packed_water_keeps_below_its_surface(void)
     }
 }
 
-/* A uniform pressure pushes no particle of the water around a cylinder: the kernel's gradient sums to
- * nearly nothing, also beyond those that were moved. No two particles are near to each other. */
+/* A uniform pressure pushes no particle of the water around a cylinder: the kernel's gradient sums
+ * to nearly nothing, also beyond those that were moved. No two particles are near to each other. */
 static void test_fluid_around_a_cylinder_is_packed(void)
 {
     must_read("scheme = standard\ndp = 1 mm\nend_time = 1\n[fluid w]\nsound_speed = 20\n"

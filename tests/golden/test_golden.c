@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The bits are the same on every compiler, instruction set, vector width, optimisation and number of threads:
- * the state of a small gate after 60 steps, held against hashes that are kept here. They change where a law
- * or the order of a sum changes, and then on purpose: the test prints the new ones. */
+ * The bits are the same on every compiler, instruction set, vector width, optimisation and number
+ * of threads: the state of a small gate after 60 steps, held against hashes that are kept here.
+ * They change where a law or the order of a sum changes, and then on purpose: the test prints the
+ * new ones. */
 #include "rig.h"
 #include "base/simd.h"
 #include "unity.h"
@@ -35,11 +36,11 @@ static uint64_t hash_after(const char *integrator, const char *precision)
     rig_steps(&rig, 60, 1);
     uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind += 2) {
-        const struct particles *const p = &rig.sim.kind[kind];
-        h = add(h, p->x, p->n);
-        h = add(h, p->y, p->n);
-        h = add(h, p->vx, p->n);
-        h = add(h, p->vy, p->n);
+        const struct particles *const particles = &rig.sim.kind[kind];
+        h = add(h, particles->x, particles->n);
+        h = add(h, particles->y, particles->n);
+        h = add(h, particles->vx, particles->n);
+        h = add(h, particles->vy, particles->n);
     }
     return add(h, rig.sim.kind[KIND_FLUID].dens, rig.sim.kind[KIND_FLUID].n);
 }

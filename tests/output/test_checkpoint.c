@@ -39,16 +39,16 @@ void tearDown(void)
     checkpoint_free(&other);
 }
 
-static void step(struct simulation *s, int n)
+static void step(struct simulation *sim, int n)
 {
     for (int k = 0; k < n; k++)
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, simulation_step(s, 1.0, &diag), diag.text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, simulation_step(sim, 1.0, &diag), diag.text);
 }
 
-static void store(const char *folder, struct simulation *s)
+static void store(const char *folder, struct simulation *sim)
 {
     mkdir(folder, 0777);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, s, "the case", "1.2.3", &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, sim, "the case", "1.2.3", &diag));
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_store(&image, folder, path, &diag), diag.text);
 }
 
@@ -81,10 +81,10 @@ static void same_bits_double_single_rate(void)
     goes_on_with_the_same_bits(2, (const char *[]){"precision=double", "numerics.multirate=off"});
 }
 
-static uint64_t particles(const struct simulation *s)
+static uint64_t particles(const struct simulation *sim)
 {
     uint64_t hash = HASH_START;
-    for (int k = 0; k < KIND_COUNT; k++) hash = particles_hash(&s->kind[k], hash);
+    for (int k = 0; k < KIND_COUNT; k++) hash = particles_hash(&sim->kind[k], hash);
     return hash;
 }
 
@@ -248,8 +248,8 @@ static void store_two(const char *folder)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_read(&image, path, &diag), diag.text);
 }
 
-/* With `n` bytes of the image in its place the newer one is found to be damaged, which is said, and the
- * one before it is used. */
+/* With `n` bytes of the image in its place the newer one is found to be damaged, which is said, and
+ * the one before it is used. */
 static void the_one_before_is_used(const char *folder, size_t n, size_t at)
 {
     char message[64], newer[PATH_BYTES];
@@ -264,7 +264,8 @@ static void the_one_before_is_used(const char *folder, size_t n, size_t at)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, checkpoint_info(&other).steps, message);
 }
 
-/* Through files a sample of bytes, because each costs a file; every byte is changed in memory below. */
+/* Through files a sample of bytes, because each costs a file; every byte is changed in memory
+ * below. */
 static void a_flipped_byte_in_a_file_is_found(void)
 {
     const char *const folder = tiny_path("flip");

@@ -37,33 +37,33 @@ static void test_anywhere(void)
     for (size_t k = 0; k < COUNT_OF(places); k++) {
         const double x = places[k][0], y = places[k][1];
         open_at(x, y);
-        const struct simulation *const s = &rig.sim;
-        const struct sample in = fluid_sample(s, x + 0.2, y + 0.1);
+        const struct simulation *const sim = &rig.sim;
+        const struct sample in = fluid_sample(sim, x + 0.2, y + 0.1);
         assert_near(0.01, 1, in.fill, "fill");
         assert_near(1e-12, 0, in.occupied, "occupied");
         assert_near(0.02 * 1000, 1000, in.pressure, "pressure at half depth");
         assert_near(1e-12, 2, in.vx, "vx");
         assert_near(1e-12, 3, in.vy, "vy");
-        assert_near(0, in.pressure, fluid_pressure_at(s, x + 0.2, y + 0.1), "pressure alone");
-        const struct sample air = fluid_sample(s, x + 0.2, y + 0.25);
+        assert_near(0, in.pressure, fluid_pressure_at(sim, x + 0.2, y + 0.1), "pressure alone");
+        const struct sample air = fluid_sample(sim, x + 0.2, y + 0.25);
         assert_near(0, 0, air.fill + air.pressure + air.vx + air.vy, "air");
-        assert_near(0.05, 1, fluid_sample(s, x + 0.2, y - 0.02).occupied, "wall");
+        assert_near(0.05, 1, fluid_sample(sim, x + 0.2, y - 0.02).occupied, "wall");
         /* Above water, from any point in it, below it within reach, and where there is none. */
-        assert_near(0.002, y + 0.2, fluid_level(s, x + 0.2, y + 0.05), "level");
-        assert_near(0.002, y + 0.2, fluid_level(s, x + 0.2, y + 0.195), "level from the surface");
-        assert_near(0, y + 0.21, fluid_level(s, x + 0.2, y + 0.21), "level of air");
-        assert_near(1e-9, x + 0.4, fluid_front(s, DIRECTION_RIGHT), "front to the right");
-        assert_near(1e-9, x, fluid_front(s, DIRECTION_LEFT), "front to the left");
-        assert_near(1e-9, y + 0.2, fluid_front(s, DIRECTION_UP), "front up");
-        assert_near(1e-9, y, fluid_front(s, DIRECTION_DOWN), "front down");
+        assert_near(0.002, y + 0.2, fluid_level(sim, x + 0.2, y + 0.05), "level");
+        assert_near(0.002, y + 0.2, fluid_level(sim, x + 0.2, y + 0.195), "level from the surface");
+        assert_near(0, y + 0.21, fluid_level(sim, x + 0.2, y + 0.21), "level of air");
+        assert_near(1e-9, x + 0.4, fluid_front(sim, DIRECTION_RIGHT), "front to the right");
+        assert_near(1e-9, x, fluid_front(sim, DIRECTION_LEFT), "front to the left");
+        assert_near(1e-9, y + 0.2, fluid_front(sim, DIRECTION_UP), "front up");
+        assert_near(1e-9, y, fluid_front(sim, DIRECTION_DOWN), "front down");
         /* Through a line across half the depth, to the right of its direction; and through none. */
         const double low[2] = {x + 0.2, y + 0.05}, high[2] = {x + 0.2, y + 0.15};
         const double left[2] = {x + 0.1, y + 0.1}, right[2] = {x + 0.3, y + 0.1};
-        assert_near(0.01 * 0.2, 2 * 0.1, fluid_flux(s, low, high), "flux across");
-        assert_near(0.01 * 0.2, -2 * 0.1, fluid_flux(s, high, low), "flux, line turned round");
-        assert_near(0.01 * 0.6, -3 * 0.2, fluid_flux(s, left, right), "flux up");
+        assert_near(0.01 * 0.2, 2 * 0.1, fluid_flux(sim, low, high), "flux across");
+        assert_near(0.01 * 0.2, -2 * 0.1, fluid_flux(sim, high, low), "flux, line turned round");
+        assert_near(0.01 * 0.6, -3 * 0.2, fluid_flux(sim, left, right), "flux up");
         double of[3];
-        fluid_pressure_on(s, left, right, of);
+        fluid_pressure_on(sim, left, right, of);
         assert_near(20, 1000, of[0], "mean pressure on a line");
         assert_near(1e-9, 0, of[1], "force along the line");
         assert_near(0.02 * 200, -1000 * 0.2, of[2], "force of the fluid above the line");
@@ -77,20 +77,20 @@ static void test_pressure_at_a_wall(void)
     for (size_t k = 0; k < COUNT_OF(places); k++) {
         const double x = places[k][0], y = places[k][1];
         open_at(x, y);
-        const struct simulation *const s = &rig.sim;
-        struct particles *const p = &rig.sim.kind[KIND_FLUID];
-        for (int64_t i = 0; i < p->n; i++) p->ax[i] = p->ay[i] = 0;
-        const double floor = fluid_pressure_at(s, x + 0.2, y),
-                     side = fluid_pressure_at(s, x, y + 0.1);
+        const struct simulation *const sim = &rig.sim;
+        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < particles->n; i++) particles->ax[i] = particles->ay[i] = 0;
+        const double floor = fluid_pressure_at(sim, x + 0.2, y),
+                     side = fluid_pressure_at(sim, x, y + 0.1);
         assert_near(0.005 * 2000, 2000, floor, "floor");
-        assert_near(0.005 * 2000, 2000, fluid_pressure_at(s, x, y), "corner");
+        assert_near(0.005 * 2000, 2000, fluid_pressure_at(sim, x, y), "corner");
         assert_near(0.005 * 2000, 1000, side, "side");
-        assert_near(0.005 * 2000, 50, fluid_pressure_at(s, x + 0.2, y + 0.195), "surface");
+        assert_near(0.005 * 2000, 50, fluid_pressure_at(sim, x + 0.2, y + 0.195), "surface");
         /* Beside air the slope is that of the fluid's acceleration, here none: the mean over
          * the fluid. */
-        for (int64_t i = 0; i < p->n; i++) p->ay[i] = -10;
-        TEST_ASSERT_TRUE(fluid_pressure_at(s, x + 0.2, y + 0.195) > 70);
-        assert_near(0.001 * floor, floor, fluid_pressure_at(s, x + 0.2, y), "floor at rest");
+        for (int64_t i = 0; i < particles->n; i++) particles->ay[i] = -10;
+        TEST_ASSERT_TRUE(fluid_pressure_at(sim, x + 0.2, y + 0.195) > 70);
+        assert_near(0.001 * floor, floor, fluid_pressure_at(sim, x + 0.2, y), "floor at rest");
         tearDown();
     }
 }
@@ -121,10 +121,10 @@ static void test_flux_of_denser_water(void)
 {
     const double from[2] = {0.2, 0.05}, to[2] = {0.2, 0.15};
     open_at(0, 0);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0;
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0;
     const double flux = fluid_flux(&rig.sim, from, to);
-    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0.1;
+    for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0.1;
     assert_near(1e-12, flux / 1.1, fluid_flux(&rig.sim, from, to), "flux");
 }
 
@@ -136,10 +136,10 @@ static void test_level_at_the_top_of_the_domain(void)
              "dp = 1 cm\nend_time = 1\n[domain]\nlower = -0.1, -0.1\nupper = 0.5, 0.2\n"
              "[fluid w]\nshape = box 0, 0, 0.4, 0.2\nsound_speed = 30\n",
              NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     for (int k = 0; k < 5; k++) {
         const double rise = 0.0005 * k;
-        for (int64_t i = 0; i < p->n; i++) p->y[i] += k ? 0.0005 : 0;
+        for (int64_t i = 0; i < particles->n; i++) particles->y[i] += k ? 0.0005 : 0;
         rig_evaluate(&rig);
         assert_near(0.0007, 0.2 + rise, fluid_level(&rig.sim, 0.2, 0.1), "level");
     }
@@ -150,31 +150,31 @@ static void test_level_at_the_top_of_the_domain(void)
 static void test_level_of_volume(void)
 {
     open_at(0, 0);
-    const struct simulation *const s = &rig.sim;
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    const double dp = s->scene->top.dp;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (p->y[i] > 0.2 - dp)
-            p->y[i] -= 0.15 * dp;
-        else if (p->y[i] > 0.2 - 2 * dp)
-            p->y[i] += 0.15 * dp;
+    const struct simulation *const sim = &rig.sim;
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const double dp = sim->scene->top.dp;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->y[i] > 0.2 - dp)
+            particles->y[i] -= 0.15 * dp;
+        else if (particles->y[i] > 0.2 - 2 * dp)
+            particles->y[i] += 0.15 * dp;
     }
     const double along[] = {0.2, 0.2031, 0.25, 0.0, 0.012};
     for (size_t k = 0; k < COUNT_OF(along); k++)
-        assert_near(0.03 * dp, 0.2, fluid_level(s, along[k], 0.05), "level over two rows");
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->y[i] > 3 * dp) p->y[i] = 9;
+        assert_near(0.03 * dp, 0.2, fluid_level(sim, along[k], 0.05), "level over two rows");
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->y[i] > 3 * dp) particles->y[i] = 9;
     for (size_t k = 0; k < COUNT_OF(along); k++)
-        assert_near(0.03 * dp, 3 * dp, fluid_level(s, along[k], dp), "level of a layer");
+        assert_near(0.03 * dp, 3 * dp, fluid_level(sim, along[k], dp), "level of a layer");
 }
 
 /* Water that moves within a spacing of a line alone passes it as if all did. */
 static void test_flux_is_that_at_the_line(void)
 {
     open_at(0, 0);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++)
-        if (fabs(p->x[i] - 0.2) > rig.sim.scene->top.dp) p->vx[i] = 0;
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++)
+        if (fabs(particles->x[i] - 0.2) > rig.sim.scene->top.dp) particles->vx[i] = 0;
     const double low[2] = {0.2, 0.05}, high[2] = {0.2, 0.15};
     assert_near(0.01 * 0.2, 2 * 0.1, fluid_flux(&rig.sim, low, high), "flux");
 }

@@ -45,12 +45,12 @@ static const double *last_values(void)
 
 static void set_linear_field(void)
 {
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] = 0.5 + 2 * p->X[i] - 3 * p->Y[i];
-        p->uy[i] = -0.25 + p->X[i] + 4 * p->Y[i];
-        p->vx[i] = 10 * p->ux[i];
-        p->vy[i] = 10 * p->uy[i];
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] = 0.5 + 2 * particles->X[i] - 3 * particles->Y[i];
+        particles->uy[i] = -0.25 + particles->X[i] + 4 * particles->Y[i];
+        particles->vx[i] = 10 * particles->ux[i];
+        particles->vy[i] = 10 * particles->uy[i];
     }
 }
 
@@ -77,12 +77,12 @@ static void linear_on_a_particle(void) { weights_reproduce_linear_fields("M1.poi
 /* Stretches the gate along x by a share `e`. */
 static void stretch(double e)
 {
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] = e * p->X[i];
-        p->uy[i] = 0;
-        p->vx[i] = 3;
-        p->vy[i] = -4;
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] = e * particles->X[i];
+        particles->uy[i] = 0;
+        particles->vx[i] = 3;
+        particles->vy[i] = -4;
     }
 }
 
@@ -120,11 +120,11 @@ static void energy_of_a_body(void)
 
 static void set_flow(double vx, double vy)
 {
-    struct particles *p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = vx;
-        p->vy[i] = vy;
-        p->dens[i] = 0;
+    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = vx;
+        particles->vy[i] = vy;
+        particles->dens[i] = 0;
     }
 }
 
@@ -154,9 +154,10 @@ static void pressure_is_hydrostatic_at_the_start(void)
 static void pressure_is_a_mean_of_the_near_fluid(void)
 {
     open_with("", "P.point=0.001, 0.03");
-    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.kind[KIND_FLUID];
     const double *const g = rig.sim.fluid.k.gravity;
-    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 1e-3, p->ax[i] = g[0], p->ay[i] = g[1];
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->dens[i] = 1e-3, particles->ax[i] = g[0], particles->ay[i] = g[1];
     assert_near(1e-9, 400.0 * 1000 / 7 * (pow(1.001, 7) - 1),
                 fluid_pressure_at(&rig.sim, 0.001, 0.03), "pressure of equal density");
 }
@@ -181,10 +182,10 @@ static void level_of_a_dry_bed(void)
 /* Moves the last n fluid particles into a row at x, a spacing apart, and sorts. */
 static void splash(int n, double x)
 {
-    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.kind[KIND_FLUID];
     for (int k = 0; k < n; k++) {
-        p->x[p->n - 1 - k] = x - 0.01 * k;
-        p->y[p->n - 1 - k] = 0.005;
+        particles->x[particles->n - 1 - k] = x - 0.01 * k;
+        particles->y[particles->n - 1 - k] = 0.005;
     }
     rig_sort(&rig);
 }
@@ -221,8 +222,8 @@ static void flux_of_a_uniform_flow(void)
     assert_near(1e-14, -0.1, last_values()[0], "half of it, on the way down");
 }
 
-/* Hydrostatics on the left wall, rho g H/2 = 490.5 Pa over 0.1 m. The fluid within 2 h lies on one side of
- * both ends of the line, which cancels but for the surface. */
+/* Hydrostatics on the left wall, rho g H/2 = 490.5 Pa over 0.1 m. The fluid within 2 h lies on one
+ * side of both ends of the line, which cancels but for the surface. */
 static void pressure_on_a_face(void)
 {
     open_with("[probe S]\nquantity = surface_pressure\npoint = 0, 0.1\nto = 0, 0\n", NULL);
@@ -251,10 +252,10 @@ static void forces_balance(void)
     double tank[3], gate[3], fluid[2] = {0};
     probes_values(&probes, &rig.sim, probes.n - 2, tank);
     probes_values(&probes, &rig.sim, probes.n - 1, gate);
-    const struct particles *p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        fluid[0] += 0.1 * p->ax[i];
-        fluid[1] += 0.1 * (p->ay[i] + 9.81);
+    const struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        fluid[0] += 0.1 * particles->ax[i];
+        fluid[1] += 0.1 * (particles->ay[i] + 9.81);
     }
     const double weight = 1000 * 9.81 * 0.01;
     assert_near(1e-5 * weight, -fluid[0], tank[0] + gate[0], "horizontal");
@@ -289,8 +290,9 @@ static void walls_carry_forces_only_when_asked(void)
 /* Density that differs from place to place. */
 static void set_uneven_density(void)
 {
-    struct particles *p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 1e-2 * p->x[i] + 3e-2 * p->y[i];
+    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->dens[i] = 1e-2 * particles->x[i] + 3e-2 * particles->y[i];
 }
 
 /* The last two probes see the same. */
@@ -308,8 +310,9 @@ static void a_point_rides_on_a_solid(void)
     open_with("[probe F]\nquantity = pressure\npoint = 0.08, 0.06\n"
               "[probe R]\nquantity = pressure\non = gate\npoint = 0.1, 0.05\n",
               NULL);
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) p->ux[i] = -0.2 * p->X[i], p->uy[i] = 0.2 * p->Y[i];
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->ux[i] = -0.2 * particles->X[i], particles->uy[i] = 0.2 * particles->Y[i];
     set_uneven_density();
     last_two_agree("pressure at a point of a stretched solid");
 }
@@ -379,15 +382,16 @@ static void force_on_three_bodies(void)
 
 /* --- strain, pose, acceleration, reaction --- */
 
-/* Turns the gate about the origin by an angle after stretching it along x by a share, and shifts it. */
+/* Turns the gate about the origin by an angle after stretching it along x by a share, and shifts
+ * it. */
 static void set_pose(double angle, double e, const double shift[2])
 {
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
     const double c = cos(angle), s = sin(angle);
-    for (int64_t i = 0; i < p->n; i++) {
-        const double x = (1 + e) * p->X[i], y = p->Y[i];
-        p->ux[i] = c * x - s * y + shift[0] - p->X[i];
-        p->uy[i] = s * x + c * y + shift[1] - p->Y[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double x = (1 + e) * particles->X[i], y = particles->Y[i];
+        particles->ux[i] = c * x - s * y + shift[0] - particles->X[i];
+        particles->uy[i] = s * x + c * y + shift[1] - particles->Y[i];
     }
 }
 
@@ -399,8 +403,9 @@ static void strain_of_a_turned_body(void)
     assert_near(1e-10, 0.01 + 0.5e-4, last_values()[0], "Exx");
     assert_near(1e-10, 0, last_values()[1], "Eyy");
     assert_near(1e-10, 0, last_values()[2], "Exy");
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) p->ux[i] = 0.02 * p->Y[i], p->uy[i] = 0;
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->ux[i] = 0.02 * particles->Y[i], particles->uy[i] = 0;
     assert_near(1e-10, 0.01, last_values()[2], "Exy of a shear");
     assert_near(1e-10, 0.5 * 4e-4, last_values()[1], "Eyy of a shear");
 }
@@ -445,13 +450,14 @@ static void reaction_balances(const char *set)
     double got[3];
     memcpy(got, last_values(), sizeof got);
     TEST_ASSERT_TRUE(before == simulation_hash(&rig.sim));
-    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.kind[KIND_SOLID];
     const double mass = rig.sim.solid.body[0].mass;
-    const struct solid_forces_now now = solid_forces_now(&rig.sim.solid, p, rig.sim.state.time);
+    const struct solid_forces_now now =
+        solid_forces_now(&rig.sim.solid, particles, rig.sim.state.time);
     double x = -3, y = -1;
-    for (int64_t i = 0; i < p->n; i++) {
-        x += mass * now.ax[i] - p->fx[i];
-        y += mass * (now.ay[i] + 9.81) - p->fy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        x += mass * now.ax[i] - particles->fx[i];
+        y += mass * (now.ay[i] + 9.81) - particles->fy[i];
     }
     assert_near(1e-6 * fabs(x), x, got[0], "fx");
     assert_near(1e-6 * fabs(y), y, got[1], "fy");
@@ -491,15 +497,15 @@ static void an_interval_of_its_own_makes_a_file(void)
 /* quantity_table and the choice in case/params.def are the same list. */
 static void every_quantity_has_its_name(void)
 {
-    const struct param *p = param_find(SECTION_probe, "quantity");
+    const struct param *param = param_find(SECTION_probe, "quantity");
     char name[SCENE_NAME];
     size_t length = 0;
     for (int k = 0; k < PROBE_QUANTITIES; k++) {
-        param_choice_name(p, k, name);
+        param_choice_name(param, k, name);
         TEST_ASSERT_EQUAL_STRING(quantity_table[k].name, name);
         length += strlen(name) + 1;
     }
-    TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(p->choices));
+    TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(param->choices));
 }
 
 int main(void)

@@ -107,8 +107,8 @@ static void test_nothing_in_common(void)
     TEST_ASSERT_EQUAL_STRING("P_dx_m: its times do not overlap with those of r", text);
 }
 
-/* One row of the probe, and two at the same time, of which the first is met first; rows that lack the column
- * are passed over, and a point ends at a comment or at the end of the file. */
+/* One row of the probe, and two at the same time, of which the first is met first; rows that lack
+ * the column are passed over, and a point ends at a comment or at the end of the file. */
 static void test_few_and_odd_rows(void)
 {
     put("r.csv", " \t# nothing\n\r\n0 2\t\n1, 4");

@@ -19,7 +19,8 @@ static struct scene scene;
 static struct simulation simulation;
 static struct snapshots writer;
 
-/* HDF5 numbers identifiers of a kind in order: those between two of our own are the library's user's. */
+/* HDF5 numbers identifiers of a kind in order: those between two of our own are the library's
+ * user's. */
 static hid_t next_number(bool of_list)
 {
     const hid_t id = of_list ? H5Pcreate(H5P_DATASET_CREATE) : H5Screate(H5S_SCALAR);
@@ -33,8 +34,8 @@ static hid_t next_number(bool of_list)
 
 static hid_t first[2]; /* spaces, property lists */
 
-/* Files, datasets, groups, types, attributes, and the spaces and property lists since setUp, that HDF5 holds
- * open. */
+/* Files, datasets, groups, types, attributes, and the spaces and property lists since setUp, that
+ * HDF5 holds open. */
 static int held(void)
 {
     int n = (int)H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL);
@@ -249,7 +250,8 @@ static void fields_and_precision_are_chosen(void)
     TEST_ASSERT_EQUAL_UINT(0, item_bytes("VTKHDF/Steps/PointDataOffsets/pressure"));
     read_all("VTKHDF/PointData/velocity", v, COUNT_OF(v));
     TEST_ASSERT_TRUE(v[0] == 1.0 / 3);
-    /* Positions 24, Connectivity 8, Offsets 8, Types 1, velocity 24, stress 48, kind 1, id 8, body 4 */
+    /* Positions 24, Connectivity 8, Offsets 8, Types 1, velocity 24, stress 48, kind 1, id 8, body
+     * 4 */
     TEST_ASSERT_EQUAL_INT(126, (int)snapshot_file_point_bytes(&writer.layout));
 }
 
@@ -277,13 +279,13 @@ static void everything_in_single_precision_unless_chosen(void)
 /* rho0/det F, with stretches of 1.1 and 0.95. */
 static void density_of_a_stretched_solid(void)
 {
-    struct particles *const p = &simulation.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] = 0.1 * p->X[i];
-        p->uy[i] = -0.05 * p->Y[i];
+    struct particles *const particles = &simulation.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] = 0.1 * particles->X[i];
+        particles->uy[i] = -0.05 * particles->Y[i];
     }
-    solid_stress(&simulation.solid, p);
-    for (int64_t i = 0; i < p->n; i++) {
+    solid_stress(&simulation.solid, particles);
+    for (int64_t i = 0; i < particles->n; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.1 * 0.95,
                                   snapshot_value(D_DET_F, &simulation, KIND_SOLID, i, 0));
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, scene.solid[0].density / (1.1 * 0.95),

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The n-th call of HDF5 fails, for every n of the first snapshot of a run, and every seventh of the second, a
- * later one and a restart, in which each dataset takes the same dozen of calls. Either the snapshot is
- * complete all the same, or the failure is said; those before it stay, the next one is written, and HDF5
- * holds nothing open. The linker puts these between the program and the library:
+ * The n-th call of HDF5 fails, for every n of the first snapshot of a run, and every seventh of the
+ * second, a later one and a restart, in which each dataset takes the same dozen of calls. Either
+ * the snapshot is complete all the same, or the failure is said; those before it stay, the next one
+ * is written, and HDF5 holds nothing open. The linker puts these between the program and the
+ * library:
  * --wrap: H5Fopen H5Fcreate H5Fclose H5Gcreate2 H5Gopen2 H5Acreate2 H5Aopen H5Aread H5Awrite
  * --wrap: H5Dcreate2 H5Dopen2 H5Dclose H5Dread H5Dwrite H5Dread_chunk H5Dwrite_chunk H5Dset_extent
  * --wrap: H5Dget_space H5Dget_create_plist H5Dget_type H5Dget_chunk_storage_size H5Lcreate_hard
@@ -114,12 +115,12 @@ void tearDown(void)
 
 static enum err write_one(double time)
 {
-    struct particles *const p = &simulation.kind[KIND_FLUID];
+    struct particles *const particles = &simulation.kind[KIND_FLUID];
     simulation.state.time = time;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] = 0.001 * (double)i + 0.125 * time;
-        p->vy[i] = 0.25 * time;
-        p->id[i] = (int64_t)(8 * time) + i;
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x[i] = 0.001 * (double)i + 0.125 * time;
+        particles->vy[i] = 0.25 * time;
+        particles->id[i] = (int64_t)(8 * time) + i;
     }
     return snapshots_write(&writer, &simulation, &diag);
 }
@@ -194,7 +195,8 @@ static enum err go_on(const char *folder)
     return snapshots_resume(&writer, folder, &scene, "1.2.3", 0.5, &last, &diag);
 }
 
-/* With so many snapshots in the file, each call of the next one fails once, or each of a restart. */
+/* With so many snapshots in the file, each call of the next one fails once, or each of a restart.
+ */
 static void calls_fail(hsize_t before, bool restart, int stride)
 {
     static const double times[] = {0, 1, 2, 3};

@@ -73,7 +73,8 @@ static bool adjacent(int32_t a, int32_t b)
            abs(cell_y(&cells, a) - cell_y(&cells, b)) <= 1;
 }
 
-/* 1.6 times the reach, but three cells where a narrow domain has room for them: particles stray less. */
+/* 1.6 times the reach, but three cells where a narrow domain has room for them: particles stray
+ * less. */
 static void test_cells_are_no_smaller_than_the_reach(void)
 {
     scatter(false);
@@ -99,20 +100,20 @@ static void test_a_long_channel_is_sorted(void)
     const double end[2] = {lower[0] + 2000 * reach, lower[1] + 4 * reach};
     scatter(false);
     struct cells channel;
-    struct particles *const p = &kinds[KIND_FLUID];
+    struct particles *const particles = &kinds[KIND_FLUID];
     TEST_ASSERT_EQUAL_INT(ERR_OK,
                           cells_create(&channel, &arena, lower, end, reach, stray, kinds, &diag));
     uint64_t seed = 3;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] = lower[0] + 1000 * reach * (1 + noise(&seed));
-        p->y[i] = lower[1] + 2 * reach * (1 + noise(&seed));
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x[i] = lower[0] + 1000 * reach * (1 + noise(&seed));
+        particles->y[i] = lower[1] + 2 * reach * (1 + noise(&seed));
     }
-    TEST_ASSERT_EQUAL_INT64(0, cells_sort(&channel, KIND_FLUID, p));
+    TEST_ASSERT_EQUAL_INT64(0, cells_sort(&channel, KIND_FLUID, particles));
     TEST_ASSERT_TRUE(channel.nx > 1000 && channel.ny < 4);
     int64_t listed = 0;
     for (int32_t cell = 0; cell < channel.nx * channel.ny; cell++)
         listed += channel.kind[KIND_FLUID].count[cell];
-    TEST_ASSERT_EQUAL_INT64(p->n, listed);
+    TEST_ASSERT_EQUAL_INT64(particles->n, listed);
 }
 
 /* Every pair closer than the reach lies in cells that touch, within a kind and across kinds. */
@@ -141,7 +142,7 @@ static void test_no_pair_is_missed(void)
 static void check_cover(enum kind kind, int64_t inside)
 {
     const struct cell_list *const list = &cells.kind[kind];
-    const struct particles *const p = &kinds[kind];
+    const struct particles *const particles = &kinds[kind];
     int32_t place = 0;
     int64_t total = 0;
     uint32_t last_key = 0;
@@ -158,9 +159,11 @@ static void check_cover(enum kind kind, int64_t inside)
         clusters += clusters_in(list, cell);
         for (int32_t j = 0; j < list->count[cell]; j++, place++) {
             const int32_t i = at(kind, place);
-            TEST_ASSERT_EQUAL_INT32(cell, p->cell[i]);
-            TEST_ASSERT_TRUE(fabs(p->x[i] - cell_centre_x(&cells, cell)) <= 0.5001 * cells.side[0]);
-            TEST_ASSERT_TRUE(fabs(p->y[i] - cell_centre_y(&cells, cell)) <= 0.5001 * cells.side[1]);
+            TEST_ASSERT_EQUAL_INT32(cell, particles->cell[i]);
+            TEST_ASSERT_TRUE(fabs(particles->x[i] - cell_centre_x(&cells, cell)) <=
+                             0.5001 * cells.side[0]);
+            TEST_ASSERT_TRUE(fabs(particles->y[i] - cell_centre_y(&cells, cell)) <=
+                             0.5001 * cells.side[1]);
         }
     }
     for (int32_t cell = 0; cell < cells.nx * cells.ny; cell++) total += list->count[cell];
@@ -187,21 +190,23 @@ static void test_cells_cover_all_in_morton_order(void)
 static void test_clusters_of_a_lattice_are_squares(void)
 {
     scatter(false);
-    struct particles *const p = &kinds[KIND_WALL];
+    struct particles *const particles = &kinds[KIND_WALL];
     const double x = cell_centre_x(&cells, cells.nx + 1), y = cell_centre_y(&cells, cells.nx + 1);
-    p->n = 16;
+    particles->n = 16;
     for (int i = 0; i < 16; i++) {
         const int place = 7 * i % 16;
-        p->x[i] = x + 0.01 * (place % 4 - 1.5);
-        p->y[i] = y + 0.01 * (place / 4 - 1.5);
+        particles->x[i] = x + 0.01 * (place % 4 - 1.5);
+        particles->y[i] = y + 0.01 * (place / 4 - 1.5);
     }
-    cells_sort(&cells, KIND_WALL, p);
+    cells_sort(&cells, KIND_WALL, particles);
     const struct cell_list *const list = &cells.kind[KIND_WALL];
     TEST_ASSERT_EQUAL_INT32(1, list->n_active);
     for (int k = 0; k < 16; k++) {
         const int32_t i = list->order[k], first = list->order[k / CLUSTER * CLUSTER];
-        assert_at_most(0.0100001, fabs(p->x[i] - p->x[first]), "width of a cluster");
-        assert_at_most(0.0100001, fabs(p->y[i] - p->y[first]), "height of a cluster");
+        assert_at_most(0.0100001, fabs(particles->x[i] - particles->x[first]),
+                       "width of a cluster");
+        assert_at_most(0.0100001, fabs(particles->y[i] - particles->y[first]),
+                       "height of a cluster");
     }
 }
 
@@ -244,34 +249,36 @@ static void tree_by_library(int32_t *i, int n)
 static void test_order_is_that_of_the_tree(void)
 {
     scatter(false);
-    struct particles *const p = &kinds[KIND_WALL];
+    struct particles *const particles = &kinds[KIND_WALL];
     const double side = 0.01, x = cell_centre_x(&cells, cells.nx + 1),
                  y = cell_centre_y(&cells, cells.nx + 1);
     uint64_t seed = 9;
     for (int n = CLUSTER + 1; n <= 67; n += 3) {
         int32_t expected[67];
-        p->n = n;
+        particles->n = n;
         for (int i = 0; i < n; i++) {
-            p->x[i] = x + side * floor(1.9 * noise(&seed));
-            p->y[i] = n % 2 ? y + side * noise(&seed) : y + side * floor(1.9 * noise(&seed));
-            p->id[i] = (7 * i) % 71;
+            particles->x[i] = x + side * floor(1.9 * noise(&seed));
+            particles->y[i] =
+                n % 2 ? y + side * noise(&seed) : y + side * floor(1.9 * noise(&seed));
+            particles->id[i] = (7 * i) % 71;
             expected[i] = i;
         }
-        cells_sort(&cells, KIND_WALL, p);
+        cells_sort(&cells, KIND_WALL, particles);
         TEST_ASSERT_EQUAL_INT32(1, cells.kind[KIND_WALL].n_active);
-        compared = p;
+        compared = particles;
         tree_by_library(expected, n);
         TEST_ASSERT_EQUAL_INT32_ARRAY(expected, cells.kind[KIND_WALL].order, n);
     }
 }
 
-/* Clusters of particles thrown at random are hardly wider than squares with room for four of them. */
+/* Clusters of particles thrown at random are hardly wider than squares with room for four of them.
+ */
 static void test_clusters_are_compact(void)
 {
     scatter(false);
     cells_sort(&cells, KIND_FLUID, &kinds[KIND_FLUID]);
     const struct cell_list *const list = &cells.kind[KIND_FLUID];
-    const struct particles *const p = &kinds[KIND_FLUID];
+    const struct particles *const particles = &kinds[KIND_FLUID];
     double sum = 0;
     int full = 0;
     for (int32_t k = 0; k < list->n_active; k++) {
@@ -279,8 +286,10 @@ static void test_clusters_are_compact(void)
         for (int32_t j = start; j + CLUSTER <= start + n; j += CLUSTER, full++) {
             double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
             for (int r = 0; r < CLUSTER; r++) {
-                low[0] = fmin(low[0], p->x[j + r]), high[0] = fmax(high[0], p->x[j + r]);
-                low[1] = fmin(low[1], p->y[j + r]), high[1] = fmax(high[1], p->y[j + r]);
+                low[0] = fmin(low[0], particles->x[j + r]),
+                high[0] = fmax(high[0], particles->x[j + r]);
+                low[1] = fmin(low[1], particles->y[j + r]),
+                high[1] = fmax(high[1], particles->y[j + r]);
             }
             sum += 0.5 * (high[0] - low[0] + high[1] - low[1]);
         }
@@ -316,7 +325,7 @@ static uint64_t hash_after(int threads, uint64_t shuffle)
     thread_use(threads);
     arena_free(&arena);
     scatter(true);
-    struct particles *const p = &kinds[KIND_FLUID];
+    struct particles *const particles = &kinds[KIND_FLUID];
     static int32_t order[N];
     static double scratch[N];
     for (int32_t i = 0; i < N; i++) order[i] = i;
@@ -325,16 +334,16 @@ static uint64_t hash_after(int threads, uint64_t shuffle)
         order[i] = order[j];
         order[j] = kept;
     }
-    particles_permute(p, order, N, scratch);
+    particles_permute(particles, order, N, scratch);
     /* The list forgets an earlier sorting of particles elsewhere. */
-    const double x = p->x[0];
-    p->x[0] = 0.5;
-    cells_sort(&cells, KIND_FLUID, p);
+    const double x = particles->x[0];
+    particles->x[0] = 0.5;
+    cells_sort(&cells, KIND_FLUID, particles);
     for (int64_t i = 0; i < N; i++)
-        if (p->x[i] == 0.5) p->x[i] = x;
-    cells_sort(&cells, KIND_FLUID, p);
+        if (particles->x[i] == 0.5) particles->x[i] = x;
+    cells_sort(&cells, KIND_FLUID, particles);
     check_cover(KIND_FLUID, N - 5);
-    return particles_hash(p, 0);
+    return particles_hash(particles, 0);
 }
 
 static void test_order_does_not_depend_on_threads_or_history(void)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A sorting is called outgrown before any pair within reach leaves the cells that are searched. It is not
- * while all the fluid travels together. */
+ * A sorting is called outgrown before any pair within reach leaves the cells that are searched. It
+ * is not while all the fluid travels together. */
 #include "rig.h"
 #include "particles/kernel.h"
 #include "unity.h"
@@ -44,28 +44,29 @@ static void fill_squares(struct squares *q, double reach)
 {
     memset(q->first, -1, sizeof q->first);
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &rig.sim.kind[kind];
-        TEST_ASSERT_TRUE(p->n <= 8192);
-        for (int i = 0; i < (int)p->n; i++) {
-            int *const first =
-                &q->first[kind][square_of(p->y[i], reach) * SQUARES + square_of(p->x[i], reach)];
+        const struct particles *const particles = &rig.sim.kind[kind];
+        TEST_ASSERT_TRUE(particles->n <= 8192);
+        for (int i = 0; i < (int)particles->n; i++) {
+            int *const first = &q->first[kind][square_of(particles->y[i], reach) * SQUARES +
+                                               square_of(particles->x[i], reach)];
             q->next[kind][i] = *first;
             *first = i;
         }
     }
 }
 
-/* Whether fluid particle i has a particle of the kind within reach in a cell that does not touch its own. */
+/* Whether fluid particle i has a particle of the kind within reach in a cell that does not touch
+ * its own. */
 static bool unseen_by(const struct squares *q, int64_t i, int kind, double side, double reach)
 {
-    const struct cells *const c = &rig.sim.cells;
+    const struct cells *const cells = &rig.sim.cells;
     const struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
     const int at = square_of(a->y[i], side) * SQUARES + square_of(a->x[i], side);
     for (int k = 0; k < 9; k++)
         for (int j = q->first[kind][at + (k / 3 - 1) * SQUARES + k % 3 - 1]; j >= 0;
              j = q->next[kind][j]) {
-            const int dx = cell_x(c, a->cell[i]) - cell_x(c, b->cell[j]);
-            const int dy = cell_y(c, a->cell[i]) - cell_y(c, b->cell[j]);
+            const int dx = cell_x(cells, a->cell[i]) - cell_x(cells, b->cell[j]);
+            const int dy = cell_y(cells, a->cell[i]) - cell_y(cells, b->cell[j]);
             if (dx * dx <= 1 && dy * dy <= 1) continue;
             if (hypot(a->x[i] - b->x[j], a->y[i] - b->y[j]) < reach) return true;
         }
@@ -85,8 +86,8 @@ static bool pair_unseen(void)
     return false;
 }
 
-/* Particles wander at random until the sorting is called outgrown: up to then nothing is unseen, and going
- * on without sorting something is soon. */
+/* Particles wander at random until the sorting is called outgrown: up to then nothing is unseen,
+ * and going on without sorting something is soon. */
 static void test_no_pair_is_unseen(void)
 {
     uint64_t seed = 5;
@@ -122,10 +123,10 @@ static void test_common_motion_is_free(void)
              NULL);
     const double stray = rig.sim.cells.skin;
     assert_near(1e-12, rig.sim.scene->numerics.skin * rig.sim.fluid.k.h, stray, "stray");
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double way = 0;
     while (!outgrown() && way < 10 * stray) {
-        for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.1 * stray;
+        for (int64_t i = 0; i < particles->n; i++) particles->x[i] += 0.1 * stray;
         way += 0.1 * stray;
     }
     TEST_ASSERT_TRUE(way >= stray);
@@ -136,14 +137,15 @@ static void test_common_motion_is_free(void)
 /* Two blobs that jump towards each other over more than a cell. */
 static void test_leap_is_noticed(void)
 {
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     TEST_ASSERT_FALSE(outgrown());
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->x[i] < -0.2) p->x[i] += 0.4;
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->x[i] < -0.2) particles->x[i] += 0.4;
     TEST_ASSERT_TRUE(outgrown());
 }
 
-/* A block that falls at a still tank: it comes over a whole cell towards fluid that hardly moves. */
+/* A block that falls at a still tank: it comes over a whole cell towards fluid that hardly moves.
+ */
 static const char falling[] =
     "dp = 1 cm\nend_time = 10\nprecision = double\ngravity = 0, -9.81\n"
     "[domain]\nlower = -0.3, -0.3\nupper = 0.3, 0.7\n"
@@ -153,12 +155,12 @@ static const char falling[] =
     "[solid beam]\nshape = box -0.05, 0.1, 0.05, 0.2\ndensity = 1500\nyoung = 1 MPa\n"
     "poisson = 0.35\nvelocity = 0, -3\n";
 
-/* The room that is left after each step against what measuring finds; and the same scene with a measuring at
- * each step, which must sort when this one does and end with its bits. */
+/* The room that is left after each step against what measuring finds; and the same scene with a
+ * measuring at each step, which must sort when this one does and end with its bits. */
 static void check_room(const char *scene, const char *integrator, const char *more, int steps,
                        int least_unmeasured)
 {
-    struct simulation *const s = &rig.sim;
+    struct simulation *const sim = &rig.sim;
     uint64_t hash[2];
     int64_t sorts[2];
     for (int measured = 0; measured < 2; measured++) {
@@ -166,29 +168,29 @@ static void check_room(const char *scene, const char *integrator, const char *mo
                  "numerics.skin=0.15", NULL);
         int unmeasured = 0;
         for (int step = 0; step < steps; step++) {
-            if (measured) s->skin_left = 0;
+            if (measured) sim->skin_left = 0;
             rig_steps(&rig, 1, 10);
             if (measured) continue;
-            const double room = s->skin_left;
+            const double room = sim->skin_left;
             for (int kind = 0; kind < KIND_COUNT; kind++)
-                cells_measure_overhang(&s->cells, (enum kind)kind, &s->kind[kind]);
-            const double found = cells_skin_left(&s->cells, KERNEL_REACH * s->fluid.k.h);
+                cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
+            const double found = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h);
             assert_at_most(found + 1e-12, room, "room");
             const bool looks = step % 20 == 0;
             TEST_ASSERT_FALSE(looks && pair_unseen());
             unmeasured += room < found - 1e-12;
         }
         if (!measured) assert_at_most(unmeasured, least_unmeasured, "steps without measuring");
-        hash[measured] = simulation_hash(s);
-        sorts[measured] = s->state.sorts;
+        hash[measured] = simulation_hash(sim);
+        sorts[measured] = sim->state.sorts;
     }
     TEST_ASSERT_EQUAL_INT64(sorts[1], sorts[0]);
     TEST_ASSERT_EQUAL_HEX64(hash[1], hash[0]);
     TEST_ASSERT_TRUE(sorts[0] > 1);
 }
 
-/* Cells are not measured while no particle can have gone far enough: what is taken off their room is never
- * less than what is found by measuring them. (With symplectic they always are.) */
+/* Cells are not measured while no particle can have gone far enough: what is taken off their room
+ * is never less than what is found by measuring them. (With symplectic they always are.) */
 static void test_room_is_never_overstated(void)
 {
     check_room(tank, "integrator=leapfrog", "dp=2cm", 600, 100);
@@ -203,15 +205,17 @@ static void test_room_is_never_overstated(void)
 static bool missed;
 static int evaluations;
 
-static void look(void *context, double time, const struct particles *p, double *ax, double *ay)
+static void look(void *context, double time, const struct particles *particles, double *ax,
+                 double *ay)
 {
-    (void)context, (void)time, (void)p, (void)ax, (void)ay;
+    (void)context, (void)time, (void)particles, (void)ax, (void)ay;
     missed |= pair_unseen();
     evaluations++;
 }
 
-/* A drop and another, or a solid, fly at each other over the cell in the middle, and leave their own cells at
- * the same time. The predictor of symplectic is half a step ahead of the state whose cells were measured. */
+/* A drop and another, or a solid, fly at each other over the cell in the middle, and leave their
+ * own cells at the same time. The predictor of symplectic is half a step ahead of the state whose
+ * cells were measured. */
 static void check_midpoints(const char *scene, enum kind kind, bool upright)
 {
     for (int k = 0; k < 10; k++) {

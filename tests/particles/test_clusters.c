@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * What a cluster sees, against brute force: every particle within reach of one of its own, once, also where
- * particles have strayed from their cells and through joined sides; and in shares each pair from one side. */
+ * What a cluster sees, against brute force: every particle within reach of one of its own, once,
+ * also where particles have strayed from their cells and through joined sides; and in shares each
+ * pair from one side. */
 #include "rig.h"
 #include "particles/kernel.h"
 #include "unity.h"
@@ -19,15 +20,16 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-/* Where the lanes say that the r-th particle of a cluster is, seen from another cell's centre, in m. */
+/* Where the lanes say that the r-th particle of a cluster is, seen from another cell's centre, in
+ * m. */
 static void place_seen(enum kind kind, uint32_t code, int r, double place[2])
 {
-    const struct fluid *const f = &rig.sim.fluid;
-    const double *const lanes = (const double *)f->packed[kind].cluster +
-                                neighbour_number(code) * (size_t)(f->packed[kind].n * CLUSTER);
+    const struct fluid *const fluid = &rig.sim.fluid;
+    const double *const lanes = (const double *)fluid->packed[kind].cluster +
+                                neighbour_number(code) * (size_t)(fluid->packed[kind].n * CLUSTER);
     const unsigned step[2] = {neighbour_column(code), neighbour_row(code)};
     for (int axis = 0; axis < 2; axis++)
-        place[axis] = f->k.h * lanes[(PACKED_X + axis) * CLUSTER + r] +
+        place[axis] = fluid->k.h * lanes[(PACKED_X + axis) * CLUSTER + r] +
                       ((double)step[axis] - 1) * rig.sim.cells.side[axis];
 }
 
@@ -35,11 +37,12 @@ static void place_seen(enum kind kind, uint32_t code, int r, double place[2])
 static int within_reach(enum kind kind, int64_t i)
 {
     const struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
-    const struct cells *const c = &rig.sim.cells;
+    const struct cells *const cells = &rig.sim.cells;
     int n = 0;
     for (int64_t j = 0; j < b->n; j++)
-        n += hypot(cells_minimum_image(c, 0, a->x[i] - b->x[j]),
-                   cells_minimum_image(c, 1, a->y[i] - b->y[j])) < KERNEL_REACH * rig.sim.fluid.k.h;
+        n += hypot(cells_minimum_image(cells, 0, a->x[i] - b->x[j]),
+                   cells_minimum_image(cells, 1, a->y[i] - b->y[j])) <
+             KERNEL_REACH * rig.sim.fluid.k.h;
     return n;
 }
 
@@ -47,15 +50,16 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct fluid *const f = &rig.sim.fluid;
-    const struct cells *const c = &rig.sim.cells;
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct fluid *const fluid = &rig.sim.fluid;
+    const struct cells *const cells = &rig.sim.cells;
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
-        neighbour_clusters_collect(&around, &f->packed[kind].boxes, c, kind, cell, f->k.h);
+        neighbour_clusters_collect(&around, &fluid->packed[kind].boxes, cells, kind, cell,
+                                   fluid->k.h);
         for (int32_t m = 0; m < list->count[cell]; m++) {
             const uint32_t own = neighbour_code(list->cluster[cell] + m / CLUSTER, 1, 1);
-            cluster_list_build(&near, &around, &f->packed[KIND_FLUID].boxes,
+            cluster_list_build(&near, &around, &fluid->packed[KIND_FLUID].boxes,
                                (int32_t)neighbour_number(own));
             double at[2], other[2];
             place_seen(KIND_FLUID, own, m % CLUSTER, at);
@@ -64,7 +68,7 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
                 for (int r = 0; r < CLUSTER; r++) {
                     place_seen(kind, near.code[n], r, other);
                     const double away = hypot(at[0] - other[0], at[1] - other[1]);
-                    found += away < KERNEL_REACH * f->k.h;
+                    found += away < KERNEL_REACH * fluid->k.h;
                     *in_list += away < 100;
                 }
             const int expected = within_reach(kind, list->start[cell] + m);
@@ -74,13 +78,14 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
     }
 }
 
-/* Adds up for each particle whom it sees within reach itself and who sees it ahead, in shares of so many
- * cells. Pairs in a share must not be looked at from both sides: that would count them twice. */
+/* Adds up for each particle whom it sees within reach itself and who sees it ahead, in shares of so
+ * many cells. Pairs in a share must not be looked at from both sides: that would count them twice.
+ */
 static void count_shares(int32_t cells, int *met)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct fluid *const f = &rig.sim.fluid;
+    const struct fluid *const fluid = &rig.sim.fluid;
     const struct cell_list *const list = &rig.sim.cells.kind[KIND_FLUID];
     int64_t *const particle =
         calloc((size_t)rig.sim.kind[KIND_FLUID].n, CLUSTER * sizeof *particle);
@@ -94,10 +99,10 @@ static void count_shares(int32_t cells, int *met)
         const struct cluster_range range = clusters_of(list, first, end);
         for (int32_t k = first; k < end; k++) {
             const int32_t cell = list->active[k];
-            neighbour_clusters_collect_half(&around, &f->packed[KIND_FLUID].boxes, &rig.sim.cells,
-                                            KIND_FLUID, cell, f->k.h, range);
+            neighbour_clusters_collect_half(&around, &fluid->packed[KIND_FLUID].boxes,
+                                            &rig.sim.cells, KIND_FLUID, cell, fluid->k.h, range);
             for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) {
-                cluster_list_build_half(&near, &around, &f->packed[KIND_FLUID].boxes);
+                cluster_list_build_half(&near, &around, &fluid->packed[KIND_FLUID].boxes);
                 TEST_ASSERT_EQUAL_INT(list->cluster[cell] + m, neighbour_number(near.code[0]));
                 for (int n = 0; n < near.n; n++) {
                     const int32_t number = (int32_t)neighbour_number(near.code[n]);
@@ -109,7 +114,7 @@ static void count_shares(int32_t cells, int *met)
                         place_seen(KIND_FLUID, near.code[0], r, at);
                         place_seen(KIND_FLUID, near.code[n], b, other);
                         if (at[0] > 100 || other[0] > 100) continue; /* no particle */
-                        if (hypot(at[0] - other[0], at[1] - other[1]) >= KERNEL_REACH * f->k.h)
+                        if (hypot(at[0] - other[0], at[1] - other[1]) >= KERNEL_REACH * fluid->k.h)
                             continue;
                         met[particle[(list->cluster[cell] + m) * CLUSTER + r]]++;
                         if (neighbour_is_half(near.code[n])) met[particle[number * CLUSTER + b]]++;
@@ -126,19 +131,19 @@ static void test_pairs_in_a_share_are_seen_once(void)
     static const int32_t cells[] = {1, 5, 64, 100000};
     uint64_t seed = 5;
     rig_open(&rig, scene, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] += 0.006 * noise(&seed);
-        p->y[i] += 0.006 * noise(&seed);
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->x[i] += 0.006 * noise(&seed);
+        particles->y[i] += 0.006 * noise(&seed);
     }
     rig_sort(&rig);
     rig_evaluate(&rig);
-    int *const met = calloc((size_t)p->n, sizeof *met);
+    int *const met = calloc((size_t)particles->n, sizeof *met);
     TEST_ASSERT_NOT_NULL(met);
     for (size_t k = 0; k < COUNT_OF(cells); k++) {
-        memset(met, 0, (size_t)p->n * sizeof *met);
+        memset(met, 0, (size_t)particles->n * sizeof *met);
         count_shares(cells[k], met);
-        for (int64_t i = 0; i < p->n; i++)
+        for (int64_t i = 0; i < particles->n; i++)
             TEST_ASSERT_EQUAL_INT(within_reach(KIND_FLUID, i), met[i]);
     }
     free(met);
@@ -164,18 +169,18 @@ static void test_all_within_reach_are_seen(void)
 {
     uint64_t seed = 3;
     rig_open(&rig, scene, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     for (int turn = 0; turn < 3; turn++) {
-        for (int64_t i = 0; i < p->n; i++) {
-            p->x[i] += 0.004 * noise(&seed);
-            p->y[i] += 0.004 * noise(&seed);
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->x[i] += 0.004 * noise(&seed);
+            particles->y[i] += 0.004 * noise(&seed);
         }
         if (turn < 2) rig_sort(&rig);
         rig_evaluate(&rig);
         for (int kind = KIND_FLUID; kind <= KIND_WALL; kind++) {
             int in_list = 0, in_reach = 0;
             compare((enum kind)kind, &in_list, &in_reach);
-            TEST_ASSERT_TRUE(in_reach > (kind == KIND_FLUID ? 20 * p->n : 100));
+            TEST_ASSERT_TRUE(in_reach > (kind == KIND_FLUID ? 20 * particles->n : 100));
             /* Not everything is looked at: less than three candidates for a neighbour. */
             if (kind == KIND_FLUID) assert_at_most(3, 1.0 * in_list / in_reach, "candidates");
         }

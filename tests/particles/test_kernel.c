@@ -8,8 +8,8 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-/* Integral of 2 pi r W over [0, 2h] by Simpson's rule: the integrand is a polynomial of degree 6, so
- * 200 intervals leave an error below 1e-8. */
+/* Integral of 2 pi r W over [0, 2h] by Simpson's rule: the integrand is a polynomial of degree 6,
+ * so 200 intervals leave an error below 1e-8. */
 static double integral(double h)
 {
     enum { N = 200 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Particle fields: a group that is off costs nothing, permutation moves whole particles, the hash sees
- * every field of the state. */
+ * Particle fields: a group that is off costs nothing, permutation moves whole particles, the hash
+ * sees every field of the state. */
 #include "particles/particles.h"
 
 #include "unity.h"

@@ -74,10 +74,10 @@ static void force_on_first(double f[2])
 }
 
 /* Corner to corner: one pair only, brought to 8 mm along x and 4 mm along y. r = sqrt(80) mm; each
- * corner is the end of two edges of the other one's body, so that both surfaces together push with k r0
- * (r0/r - 1), r0 = 10 mm, k = 2 x 4/3e6 Pa, of 1e6 and 2e6 Pa in series. With velocities of the whole
- * body: the approach (v.x)/r through the damping, the rest through friction, which the edges bear with
- * both ends. */
+ * corner is the end of two edges of the other one's body, so that both surfaces together push with
+ * k r0 (r0/r - 1), r0 = 10 mm, k = 2 x 4/3e6 Pa, of 1e6 and 2e6 Pa in series. With velocities of
+ * the whole body: the approach (v.x)/r through the damping, the rest through friction, which the
+ * edges bear with both ends. */
 static void test_a_pair_by_hand(void)
 {
     RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.05, 0.09, 0.09\n", "all.stiffness=2",
@@ -147,7 +147,8 @@ static void test_a_gap_spares_what_began_within(void)
     TEST_ASSERT_TRUE(f[1] > 0);
 }
 
-/* With fluid and the standard scheme one layer of it fits between surfaces, unless a gap is given. */
+/* With fluid and the standard scheme one layer of it fits between surfaces, unless a gap is given.
+ */
 static void test_fluid_keeps_a_layer(void)
 {
     static const char scene[] =
@@ -171,8 +172,8 @@ static void test_fluid_keeps_a_layer(void)
     }
 }
 
-/* Bodies that begin nearer than a layer keep none, and a body has none to itself; a gap that is given
- * stays. */
+/* Bodies that begin nearer than a layer keep none, and a body has none to itself; a gap that is
+ * given stays. */
 static void test_no_layer_where_bodies_begin_near(void)
 {
     static const char near[] =
@@ -257,7 +258,8 @@ static void test_a_body_touches_itself(void)
     p->uy[end] = 0.008;
     double f[2];
     contact_force(end, f);
-    /* Half of E r0 (r0/r - 1), r = 8 mm, by the edges below, and what the points below do to its own. */
+    /* Half of E r0 (r0/r - 1), r = 8 mm, by the edges below, and what the points below do to its
+     * own. */
     TEST_ASSERT_TRUE(f[1] > 0.5 * 1e6 * 0.01 * (1 / 0.8 - 1));
     rig_open(&rig,
              "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.2, 0.03\n"
@@ -279,10 +281,9 @@ static struct sums sums(void)
                          row.contact};
 }
 
-/* Two blocks fly at each other, off centre, and come apart again: momentum to round-off; energy to the
- * error of the time integration, measured 0.13 %, of which contact stores a quarter in between; after
- * it
- * no overlap is left, and the blocks go the other way. */
+/* Two blocks fly at each other, off centre, and come apart again: momentum to round-off; energy to
+ * the error of the time integration, measured 0.13 %, of which contact stores a quarter in between;
+ * after it no overlap is left, and the blocks go the other way. */
 static void test_collision(void)
 {
     RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.01, 0.09, 0.05\nvelocity = -1, 0\n",
@@ -306,9 +307,9 @@ static void test_collision(void)
     TEST_ASSERT_TRUE(va < -0.5 && va < vb);
 }
 
-/* A block rests on a floor: the floor carries its weight, and particles overlap by dp p/(2 E) on the mean,
- * as half a spacing of the block, p = rho g H = 400 Pa. After 40 ms of damped ringing the force is the
- * weight to 1 %. */
+/* A block rests on a floor: the floor carries its weight, and particles overlap by dp p/(2 E) on
+ * the mean, as half a spacing of the block, p = rho g H = 400 Pa. After 40 ms of damped ringing the
+ * force is the weight to 1 %. */
 static void test_block_on_a_floor(void)
 {
     RIG_OPEN_SOLID(
@@ -331,8 +332,8 @@ static void test_block_on_a_floor(void)
     assert_near(0.01 * 2e-6, 2e-6, overlap, "overlap");
 }
 
-/* A wall that comes down at 10 mm/s presses a block of 4 cm by 1 mm onto the floor: what the wall has
- * done is what strain and contact hold. */
+/* A wall that comes down at 10 mm/s presses a block of 4 cm by 1 mm onto the floor: what the wall
+ * has done is what strain and contact hold. */
 static const char press[] = "dp = 1 cm\nend_time = 1\n[contact all]\n"
                             "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
                             "[wall plate]\nshape = box -0.1, 0.04, 0.2, 0.07\nmotion = down\n"
@@ -347,8 +348,8 @@ static void test_work_of_a_moving_wall(void)
         RIG_OPEN_SOLID(press, integrators[k]);
         rig_run(&rig, 0.1);
         const struct ledger row = simulation_ledger(&rig.sim);
-        /* The block of its full height: two contacts stand for half a spacing each. Its ends are a little
-         * stiffer, and the strain is 1/40: measured +2.2 %. */
+        /* The block of its full height: two contacts stand for half a spacing each. Its ends are a
+         * little stiffer, and the strain is 1/40: measured +2.2 %. */
         const double stiffness = 0.06 * 1e6 / 0.04;
         const double exact = 0.5 * stiffness * square(1e-3);
         assert_near(0.03 * exact, exact, row.elastic + row.contact, "stored");
@@ -417,9 +418,8 @@ static void test_restart(void)
     }
 }
 
-/* A drop hits a block, the block hits another: with the solid's sub-steps momentum goes through fluid
- * and
- * contact to the round-off of the fluid's pairs in single precision. */
+/* A drop hits a block, the block hits another: with the solid's sub-steps momentum goes through
+ * fluid and contact to the round-off of the fluid's pairs in single precision. */
 static void test_with_fluid(void)
 {
     RIG_OPEN_SOLID(
@@ -443,38 +443,37 @@ static void test_with_fluid(void)
     TEST_ASSERT_TRUE(vb > 0.1);
 }
 
-/* Contact's part of the step is told apart from the solid's: by hand, 2 k/m for two surfaces face to
- * face (T-62a),
- * and without contact the solid's bound alone. So is its time. */
+/* Contact's part of the step is told apart from the solid's: by hand, 2 k/m for two surfaces face
+ * to face (T-62a), and without contact the solid's bound alone. So is its time. */
 static void test_bound_and_phase_of_its_own(void)
 {
     rig_open(&rig, BLOCKS "shape = box 0.04, 0, 0.08, 0.04\n", NULL);
-    const struct simulation *const s = &rig.sim;
+    const struct simulation *const sim = &rig.sim;
     const double modulus = 4e6 / 3;
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
-    const double omega2 = square(s->solid.omega_max) + 2 * modulus / 0.1;
-    assert_near(1e-15, 0.9 * solid_step_of(omega2, s->solid.damping_max), s->dt_solid, "bound");
-    assert_near(1e-15, 0.9 * solid_step_of(square(s->solid.omega_max), s->solid.damping_max),
-                s->dt_lone_solid, "bound of the solid alone");
-    TEST_ASSERT_TRUE(s->dt_solid < 0.99 * s->dt_lone_solid);
-    /* Where the distance is half of the reach the contact is four times as stiff; the next edges, at 1.118 of
-     * the reach, are near enough to count as at its beginning. */
+    const double omega2 = square(sim->solid.omega_max) + 2 * modulus / 0.1;
+    assert_near(1e-15, 0.9 * solid_step_of(omega2, sim->solid.damping_max), sim->dt_solid, "bound");
+    assert_near(1e-15, 0.9 * solid_step_of(square(sim->solid.omega_max), sim->solid.damping_max),
+                sim->dt_lone_solid, "bound of the solid alone");
+    TEST_ASSERT_TRUE(sim->dt_solid < 0.99 * sim->dt_lone_solid);
+    /* Where the distance is half of the reach the contact is four times as stiff; the next edges,
+     * at 1.118 of the reach, are near enough to count as at its beginning. */
     p = &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < p->n; i++) p->ux[i] = p->body[i] ? -0.005 : 0;
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
-    assert_near(1e-6 * 5 * 2 * modulus / 0.1, (4 + 1) * 2 * modulus / 0.1, s->contact.omega2,
+    assert_near(1e-6 * 5 * 2 * modulus / 0.1, (4 + 1) * 2 * modulus / 0.1, sim->contact.omega2,
                 "contact's part");
     memset(p->ux, 0, (size_t)p->n * sizeof *p->ux);
     rig_steps(&rig, 10, 1);
-    TEST_ASSERT_EQUAL_INT64(s->state.steps, s->state.bound_steps[BOUND_contact]);
-    TEST_ASSERT_TRUE(s->dt_bound[BOUND_contact] == s->dt_solid);
-    TEST_ASSERT_TRUE(s->dt_bound[BOUND_solid] == s->dt_lone_solid);
-    TEST_ASSERT_TRUE(s->phase_seconds[PHASE_contact] > 0 && s->phase_seconds[PHASE_solid] > 0);
-    TEST_ASSERT_TRUE(s->contact.seconds == 0);
+    TEST_ASSERT_EQUAL_INT64(sim->state.steps, sim->state.bound_steps[BOUND_contact]);
+    TEST_ASSERT_TRUE(sim->dt_bound[BOUND_contact] == sim->dt_solid);
+    TEST_ASSERT_TRUE(sim->dt_bound[BOUND_solid] == sim->dt_lone_solid);
+    TEST_ASSERT_TRUE(sim->phase_seconds[PHASE_contact] > 0 && sim->phase_seconds[PHASE_solid] > 0);
+    TEST_ASSERT_TRUE(sim->contact.seconds == 0);
     rig_open(&rig, BLOCKS "shape = box 0.2, 0, 0.24, 0.04\n", NULL);
     rig_steps(&rig, 10, 1);
-    TEST_ASSERT_TRUE(s->dt_solid == s->dt_lone_solid && isinf(s->dt_bound[BOUND_contact]));
-    TEST_ASSERT_EQUAL_INT64(s->state.steps, s->state.bound_steps[BOUND_solid]);
+    TEST_ASSERT_TRUE(sim->dt_solid == sim->dt_lone_solid && isinf(sim->dt_bound[BOUND_contact]));
+    TEST_ASSERT_EQUAL_INT64(sim->state.steps, sim->state.bound_steps[BOUND_solid]);
 }
 
 static void test_bad_input(void)

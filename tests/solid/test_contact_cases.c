@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Contact against what is known: restitution, Coulomb's friction, a stack, a pressed disc, bodies that
- * nothing lets through. */
+ * Contact against what is known: restitution, Coulomb's friction, a stack, a pressed disc, bodies
+ * that nothing lets through. */
 #include "rig.h"
 #include "unity.h"
 
@@ -39,9 +39,10 @@ static bool stopped(double time)
     return false;
 }
 
-/* A disc without damping meets a floor at a tenth of its speed of sound: what is missing of its energy
- * afterwards is the error of the time integration, and its momentum is turned round. It goes on ringing: the
- * restitution is 0.948 by finite elements of the same equations (tools/report/verify_contact_reference.py). */
+/* A disc without damping meets a floor at a tenth of its speed of sound: what is missing of its
+ * energy afterwards is the error of the time integration, and its momentum is turned round. It goes
+ * on ringing: the restitution is 0.948 by finite elements of the same equations
+ * (tools/report/verify_contact_reference.py). */
 static void test_restitution_of_a_disc(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.02, 0.1, 0\n"
@@ -89,8 +90,8 @@ static double way_down_a_slope(double slope, double friction, double time)
     return mean(0, p->ux);
 }
 
-/* Coulomb: below the angle of friction a block stays, above it goes down with g (sin - mu cos). At first
- * it bounces, since it begins without weight on the floor, and slides a little. */
+/* Coulomb: below the angle of friction a block stays, above it goes down with g (sin - mu cos). At
+ * first it bounces, since it begins without weight on the floor, and slides a little. */
 static void test_slope(void)
 {
     const double held[2] = {way_down_a_slope(0.28, 0.3, 1), way_down_a_slope(0.28, 0.3, 3)};
@@ -101,8 +102,8 @@ static void test_slope(void)
     assert_near(0.03 * exact, exact, down, "way");
 }
 
-/* What a sliding block loses is friction's work. What the springs of friction hold when it has come to
- * rest is in the account. */
+/* What a sliding block loses is friction's work. What the springs of friction hold when it has come
+ * to rest is in the account. */
 static void test_energy_of_friction(void)
 {
     RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
@@ -124,9 +125,10 @@ static void test_energy_of_friction(void)
     assert_at_most(0.01 * given, -least, "energy gained");
 }
 
-/* Three blocks on each other, the upper ones not above each other, sink by their strain and by dp p/E at
- * each interface, and stay there. Their weight grows over 0.5 s; or it acts at once, and they rock first. The
- * dashpots of contact damp that: they do not resist bodies that turn together. */
+/* Three blocks on each other, the upper ones not above each other, sink by their strain and by dp
+ * p/E at each interface, and stay there. Their weight grows over 0.5 s; or it acts at once, and
+ * they rock first. The dashpots of contact damp that: they do not resist bodies that turn together.
+ */
 static void stack_at_rest(const char *gravity, double settled, double creep)
 {
     char text[600];
@@ -161,9 +163,9 @@ static void test_stack_at_rest(void)
     stack_at_rest("-9.81*min(1, t/0.5)", 8, 1e-6);
 }
 
-/* A block meets a wall of four particles, end on, from slow to seven times its speed of sound: either
- * it is
- * thrown back, or the run stops and says why. No particle gets behind the wall's surface. */
+/* A block meets a wall of four particles, end on, from slow to seven times its speed of sound:
+ * either it is thrown back, or the run stops and says why. No particle gets behind the wall's
+ * surface. */
 static void test_nothing_passes(void)
 {
     static const char *const speeds[] = {"bullet.velocity=5, 0", "bullet.velocity=20, 0",
@@ -182,10 +184,11 @@ static void test_nothing_passes(void)
     }
 }
 
-/* A rod and a square of three particles across at 200 m/s, end on and corner on, meet a wall or a held
- * strip of three particles, from soft ones to ones whose sound is ten times as fast. None is behind the
- * outermost particles, or, where the run stops, less than a spacing. The stiff ones bounce and gain no
- * energy: the account knows that they have touched the strip between two of its checks. */
+/* A rod and a square of three particles across at 200 m/s, end on and corner on, meet a wall or a
+ * held strip of three particles, from soft ones to ones whose sound is ten times as fast. None is
+ * behind the outermost particles, or, where the run stops, less than a spacing. The stiff ones
+ * bounce and gain no energy: the account knows that they have touched the strip between two of its
+ * checks. */
 static void test_nothing_passes_three_particles(void)
 {
     static const char *const targets[] = {
@@ -221,8 +224,8 @@ static void test_nothing_passes_three_particles(void)
     }
 }
 
-/* A plate of one particle has no inside: a block comes to it from either side, bounces, and no point counts
- * as having passed the surface. */
+/* A plate of one particle has no inside: a block comes to it from either side, bounces, and no
+ * point counts as having passed the surface. */
 static void test_a_plate_of_one_particle(void)
 {
     static const char *const starts[] = {"y0=0.01", "y0=-0.035"};
@@ -289,17 +292,17 @@ static void test_wall_into_a_clamp(void)
     assert_near(2e-4, 0.015, rig.sim.state.time * 0.5, "way of the wall");
 }
 
-/* Line contact: half of the width 2 b over which a disc of radius R touches a flat under a load P per
- * depth, and how much its centre comes nearer to the flat (Johnson, Contact Mechanics, 1985, Eqs. 4.43 and
- * 5.57). */
+/* Line contact: half of the width 2 b over which a disc of radius R touches a flat under a load P
+ * per depth, and how much its centre comes nearer to the flat (Johnson, Contact Mechanics, 1985,
+ * Eqs. 4.43 and 5.57). */
 static double approach(double load, double R, double young, double poisson)
 {
     const double plane = young / (1 - poisson * poisson), b = sqrt(4 * load * R / (M_PI * plane));
     return load / (M_PI * plane) * (2 * log(4 * R / b) - 1);
 }
 
-/* A disc between a floor and a plate that comes down slowly: by 1.00 and 2.20 spacings, of which the loads
- * are those of 0.995 and 2.22 (measured). */
+/* A disc between a floor and a plate that comes down slowly: by 1.00 and 2.20 spacings, of which
+ * the loads are those of 0.995 and 2.22 (measured). */
 static void test_line_contact(void)
 {
     RIG_OPEN_SOLID("dp = 2.5 mm\nend_time = 1\n[wall floor]\nshape = box -0.05, -0.01, 0.05, 0\n"

@@ -90,9 +90,9 @@ static double power_of(const double from[4], const double to[4], double size)
     return sum / size;
 }
 
-/* While places do not slide, the force is the derivative of the energy, but for the turn of the normals
- * since the last step (T-62c), here of up to 0.001. What two bodies do to each other is opposite and
- * turns nothing. */
+/* While places do not slide, the force is the derivative of the energy, but for the turn of the
+ * normals since the last step (T-62c), here of up to 0.001. What two bodies do to each other is
+ * opposite and turns nothing. */
 static void test_force_of_the_energy(void)
 {
     static const double step = 1e-7;
@@ -167,7 +167,8 @@ static double made_on_the_path(int steps, double *most)
     return made - energy();
 }
 
-/* Two rounds of a body along a closed path never return more than was put in; without friction as much. */
+/* Two rounds of a body along a closed path never return more than was put in; without friction as
+ * much. */
 static void test_closed_path(void)
 {
     static const double friction[] = {0, 0.3, 3};
@@ -209,8 +210,8 @@ static void test_bodies_that_turn_together(void)
     }
 }
 
-/* A point that slides rubs with the friction times its normal force, of which it gets its part where a
- * wall's point presses an edge. */
+/* A point that slides rubs with the friction times its normal force, of which it gets its part
+ * where a wall's point presses an edge. */
 static void test_each_point_rubs_by_its_own_load(void)
 {
     static struct force normal[COUNT_OF(force)];
@@ -236,8 +237,8 @@ static void test_each_point_rubs_by_its_own_load(void)
     }
 }
 
-/* A spring stretched beyond the slider counts with what the slider bears: f^2/(2 k), of the stiffness in
- * shear of both halves. */
+/* A spring stretched beyond the slider counts with what the slider bears: f^2/(2 k), of the
+ * stiffness in shear of both halves. */
 static void test_energy_of_the_slider(void)
 {
     static const double stiffness = 2e6 / 2.6;
@@ -272,8 +273,8 @@ static double gain_until(double time)
     return most / start;
 }
 
-/* A disc that rolls on a floor, for a sixth of a turn: measured 5e-6. With places that the points of the
- * floor borrowed from those of the disc it was 6e-3, with any step. */
+/* A disc that rolls on a floor, for a sixth of a turn: measured 5e-6. With places that the points
+ * of the floor borrowed from those of the disc it was 6e-3, with any step. */
 static void test_rolling_disc(void)
 {
     for (int k = 0; k < 2; k++) {
@@ -286,9 +287,9 @@ static void test_rolling_disc(void)
     }
 }
 
-/* Two boxes and two discs in a box, all thrown and spun, meet each other and the walls. What is gained
- * is the error of the time integration, measured 2e-4, and falls with the step; it was 3e-3 with any
- * step. */
+/* Two boxes and two discs in a box, all thrown and spun, meet each other and the walls. What is
+ * gained is the error of the time integration, measured 2e-4, and falls with the step; it was 3e-3
+ * with any step. */
 static double thrown(int seed, double safety)
 {
     char text[2000];
@@ -322,10 +323,10 @@ static void test_throws(void)
     }
 }
 
-/* What friction adds to the bound of the step where two faces lie on each other (T-62a): the stiffness
- * in shear of a layer is 1/(2 (1 + nu)) of that in compression. A point opposite an end of an edge acts
- * on that end with the weight sqrt(2), on the other with 1. One point of the face is an end of the edges
- * of three points. A wall does not move. */
+/* What friction adds to the bound of the step where two faces lie on each other (T-62a): the
+ * stiffness in shear of a layer is 1/(2 (1 + nu)) of that in compression. A point opposite an end
+ * of an edge acts on that end with the weight sqrt(2), on the other with 1. One point of the face
+ * is an end of the edges of three points. A wall does not move. */
 static void test_bound_of_friction(void)
 {
     static const char *const text[] = {FLOOR "[solid a]\nshape = box 0, 0, 0.06, 0.04\n" BODY,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Contact between checks: which pairs are listed, for how long the list holds, what is near, what a clamp
- * holds together. */
+ * Contact between checks: which pairs are listed, for how long the list holds, what is near, what a
+ * clamp holds together. */
 #include "contact_rig.h"
 #include "time/timestep.h"
 
@@ -66,8 +66,8 @@ static void test_fast_parts_are_listed_early(void)
     TEST_ASSERT_TRUE(c->n_pairs > at_rest + 8);
 }
 
-/* A list is made anew once points of a body have moved by its margin, which is short beside that for other
- * bodies if the body flies. */
+/* A list is made anew once points of a body have moved by its margin, which is short beside that
+ * for other bodies if the body flies. */
 static void test_a_list_that_is_stale(void)
 {
     open_case(legs);
@@ -95,7 +95,8 @@ static void test_margin_covers_the_steps(void)
                 "margin");
 }
 
-/* A post in a floor that moves with its clamp does not touch the floor; without the clamp it does. */
+/* A post in a floor that moves with its clamp does not touch the floor; without the clamp it does.
+ */
 static void test_a_clamp_that_moves_with_its_wall(void)
 {
     static const char post[] =

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Contact at the outline of the shapes (T-61b): how far it is from the surface points, and that forces on
- * points and edges are those of a potential where both are not parallel. */
+ * Contact at the outline of the shapes (T-61b): how far it is from the surface points, and that
+ * forces on points and edges are those of a potential where both are not parallel. */
 #include "contact_rig.h"
 #include "time/timestep.h"
 
@@ -55,8 +55,9 @@ static void test_no_outline_near(void)
     for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->outer[k] == 0);
 }
 
-/* Flat faces, the lattice of one of which is turned, touch with all points at once, and both together are as
- * stiff as faces on one lattice: 40 points carry 0.86 to 1.17 times 1 N/m (measured). */
+/* Flat faces, the lattice of one of which is turned, touch with all points at once, and both
+ * together are as stiff as faces on one lattice: 40 points carry 0.86 to 1.17 times 1 N/m
+ * (measured). */
 static void test_turned_faces_touch_at_once(void)
 {
     open_case("dp = 5 mm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.2, 0.05\n" RUBBER

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Loads and moving clamps: by hand, their work, exact stretches, and that nothing changes without them. */
+ * Loads and moving clamps: by hand, their work, exact stretches, and that nothing changes without
+ * them. */
 #include "output/checkpoint.h"
 #include "coupling/impulse.h"
 #include "rig.h"
@@ -27,8 +28,8 @@ static void accelerations(double time)
     solid_forces(&rig.sim.solid, p);
 }
 
-/* m = 0.1 kg/m a particle. A point load; 30 N/m over the four particles of an end; a traction of which
- * each carries dp; a ramp; an expression in place and time. */
+/* m = 0.1 kg/m a particle. A point load; 30 N/m over the four particles of an end; a traction of
+ * which each carries dp; a ramp; an expression in place and time. */
 static void test_loads_by_hand(void)
 {
     static const char text[] = BAR
@@ -51,7 +52,8 @@ static void test_loads_by_hand(void)
     TEST_ASSERT_EQUAL_INT(1 + 4 + 10, loaded);
 }
 
-/* Force and traction as functions of place and time: the work is that of the same load by `history`. */
+/* Force and traction as functions of place and time: the work is that of the same load by
+ * `history`. */
 static void test_loads_in_time(void)
 {
     static const char *const loads[] = {
@@ -76,8 +78,8 @@ static void test_loads_in_time(void)
     TEST_ASSERT_TRUE(fabs(uy[0]) > 1e-6);
 }
 
-/* A free bar pushed at one end: momentum is the impulse, and the energy that the load has put in is that
- * of motion and strain. */
+/* A free bar pushed at one end: momentum is the impulse, and the energy that the load has put in is
+ * that of motion and strain. */
 static void test_work_of_a_load(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
@@ -98,8 +100,8 @@ static void test_work_of_a_load(void)
     }
 }
 
-/* nu = 0, at rest by its damping: the end of a bar of length L from the clamp moves by traction L/E, and
- * by less than half a percent of the square of the strain, 1e-4. */
+/* nu = 0, at rest by its damping: the end of a bar of length L from the clamp moves by traction
+ * L/E, and by less than half a percent of the square of the strain, 1e-4. */
 static void test_bar_under_traction(void)
 {
     RIG_OPEN_SOLID(BAR
@@ -177,7 +179,8 @@ static uint64_t bits_after(const char *text, const char *integrator, const char 
     return particles_hash(p, 1);
 }
 
-/* A clamp that moves by nothing and a load of nothing leave the bits of a clamp at rest and no load. */
+/* A clamp that moves by nothing and a load of nothing leave the bits of a clamp at rest and no
+ * load. */
 static void test_zero_changes_no_bit(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};

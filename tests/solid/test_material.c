@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Stress laws: numbers by hand, small strains, objectivity, energy, what happens across the plane. */
+ * Stress laws: numbers by hand, small strains, objectivity, energy, what happens across the plane.
+ */
 #include "solid/material_energy.h"
 
 #include "rig.h"
@@ -49,8 +50,8 @@ static void assert_tensor(double tolerance, struct tensor2 e, struct tensor2 a, 
 
 /* F = diag(1.1, 1) in plane strain.
  *   svk:   E_xx = 0.105, S = (7 * 0.105, 3 * 0.105), P = (1.1 * 0.735, 0.315)
- *   paper: eps_xx = (1 - 1/1.21)/2 = 0.08677685950413, sigma = (7, 3) eps, P = (sigma_xx, 1.1 sigma_yy)
- *   neo-Hookean: P = (2.2 + (1.5 * 0.21 - 2)/1.1, 2 + 1.5 * 0.21 - 2) */
+ *   paper: eps_xx = (1 - 1/1.21)/2 = 0.08677685950413, sigma = (7, 3) eps, P = (sigma_xx, 1.1
+ * sigma_yy) neo-Hookean: P = (2.2 + (1.5 * 0.21 - 2)/1.1, 2 + 1.5 * 0.21 - 2) */
 static void test_stretch_by_hand(void)
 {
     const struct tensor2 U = {0.1, 0, 0, 0};
@@ -80,8 +81,8 @@ static void test_shear_by_hand(void)
     assert_tensor(1e-15, (struct tensor2){0, 0.4, 0.4, 0}, pk1(&b, U), "neo-Hookean");
 }
 
-/* Linear elasticity for strains and rotations of e = 1e-6: sigma = lambda tr(eps) + 2 mu eps. The next
- * order is at most some 10 e of the moduli. */
+/* Linear elasticity for strains and rotations of e = 1e-6: sigma = lambda tr(eps) + 2 mu eps. The
+ * next order is at most some 10 e of the moduli. */
 static void test_small_strains_are_linear(void)
 {
     uint64_t seed = 1;
@@ -144,7 +145,8 @@ static double energy(const struct solid_body *b, struct tensor2 U)
     return material_energy(b, spread(U))[0];
 }
 
-/* P = dW/dF, central differences of step 1e-5: error of the order of its square times the moduli. */
+/* P = dW/dF, central differences of step 1e-5: error of the order of its square times the moduli.
+ */
 static void test_stress_is_the_slope_of_the_energy(void)
 {
     uint64_t seed = 4;
@@ -170,8 +172,8 @@ static void test_stress_is_the_slope_of_the_energy(void)
     }
 }
 
-/* Energies vanish at rest, agree for small strains with (lambda/2) tr^2 + mu eps:eps to the next order,
- * and are positive: the paper's law as well. */
+/* Energies vanish at rest, agree for small strains with (lambda/2) tr^2 + mu eps:eps to the next
+ * order, and are positive: the paper's law as well. */
 static void test_energy_of_small_strains(void)
 {
     uint64_t seed = 5;
@@ -192,10 +194,10 @@ static void test_energy_of_small_strains(void)
     }
 }
 
-/* Plane stress: the thickness t that is reported leaves no stress across in the three-dimensional law.
- *   paper: eps_zz = (1 - 1/t^2)/2, lambda (tr eps + eps_zz) + 2 mu eps_zz = 0
- *   svk:   E_zz = (t^2 - 1)/2,     lambda (tr E + E_zz) + 2 mu E_zz = 0
- *   neo-Hookean: mu (t^2 - 1) + lambda/2 ((J t)^2 - 1) = 0 */
+/* Plane stress: the thickness t that is reported leaves no stress across in the three-dimensional
+ * law. paper: eps_zz = (1 - 1/t^2)/2, lambda (tr eps + eps_zz) + 2 mu eps_zz = 0 svk:   E_zz = (t^2
+ * - 1)/2,     lambda (tr E + E_zz) + 2 mu E_zz = 0 neo-Hookean: mu (t^2 - 1) + lambda/2 ((J t)^2 -
+ * 1) = 0 */
 static void test_plane_stress_has_none_across(void)
 {
     uint64_t seed = 6;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The solid as a body: rigid motions, balances of momentum, energy, clamps, bodies beside each other; in
- * double, and with pairs in float. */
+ * The solid as a body: rigid motions, balances of momentum, energy, clamps, bodies beside each
+ * other; in double, and with pairs in float. */
 #include "rig.h"
 #include "solid/packed.h"
 #include "geometry/load.h"
@@ -19,8 +19,8 @@ static struct rig rig;
 static struct particles *p;
 static bool single;
 
-/* Tolerances are those of double, 1e-13 for sums of some 20 terms of order 1; the same sums in float hold
- * 1e-6. */
+/* Tolerances are those of double, 1e-13 for sums of some 20 terms of order 1; the same sums in
+ * float hold 1e-6. */
 static double within(double tolerance) { return single ? 1e7 * tolerance : tolerance; }
 
 void setUp(void) {}
@@ -47,9 +47,9 @@ static void turn(double degrees)
     }
 }
 
-/* Displacements hold 4e-17 m of round-off, which a strain of neighbours 1 cm apart takes to some 1e-14
- * and a sum of 20 terms to 1e-13; the stress is below 1e-13 (lambda + 2 mu) = 4.3e6 Pa, and the force
- * below that over rho dp, with kappa for the hourglass springs. */
+/* Displacements hold 4e-17 m of round-off, which a strain of neighbours 1 cm apart takes to some
+ * 1e-14 and a sum of 20 terms to 1e-13; the stress is below 1e-13 (lambda + 2 mu) = 4.3e6 Pa, and
+ * the force below that over rho dp, with kappa for the hourglass springs. */
 static void test_rigid_motion_has_no_stress_and_no_force(void)
 {
     const char *const laws[] = {"block.law=paper", "block.law=svk", "block.law=neo_hookean"};
@@ -81,8 +81,8 @@ static void test_rigid_motion_has_no_stress_and_no_force(void)
     }
 }
 
-/* A body that turns about itself does not approach itself: no viscous force. Velocities of 10 m/s are
- * off by 1e-15 of themselves, over distances of 1 cm. */
+/* A body that turns about itself does not approach itself: no viscous force. Velocities of 10 m/s
+ * are off by 1e-15 of themselves, over distances of 1 cm. */
 static void test_rigid_rotation_has_no_viscous_force(void)
 {
     OPEN(block, "block.artificial_viscosity=1");
@@ -131,21 +131,22 @@ static struct balance balance(void)
 /* So that gradients and stresses stay zero whatever the displacements. */
 static void forget_weights(void)
 {
-    const struct solid *const s = &rig.sim.solid;
-    const int lanes = s->sweeps->lanes;
-    for (int64_t m = 0; m < s->n_slots * SOLID_WEIGHTS; m++)
+    const struct solid *const solid = &rig.sim.solid;
+    const int lanes = solid->sweeps->lanes;
+    for (int64_t m = 0; m < solid->n_slots * SOLID_WEIGHTS; m++)
         for (int l = 0; l < lanes && m % SOLID_WEIGHTS <= W_HY; l++)
-            solid_set(s, s->weight, m * lanes + l, 0);
+            solid_set(solid, solid->weight, m * lanes + l, 0);
     for (int64_t i = 0; i < p->n; i++) {
-        solid_set(s, s->lane[S_GX], i, 0);
-        solid_set(s, s->lane[S_GY], i, 0);
+        solid_set(solid, solid->lane[S_GX], i, 0);
+        solid_set(solid, solid->lane[S_GY], i, 0);
     }
 }
 
-/* Two particles by hand: a block at rest, of which one particle a is moved by (1, 2) mm, without gradients
- * and stresses: e_ab = -u_ab, and what remains on the neighbour b = a + (dp, 0) is a spring to
- * a. dp = 1 cm, h = 1.35 cm, q = 1/1.35: W = 7/(4 pi h^2) (1 - q/2)^4 (2q + 1) = 1191.9892;
- * k/m = kappa E V W/(r^2 rho) = 10 * 2e6 * 1e-4 * 1191.9892/(1e-4 * 1100) = 2.1672530e7 1/s^2. */
+/* Two particles by hand: a block at rest, of which one particle a is moved by (1, 2) mm, without
+ * gradients and stresses: e_ab = -u_ab, and what remains on the neighbour b = a + (dp, 0) is a
+ * spring to a. dp = 1 cm, h = 1.35 cm, q = 1/1.35: W = 7/(4 pi h^2) (1 - q/2)^4 (2q + 1) =
+ * 1191.9892; k/m = kappa E V W/(r^2 rho) = 10 * 2e6 * 1e-4 * 1191.9892/(1e-4 * 1100) = 2.1672530e7
+ * 1/s^2. */
 static void test_a_pair_by_hand(void)
 {
     const char *const forms[] = {"block.hourglass_form=variational",
@@ -182,8 +183,8 @@ static void test_a_pair_by_hand(void)
     }
 }
 
-/* Forces of a free body close to the round-off of their sum, and so do torques, for the stress and for
- * both hourglass forces. */
+/* Forces of a free body close to the round-off of their sum, and so do torques, for the stress and
+ * for both hourglass forces. */
 static void test_forces_and_torques_close(void)
 {
     const char *const laws[] = {"block.law=paper", "block.law=svk", "block.law=neo_hookean"};
@@ -234,8 +235,8 @@ static double total_energy(void)
 }
 
 /* Force = -dE/du, where both have one: svk and neo-Hookean, without hourglass force or with the one
- * from an energy, both gradients. Central difference along a random direction; its error is e^2 of the
- * scale and 1e-16 E/e of round-off: 1e-7 of the sum of sizes. */
+ * from an energy, both gradients. Central difference along a random direction; its error is e^2 of
+ * the scale and 1e-16 E/e of round-off: 1e-7 of the sum of sizes. */
 static void test_forces_are_the_slope_of_the_energy(void)
 {
     const char *const laws[] = {"block.law=svk", "block.law=neo_hookean"};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The account of energy by regions (T-46): gains are found after losses and beside other scenes, and work on
- * what is at rest is no gain. */
+ * The account of energy by regions (T-46): gains are found after losses and beside other scenes,
+ * and work on what is at rest is no gain. */
 #include "time/energy.h"
 #include "time/guards.h"
 #include "rig.h"
@@ -63,8 +63,8 @@ static double region(enum kind kind, int section)
     return rig.sim.state.energy.entry[energy_entry(kind, section)].region;
 }
 
-/* Energy put into the plate after the column has lost much of its own: the plate's region is named, the
- * column's is another. */
+/* Energy put into the plate after the column has lost much of its own: the plate's region is named,
+ * the column's is another. */
 static void test_gain_beside_a_collapse(void)
 {
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(TANKS COLUMN, NULL, 0.3));
@@ -72,8 +72,8 @@ static void test_gain_beside_a_collapse(void)
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_SOLID, 0));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) != region(KIND_FLUID, 2));
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) p->vx[i] += 0.1 * p->free[i];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) particles->vx[i] += 0.1 * particles->free[i];
     TEST_ASSERT_TRUE(simulation_ledger(&rig.sim).dissipated > 0); /* of both together */
     TEST_ASSERT_EQUAL_INT(ERR_OK, go_on(rig.sim.state.time + 5e-3));
     TEST_ASSERT_EQUAL_INT(1, warnings);
@@ -104,8 +104,8 @@ static void test_regions_that_meet(void)
                 a->entry[0].lowest[TERM_DISSIPATION], "lowest dissipation");
 }
 
-/* Whether fluid b, of 3 x 3 particles, is in the region of fluid a, of 10 x 10 in 0 to 0.05 m, when its box
- * begins there. */
+/* Whether fluid b, of 3 x 3 particles, is in the region of fluid a, of 10 x 10 in 0 to 0.05 m, when
+ * its box begins there. */
 static bool meets(double x, double y)
 {
     char text[512];
@@ -141,9 +141,9 @@ static void test_bodies_in_contact_are_one_region(void)
     rig_open(&rig, bodies, NULL);
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
     TEST_ASSERT_TRUE(region(KIND_SOLID, 1) == region(KIND_SOLID, 2));
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->body[i]) p->ux[i] = -0.012;
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->body[i]) particles->ux[i] = -0.012;
     contact_forget(&rig.sim.contact, &rig.sim.kind[KIND_WALL]);
     energy_begin(&rig.sim);
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 1));
@@ -197,14 +197,15 @@ static struct energy_gain gain_of_noise(double fraction)
         "dp = 5 mm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
         "density = 1000\nyoung = 1e5\npoisson = 0.3\n";
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(rest, NULL, 0.01));
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     uint64_t seed = 1;
-    for (int64_t i = 0; i < p->n; i++) p->ux[i] += 5e-3 * fraction * noise(&seed);
-    solid_stress(&rig.sim.solid, p);
+    for (int64_t i = 0; i < particles->n; i++) particles->ux[i] += 5e-3 * fraction * noise(&seed);
+    solid_stress(&rig.sim.solid, particles);
     return energy_find_gain(&rig.sim);
 }
 
-/* Round-off of positions, as of two bodies in contact that begin at rest without gravity, is no gain. */
+/* Round-off of positions, as of two bodies in contact that begin at rest without gravity, is no
+ * gain. */
 static void test_round_off_is_no_gain(void)
 {
     TEST_ASSERT_EQUAL_INT(-1, gain_of_noise(1e-14).entry);
@@ -231,17 +232,17 @@ static void test_regions_add_up(void)
     TEST_ASSERT_TRUE(fabs(row.dissipated) < 1);
 }
 
-static void quicken(struct particles *p, double factor)
+static void quicken(struct particles *particles, double factor)
 {
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] *= factor;
-        if (p->vx_half) p->vx_half[i] *= factor;
-        if (p->vx_old) p->vx_old[i] *= factor;
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] *= factor;
+        if (particles->vx_half) particles->vx_half[i] *= factor;
+        if (particles->vx_old) particles->vx_old[i] *= factor;
     }
 }
 
-/* Multiplies the energy of a block in flight by e in the time 1/rate, from `start` on. Returns the time from
- * a gain of 1 % until it is named, by a warning or a stop, s. */
+/* Multiplies the energy of a block in flight by e in the time 1/rate, from `start` on. Returns the
+ * time from a gain of 1 % until it is named, by a warning or a stop, s. */
 static double time_to_name(const char *block, const char *integrator, double rate, double start)
 {
     const double call = 1e-4;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Steps that change in a pattern feed oscillations that each of them alone would keep. Steps up to an
- * output time are therefore equal. */
+ * Steps that change in a pattern feed oscillations that each of them alone would keep. Steps up to
+ * an output time are therefore equal. */
 #include "rig.h"
 #include "time/timestep.h"
 #include "unity.h"
@@ -31,9 +31,10 @@ static double energy(void)
 {
     const struct ledger row = simulation_ledger(&rig.sim);
     double of_solid = row.elastic + row.hourglass;
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++)
-        of_solid += 0.5 * rig.sim.solid.body[0].mass * (p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++)
+        of_solid += 0.5 * rig.sim.solid.body[0].mass *
+                    (particles->vx[i] * particles->vx[i] + particles->vy[i] * particles->vy[i]);
     return of_solid;
 }
 
@@ -41,13 +42,14 @@ static double energy(void)
 static double after_pattern(double first, double second)
 {
     rig_open(&rig, beam, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     uint64_t seed = 5;
-    for (int64_t i = 0; i < p->n; i++) p->vy[i] = 1e-4 * p->free[i] * noise(&seed);
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->vy[i] = 1e-4 * particles->free[i] * noise(&seed);
     const double start = energy();
     for (int k = 0; k < 200; k++) {
-        solid_advance(&rig.sim.solid, p, first * rig.sim.dt_solid, 9, true);
-        solid_advance(&rig.sim.solid, p, second * rig.sim.dt_solid, 2, true);
+        solid_advance(&rig.sim.solid, particles, first * rig.sim.dt_solid, 9, true);
+        solid_advance(&rig.sim.solid, particles, second * rig.sim.dt_solid, 2, true);
     }
     return energy() / start;
 }
@@ -61,8 +63,8 @@ static void test_a_pattern_of_steps_grows(void)
     TEST_ASSERT_FALSE(after_pattern(0.767, 0.68) <= 1e3);
 }
 
-/* Rows every 0.75 ms, at which no step goes evenly: with either integrator and rate nothing grows beyond
- * what the weight does at the start. */
+/* Rows every 0.75 ms, at which no step goes evenly: with either integrator and rate nothing grows
+ * beyond what the weight does at the start. */
 static void test_output_times_do_not_feed_the_solid(void)
 {
     static const char *const settings[][2] = {
@@ -110,8 +112,9 @@ static const char plate[] =
     "[probe top]\nbody = plate\npoint = 0.11, 0.12\n"
     "[output]\nsnapshot_interval = 1\n";
 
-/* Rows of one file every 0.3 ms and of another every 0.5 ms. Without a common grid the steps between them are
- * 0.15 and 0.1 ms long, and after 48 ms the plate has 12 times the energy that it was given. */
+/* Rows of one file every 0.3 ms and of another every 0.5 ms. Without a common grid the steps
+ * between them are 0.15 and 0.1 ms long, and after 48 ms the plate has 12 times the energy that it
+ * was given. */
 static void test_rows_at_two_intervals_do_not_feed_the_solid(void)
 {
     rig_open(&rig, plate, "output.ledger_interval=0.3 ms", "output.probe_interval=0.5 ms", NULL);
@@ -152,8 +155,8 @@ static void test_the_grid_of_outputs(void)
     }
 }
 
-/* Before t = 0, while rest is sought, no step ends at the grid, and late in a run times have 12 digits only.
- * Intervals that drift apart have no grid. */
+/* Before t = 0, while rest is sought, no step ends at the grid, and late in a run times have 12
+ * digits only. Intervals that drift apart have no grid. */
 static void test_times_on_the_grid(void)
 {
     rig_open(&rig, plate, "output.ledger_interval=0.3 ms", "output.probe_interval=0.5 ms", NULL);
@@ -171,8 +174,8 @@ static void test_times_on_the_grid(void)
     TEST_ASSERT_TRUE(rig.sim.uneven == 2);
 }
 
-/* Below half a step there is no grid: the solid takes half of its steps. With whole ones the plate has 12
- * times its energy after 160 ms. */
+/* Below half a step there is no grid: the solid takes half of its steps. With whole ones the plate
+ * has 12 times its energy after 160 ms. */
 static void test_outputs_without_a_grid_halve_the_steps_of_the_solid(void)
 {
     rig_open(&rig, plate, "output.ledger_interval=0.5 ms", "output.probe_interval=0.5 ms", NULL);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the extrapolated velocity of an oscillating structure adds to the exchange of energy (T-35, T-46e). */
+ * What the extrapolated velocity of an oscillating structure adds to the exchange of energy (T-35,
+ * T-46e). */
 #include <complex.h>
 #include <math.h>
 
@@ -87,8 +88,8 @@ static void test_light_bodies_have_the_same_excess_with_all_integrators(void)
     }
 }
 
-/* A plate of 0.3 times the fluid's density between two bodies of water, shaken at 1 kHz: sound goes two
- * spacings in a period, and the fluid receives more than the plate has given (T-46g). */
+/* A plate of 0.3 times the fluid's density between two bodies of water, shaken at 1 kHz: sound goes
+ * two spacings in a period, and the fluid receives more than the plate has given (T-46g). */
 static const char shaken[] =
     "integrator = leapfrog\ndp = 10 mm\nend_time = 1\ngravity = 0, -9.81\n"
     "[fluid left]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nartificial_viscosity = "
@@ -100,7 +101,8 @@ static const char shaken[] =
     "density = 300\nyoung = 1.48e6\npoisson = 0.3\n"
     "[load hit]\nbody = plate\nshape = box 0.1, 0.09, 0.14, 0.13\nforce = 300*sin(2000*pi*t), 0\n";
 
-/* The gain of the exchange over 6 ms and the largest available energy. Limits end a step every `rows`. */
+/* The gain of the exchange over 6 ms and the largest available energy. Limits end a step every
+ * `rows`. */
 static double gain_of_exchange(const char *step, double rows)
 {
     rig_open(&rig, shaken, step, NULL);
@@ -113,8 +115,9 @@ static double gain_of_exchange(const char *step, double rows)
     return a->most[TERM_INTERFACE] / a->largest_available;
 }
 
-/* It falls by 3 with half of the step. It is the same whether the case or outputs set the step (T-35e): with
- * the longest possible step for the time of the exchange it is 0.27 with outputs every 0.05 ms. */
+/* It falls by 3 with half of the step. It is the same whether the case or outputs set the step
+ * (T-35e): with the longest possible step for the time of the exchange it is 0.27 with outputs
+ * every 0.05 ms. */
 static void test_a_shaken_plate(void)
 {
     const double coarse = gain_of_exchange("numerics.fixed_step=1e-4", 1e-3);

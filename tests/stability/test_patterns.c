@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Patterns of neighbours against each other that a scheme may let grow: of a solid without stress, of a
- * fluid under tension. Each is shown without its remedy and with it. */
+ * Patterns of neighbours against each other that a scheme may let grow: of a solid without stress,
+ * of a fluid under tension. Each is shown without its remedy and with it. */
 #include "rig.h"
 #include "unity.h"
 
@@ -17,17 +17,18 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-/* How far neighbours stand against each other in the pattern + - + -, which has no gradient: mean over
- * the middle of the bar, m. */
+/* How far neighbours stand against each other in the pattern + - + -, which has no gradient: mean
+ * over the middle of the bar, m. */
 static double pattern(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     double sum = 0;
     int n = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (fabs(p->X[i] - 0.12) > 0.06 || fabs(p->Y[i] - 0.08) > 0.03) continue;
-        const long row = lround(p->X[i] / 0.01 - 0.5) + lround(p->Y[i] / 0.01 - 0.5);
-        sum += row % 2 ? -p->uy[i] : p->uy[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (fabs(particles->X[i] - 0.12) > 0.06 || fabs(particles->Y[i] - 0.08) > 0.03) continue;
+        const long row =
+            lround(particles->X[i] / 0.01 - 0.5) + lround(particles->Y[i] / 0.01 - 0.5);
+        sum += row % 2 ? -particles->uy[i] : particles->uy[i];
         n++;
     }
     return fabs(sum) / n;
@@ -41,8 +42,8 @@ static double pattern_after(const char *text, const char *set, const char *hourg
     return pattern();
 }
 
-/* Drawn out by a tenth or bent: without the force the pattern goes on at the 0.05 m/s it was given, 0.5 mm
- * in 10 ms; with it, it is turned back after 1e-5 m. */
+/* Drawn out by a tenth or bent: without the force the pattern goes on at the 0.05 m/s it was given,
+ * 0.5 mm in 10 ms; with it, it is turned back after 1e-5 m. */
 static void test_pattern_without_stress(void)
 {
     static const char drawn[] = BAR "clamp = box 0.24, 0, 0.28, 0.16\nclamp_motion = draw\n"
@@ -71,23 +72,25 @@ static const char drawn_water[] =
 
 static double closest(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double least = INFINITY;
-    for (int64_t i = 0; i < p->n; i++)
+    for (int64_t i = 0; i < particles->n; i++)
         for (int64_t j = 0; j < i; j++)
-            least = fmin(least, hypot(p->x[i] - p->x[j], p->y[i] - p->y[j]));
+            least = fmin(least, hypot(particles->x[i] - particles->x[j],
+                                      particles->y[i] - particles->y[j]));
     return least / rig.sim.scene->top.dp;
 }
 
 /* The largest distance of a point of the water from its nearest particle. */
 static double hole(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double largest = 0;
     for (double x = 0.01; x < 0.09; x += 0.001)
         for (double y = 0.01; y < 0.09; y += 0.001) {
             double least = INFINITY;
-            for (int64_t i = 0; i < p->n; i++) least = fmin(least, hypot(p->x[i] - x, p->y[i] - y));
+            for (int64_t i = 0; i < particles->n; i++)
+                least = fmin(least, hypot(particles->x[i] - x, particles->y[i] - y));
             largest = fmax(largest, least);
         }
     return largest / rig.sim.scene->top.dp;
@@ -100,9 +103,9 @@ static void draw(const char *tensile_control, const char *shifting)
     rig_run(&rig, 0.05);
 }
 
-/* Particles pair up, 0.61 of a spacing apart, and leave holes of 0.82 of one beside a lattice's 0.71;
- * with both remedies 0.88 and 0.73. Tensile control alone, which does not act between fluid and walls,
- * leaves 0.61. */
+/* Particles pair up, 0.61 of a spacing apart, and leave holes of 0.82 of one beside a lattice's
+ * 0.71; with both remedies 0.88 and 0.73. Tensile control alone, which does not act between fluid
+ * and walls, leaves 0.61. */
 static void test_voids_and_pairs_under_tension(void)
 {
     draw("w.tensile_control=0", "w.shifting=0");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The solid's step bound against the real limit: stable a few percent below it over many periods, unstable
- * a tenth above it, over kappa, nu, h/dp, law, thickness, gradient and hourglass form, both integrators. */
+ * The solid's step bound against the real limit: stable a few percent below it over many periods,
+ * unstable a tenth above it, over kappa, nu, h/dp, law, thickness, gradient and hourglass form,
+ * both integrators. */
 #include "rig.h"
 #include "unity.h"
 
@@ -57,8 +58,8 @@ static void open_bar(const struct combination *c, const char *step, const char *
     rig_open(&rig, text, integrator, step, NULL);
 }
 
-/* Energy over that of the shake (0.1 mm/s, every particle by itself) after so many steps; infinity where a
- * guard stops it. The shortest period has some three steps at the bound. */
+/* Energy over that of the shake (0.1 mm/s, every particle by itself) after so many steps; infinity
+ * where a guard stops it. The shortest period has some three steps at the bound. */
 static double growth(const struct combination *c, double factor, int steps, const char *integrator)
 {
     char step[64];
@@ -66,11 +67,11 @@ static double growth(const struct combination *c, double factor, int steps, cons
     const double dt = factor * rig.sim.solid.stable_step;
     snprintf(step, sizeof step, "numerics.fixed_step=%.17g", dt);
     open_bar(c, step, integrator);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     uint64_t seed = 5;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = 1e-4 * p->free[i] * noise(&seed);
-        p->vy[i] = 1e-4 * p->free[i] * noise(&seed);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = 1e-4 * particles->free[i] * noise(&seed);
+        particles->vy[i] = 1e-4 * particles->free[i] * noise(&seed);
     }
     struct ledger row = simulation_ledger(&rig.sim);
     const double start = row.kinetic;
@@ -90,9 +91,9 @@ static void test_stable_below_the_bound(void)
     }
 }
 
-/* The printed hourglass force (Eq. 17) has no potential: from kappa of some 10 on some shapes have modes that
- * grow, and as fast per second with a third of the step. No bound can mend that; the variational form of
- * the same bar is at rest. Shake of `growth`: 1 when nothing happened. */
+/* The printed hourglass force (Eq. 17) has no potential: from kappa of some 10 on some shapes have
+ * modes that grow, and as fast per second with a third of the step. No bound can mend that; the
+ * variational form of the same bar is at rest. Shake of `growth`: 1 when nothing happened. */
 static void test_printed_hourglass_flutters_at_any_step(void)
 {
     const struct combination printed = {100, 0, 1.35, "paper", 4, false};

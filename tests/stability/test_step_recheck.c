@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A solid that is strongly deformed is stiffer than at rest. The bound about the undeformed state is then
- * wrong; looked at again it is right, at no cost while deformations are small. */
+ * A solid that is strongly deformed is stiffer than at rest. The bound about the undeformed state
+ * is then wrong; looked at again it is right, at no cost while deformations are small. */
 #include "output/checkpoint.h"
 #include "rig.h"
 #include "time/timestep.h"
@@ -15,7 +15,8 @@ static const char bar[] = "dp = 1 cm\nend_time = 10\n"
                           "clamp = box 0, 0, 0.02, 0.04\nclamp = box 0.1, 0, 0.12, 0.04\n"
                           "density = 1200\nyoung = 2e7\npoisson = 0.3\nhourglass = 1\n";
 
-/* Held five particles wide, so that the inside is strained evenly and nothing moves but by instability. */
+/* Held five particles wide, so that the inside is strained evenly and nothing moves but by
+ * instability. */
 static const char frame[] = "dp = 1 cm\nend_time = 10\n"
                             "[solid bar]\nshape = box 0, 0, 0.18, 0.18\n"
                             "clamp = box 0, 0, 0.05, 0.18\nclamp = box 0.13, 0, 0.18, 0.18\n"
@@ -32,8 +33,9 @@ struct strained {
     double along, across; /* stretches of the body, clamps and all */
 };
 
-/* Axial stiffness over that at rest: 3.1 for svk, 3.4 for neo-Hookean in compression, 1.6 for paper. The
- * springs of hourglass control do not stiffen, so kappa = 1: at 50 they bound the step. */
+/* Axial stiffness over that at rest: 3.1 for svk, 3.4 for neo-Hookean in compression, 1.6 for
+ * paper. The springs of hourglass control do not stiffen, so kappa = 1: at 50 they bound the step.
+ */
 static const struct strained strains[] = {
     {frame, "bar.law=svk", 1.5, 1.5},
     {frame, "bar.law=neo_hookean", 0.4, 0.4},
@@ -43,13 +45,13 @@ static const struct strained strains[] = {
 /* Stretches the body, clamps and all, and shakes it by 0.1 mm/s. */
 static void stretch(const struct strained *c)
 {
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     uint64_t seed = 5;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] = (c->along - 1) * p->X[i];
-        p->uy[i] = (c->across - 1) * p->Y[i];
-        p->vx[i] = 1e-4 * p->free[i] * noise(&seed);
-        p->vy[i] = 1e-4 * p->free[i] * noise(&seed);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] = (c->along - 1) * particles->X[i];
+        particles->uy[i] = (c->across - 1) * particles->Y[i];
+        particles->vx[i] = 1e-4 * particles->free[i] * noise(&seed);
+        particles->vy[i] = 1e-4 * particles->free[i] * noise(&seed);
     }
 }
 
@@ -59,8 +61,8 @@ static double total_energy(void)
     return row.kinetic + row.elastic + row.hourglass;
 }
 
-/* Energy after so many steps over that at the start; infinity where a guard stops it. A run comes to its
- * strain by steps and has looked on its way. */
+/* Energy after so many steps over that at the start; infinity where a guard stops it. A run comes
+ * to its strain by steps and has looked on its way. */
 static double growth(const struct strained *c, int steps)
 {
     stretch(c);
@@ -72,7 +74,8 @@ static double growth(const struct strained *c, int steps)
     return total_energy() / start;
 }
 
-/* Step in use about the undeformed state or about the stretched one, times a factor, as a setting. */
+/* Step in use about the undeformed state or about the stretched one, times a factor, as a setting.
+ */
 static void step_of(const struct strained *c, bool about_stretched, double factor, char step[64])
 {
     rig_open(&rig, c->scene, c->law, NULL);
@@ -107,8 +110,8 @@ static void test_the_bound_looked_at_again_holds(void)
     }
 }
 
-/* And it is the operator's own limit, so that little is given away: 0.9 of it is in use, 1.25 times that
- * is too much. */
+/* And it is the operator's own limit, so that little is given away: 0.9 of it is in use, 1.25 times
+ * that is too much. */
 static void test_the_new_bound_is_tight(void)
 {
     for (size_t k = 0; k < COUNT_OF(strains); k++) {
@@ -134,26 +137,28 @@ static void test_nothing_changes_while_deformations_are_small(void)
 static void test_rotation_does_not_count(void)
 {
     rig_open(&rig, bar, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     const double c = -0.5, s = 0.86602540378443865;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] = c * p->X[i] - s * p->Y[i] - p->X[i];
-        p->uy[i] = s * p->X[i] + c * p->Y[i] - p->Y[i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] = c * particles->X[i] - s * particles->Y[i] - particles->X[i];
+        particles->uy[i] = s * particles->X[i] + c * particles->Y[i] - particles->Y[i];
     }
-    solid_stress(&rig.sim.solid, p);
-    TEST_ASSERT_TRUE(solid_stiffening(&rig.sim.solid, p) == 1);
+    solid_stress(&rig.sim.solid, particles);
+    TEST_ASSERT_TRUE(solid_stiffening(&rig.sim.solid, particles) == 1);
     double omega, damping;
-    const double step = solid_stable_step(&rig.sim.solid, p, &omega, &damping);
+    const double step = solid_stable_step(&rig.sim.solid, particles, &omega, &damping);
     assert_near(1e-3, 1, step / rig.sim.solid.stable_step, "bound of the turned bar");
 }
 
 /* What follows from the state: acceleration and displacement gradient. */
 enum { RATES = 6, BAR_MOST = 64 };
-static void copy_rates(const struct particles *p, double rates[RATES][BAR_MOST])
+static void copy_rates(const struct particles *particles, double rates[RATES][BAR_MOST])
 {
-    const double *const field[RATES] = {p->sx, p->sy, p->Uxx, p->Uxy, p->Uyx, p->Uyy};
-    TEST_ASSERT_TRUE(p->n > 0 && p->n <= BAR_MOST);
-    for (int k = 0; k < RATES; k++) memcpy(rates[k], field[k], (size_t)p->n * sizeof **rates);
+    const double *const field[RATES] = {particles->sx,  particles->sy,  particles->Uxx,
+                                        particles->Uxy, particles->Uyx, particles->Uyy};
+    TEST_ASSERT_TRUE(particles->n > 0 && particles->n <= BAR_MOST);
+    for (int k = 0; k < RATES; k++)
+        memcpy(rates[k], field[k], (size_t)particles->n * sizeof **rates);
 }
 
 /* The search leaves displacement, velocity and what follows from them as they were, to the bit. */
@@ -161,19 +166,20 @@ static void test_the_search_leaves_no_trace(void)
 {
     rig_open(&rig, bar, "bar.law=svk", NULL);
     stretch(&strains[0]);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    solid_stress(&rig.sim.solid, p);
-    solid_forces(&rig.sim.solid, p);
-    const uint64_t before = particles_hash(p, 1);
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    solid_stress(&rig.sim.solid, particles);
+    solid_forces(&rig.sim.solid, particles);
+    const uint64_t before = particles_hash(particles, 1);
     double omega, damping, rates_before[RATES][BAR_MOST] = {{0}}, rates[RATES][BAR_MOST] = {{0}};
-    copy_rates(p, rates_before);
-    (void)solid_stable_step(&rig.sim.solid, p, &omega, &damping);
-    TEST_ASSERT_TRUE(particles_hash(p, 1) == before);
-    copy_rates(p, rates);
+    copy_rates(particles, rates_before);
+    (void)solid_stable_step(&rig.sim.solid, particles, &omega, &damping);
+    TEST_ASSERT_TRUE(particles_hash(particles, 1) == before);
+    copy_rates(particles, rates);
     TEST_ASSERT_EQUAL_MEMORY(rates_before, rates, sizeof rates);
 }
 
-/* The slowing is state: a run that goes on from a checkpoint has the bits of the one that was not stopped. */
+/* The slowing is state: a run that goes on from a checkpoint has the bits of the one that was not
+ * stopped. */
 static void test_a_restart_keeps_the_step(void)
 {
     rig_open(&rig, frame, "bar.law=svk", NULL);

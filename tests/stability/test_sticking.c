@@ -29,8 +29,9 @@ static void moves_with_the_fluid(const char *set)
     TEST_ASSERT_TRUE(rig.sim.effects & FX_MULTIRATE);
     rig_run(&rig, 0.1);
     TEST_ASSERT_TRUE(rig.sim.substeps > 1);
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_TRUE(hypot(p->vx[i], p->vy[i]) < 0.03);
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++)
+        TEST_ASSERT_TRUE(hypot(particles->vx[i], particles->vy[i]) < 0.03);
 }
 
 static void test_a_free_cylinder(void) { moves_with_the_fluid(NULL); }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Sub-steps that change in number feed oscillations which each number alone keeps (T-34b, T-34c). */
+ * Sub-steps that change in number feed oscillations which each number alone keeps (T-34b, T-34c).
+ */
 #include "rig.h"
 #include "time/timestep.h"
 #include "unity.h"
@@ -35,7 +36,8 @@ static struct oscillator step(struct oscillator o, double z, double m, bool cent
     return o;
 }
 
-/* Factor a fluid step, of the largest eigenvalue, of fluid steps with these numbers of sub-steps. */
+/* Factor a fluid step, of the largest eigenvalue, of fluid steps with these numbers of sub-steps.
+ */
 static double growth(const int *count, int rounds, double z, bool centred)
 {
     struct oscillator a = {1, 0}, b = {0, 1};
@@ -67,8 +69,8 @@ static double kept(struct oscillator o, double z)
     return o.u * o.u + (1 - 0.25 * z * z) * o.v * o.v;
 }
 
-/* T-34b: over steps that change at random the logarithm of what is kept gains no more than the changes of
- * that of 1 - z^2/4 add up to, and a change alone reaches its share of it. */
+/* T-34b: over steps that change at random the logarithm of what is kept gains no more than the
+ * changes of that of 1 - z^2/4 add up to, and a change alone reaches its share of it. */
 static void test_gain_is_bounded_by_the_changes(void)
 {
     uint64_t seed = 7;
@@ -90,7 +92,8 @@ static void test_gain_is_bounded_by_the_changes(void)
 
 /* --- the rule --- */
 
-/* The solid's bound over its least at a time, in fluid steps: a square wave, a sine, or noise held. */
+/* The solid's bound over its least at a time, in fluid steps: a square wave, a sine, or noise held.
+ */
 enum wave { SQUARE, SINE, RANDOM, WAVES };
 
 static double bound_at(enum wave wave, double phase, double depth, uint64_t *seed)
@@ -100,8 +103,8 @@ static double bound_at(enum wave wave, double phase, double depth, uint64_t *see
     return 1 + depth * s;
 }
 
-/* Largest energy of the oscillator, over its first, while the bound moves for 4000 fluid steps. `always`: the
- * least number at each step. */
+/* Largest energy of the oscillator, over its first, while the bound moves for 4000 fluid steps.
+ * `always`: the least number at each step. */
 static double top_energy(enum wave wave, double period, double most, double m, bool always)
 {
     struct oscillator o = {1, 0};
@@ -110,7 +113,8 @@ static double top_energy(enum wave wave, double period, double most, double m, b
     const double limit = timestep_fluid_limit(&rig.sim);
     rig.sim.state.substeps_held = 0;
     rig.sim.state.time = 0;
-    /* A fluid step is `most` of the least bound; by the largest one the oscillator is at 0.9 of its own. */
+    /* A fluid step is `most` of the least bound; by the largest one the oscillator is at 0.9 of its
+     * own. */
     const double least = limit / most, depth = 1.2, w = 1.8 / (least * (1 + depth));
     rig.sim.solid.damping_max = m * w;
     for (int k = 0; k < 4000; k++) {
@@ -128,8 +132,9 @@ static double top_energy(enum wave wave, double period, double most, double m, b
     return top;
 }
 
-/* The bound moves at 24 rates, by a factor of 2.2, with 1.1 to 9 sub-steps at its least. Without viscosity
- * the oscillation is as it was within 1/(1 - 0.9^2); with it, it gains no more than one change gives. */
+/* The bound moves at 24 rates, by a factor of 2.2, with 1.1 to 9 sub-steps at its least. Without
+ * viscosity the oscillation is as it was within 1/(1 - 0.9^2); with it, it gains no more than one
+ * change gives. */
 static void test_moving_bound_does_not_feed(void)
 {
     rig_open(&rig, coupled, NULL);
@@ -182,8 +187,8 @@ static void test_number_is_held(void)
 
 /* --- a run --- */
 
-/* Water falls onto a post whose bound is below the fluid's largest step and above its smallest: the step
- * wavers, the number does not, and hourglass energy is that of a single rate. */
+/* Water falls onto a post whose bound is below the fluid's largest step and above its smallest: the
+ * step wavers, the number does not, and hourglass energy is that of a single rate. */
 static const char post[] =
     "dp = 4 mm\nend_time = 1\ngravity = 0, -9.81\n"
     "[fluid water]\nshape = box 0, 0, 0.1, 0.2\nsound_speed = 30\nsurface = 0.2\n"

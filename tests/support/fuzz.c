@@ -33,13 +33,13 @@ static void judge(enum err e, const struct diag *d)
 
 int fuzz_case(const uint8_t *data, size_t size)
 {
-    struct scene s;
+    struct scene scene;
     struct diag d = {.code = ERR_OK};
     char *text = text_of(data, size);
-    const enum err e = scene_load_text(&s, text, "x.cfg", 0, NULL, &d);
+    const enum err e = scene_load_text(&scene, text, "x.cfg", 0, NULL, &d);
     judge(e, &d);
-    if (e && s.arena.blocks) abort();
-    if (!e) scene_free(&s);
+    if (e && scene.arena.blocks) abort();
+    if (!e) scene_free(&scene);
     free(text);
     return 0;
 }
@@ -81,20 +81,20 @@ static const char table_case[] =
 int fuzz_motion(const uint8_t *data, size_t size)
 {
     static int fd = -1;
-    static struct scene s;
+    static struct scene scene;
     if (fd < 0) fd = memfd_create("table", 0);
     if (fd < 0 || ftruncate(fd, 0) != 0 || pwrite(fd, data, size, 0) != (ssize_t)size) return 0;
     char text[sizeof table_case + 64];
     snprintf(text, sizeof text, "%s/proc/self/fd/%d\n", table_case, fd);
     struct diag d = {.code = ERR_OK};
-    const enum err e = scene_load_text(&s, text, "x.cfg", 0, NULL, &d);
+    const enum err e = scene_load_text(&scene, text, "x.cfg", 0, NULL, &d);
     judge(e, &d);
     if (e) return 0;
     for (int k = -1; k < 12; k++) {
-        const struct motion_state m = motion_at(&s, 0, 0.1 * k);
+        const struct motion_state m = motion_at(&scene, 0, 0.1 * k);
         if (!isfinite(m.d[0]) || !isfinite(m.d[1])) abort();
     }
-    scene_free(&s);
+    scene_free(&scene);
     return 0;
 }
 
@@ -130,7 +130,8 @@ static const char *write_rows(const char *name, const uint8_t *data, size_t size
     return path[next];
 }
 
-/* Up to the first byte of value 0 the file of a reference, behind it the probes that are compared. */
+/* Up to the first byte of value 0 the file of a reference, behind it the probes that are compared.
+ */
 int fuzz_reference(const uint8_t *data, size_t size)
 {
     static const char header[] = "time_s,P_dx_m,P_dy_m";
@@ -144,13 +145,13 @@ int fuzz_reference(const uint8_t *data, size_t size)
              write_rows("rows.csv", data, first));
     const char *const probes =
         write_rows("probes.csv", zero ? zero + 1 : data, zero ? size - first - 1 : size);
-    static struct scene s;
+    static struct scene scene;
     struct references r = {0};
     struct score score;
     struct diag d = {.code = ERR_OK};
-    if (s.top.dp == 0 && scene_load_text(&s, text, "/x.cfg", 0, NULL, &d)) abort();
+    if (scene.top.dp == 0 && scene_load_text(&scene, text, "/x.cfg", 0, NULL, &d)) abort();
     struct arena a = {0};
-    enum err e = references_open(&r, &s, 1, (const char *const[]){header}, &a, &d);
+    enum err e = references_open(&r, &scene, 1, (const char *const[]){header}, &a, &d);
     judge(e, &d);
     if (!e) {
         e = references_score(&r, 0, probes, &score, &d);
@@ -187,12 +188,12 @@ static const char small_case[] =
 
 static struct scene small_scene;
 
-static void open_small(struct simulation *s)
+static void open_small(struct simulation *sim)
 {
     struct diag d = {.code = ERR_OK};
     if (small_scene.top.dp == 0 && scene_load_text(&small_scene, small_case, "x.cfg", 0, NULL, &d))
         abort();
-    if (simulation_create(s, &small_scene, &d)) abort();
+    if (simulation_create(sim, &small_scene, &d)) abort();
 }
 
 /* One for all inputs, since building it takes longer than all else: a checkpoint replaces the whole
@@ -218,19 +219,19 @@ static struct simulation *small_simulation(void)
 
 int fuzz_write_checkpoint(const char *path, int steps)
 {
-    struct simulation s;
+    struct simulation sim;
     struct image m = {0};
     struct diag d = {.code = ERR_OK};
-    open_small(&s);
+    open_small(&sim);
     for (int k = 0; k < steps; k++)
-        if (simulation_step(&s, 1, &d)) abort();
-    if (checkpoint_capture(&m, &s, small_case, "0", &d)) abort();
+        if (simulation_step(&sim, 1, &d)) abort();
+    if (checkpoint_capture(&m, &sim, small_case, "0", &d)) abort();
     checkpoint_seal(&m);
     FILE *file = fopen(path, "wb");
     const bool written = file && fwrite(m.bytes, 1, m.size, file) == m.size;
     const bool closed = file && fclose(file) == 0;
     checkpoint_free(&m);
-    simulation_free(&s);
+    simulation_free(&sim);
     return !(written && closed);
 }
 

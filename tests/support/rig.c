@@ -92,9 +92,9 @@ void rig_sort(struct rig *r)
     r->sim.skin_left = 0;
 }
 
-double rig_pressure(const struct simulation *s, int64_t i)
+double rig_pressure(const struct simulation *sim, int64_t i)
 {
-    return eos_pressure(s->kind[KIND_FLUID].dens[i], s->fluid.k.rho0, s->fluid.k.c0);
+    return eos_pressure(sim->kind[KIND_FLUID].dens[i], sim->fluid.k.rho0, sim->fluid.k.c0);
 }
 
 void rig_evaluate(struct rig *r)

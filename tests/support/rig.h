@@ -41,10 +41,10 @@ void rig_sort(struct rig *r);
 /* One evaluation of the fluid's rates, the walls' pressures and the fluid's force on solids. */
 void rig_evaluate(struct rig *r);
 /* Tait's pressure of a fluid particle, Pa. */
-double rig_pressure(const struct simulation *s, int64_t i);
+double rig_pressure(const struct simulation *sim, int64_t i);
 
-/* Tests of small scenes run beside each other, and a barrier of threads that share a core costs more
- * than the work: one thread from here on. */
+/* Tests of small scenes run beside each other, and a barrier of threads that share a core costs
+ * more than the work: one thread from here on. */
 void rig_one_thread(void);
 
 /* The next of a fixed sequence of numbers, evenly spread over [-1, 1). */

@@ -41,9 +41,9 @@ static double tait_inverse(const struct twin *t, double p)
     return t->rho0 * pow(p * 7 / (t->c0 * t->c0 * t->rho0) + 1, 1.0 / 7);
 }
 
-void twin_copy(struct twin *t, const struct simulation *s)
+void twin_copy(struct twin *t, const struct simulation *sim)
 {
-    const struct scene *const scene = s->scene;
+    const struct scene *const scene = sim->scene;
     const struct scene_fluid *const f = &scene->fluid[0];
     *t = (struct twin){.suction = scene->numerics.suction == SUCTION_ON,
                        .h = scene->numerics.h_over_dp * scene->top.dp,
@@ -67,23 +67,26 @@ void twin_copy(struct twin *t, const struct simulation *s)
         if (scene->domain.periodic & 1 << axis)
             t->period[axis] = scene->domain.upper[axis] - scene->domain.lower[axis];
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &s->kind[kind];
-        t->n[kind] = p->n;
-        t->point[kind] = calloc((size_t)p->n + 1, sizeof *t->point[kind]);
+        const struct particles *const particles = &sim->kind[kind];
+        t->n[kind] = particles->n;
+        t->point[kind] = calloc((size_t)particles->n + 1, sizeof *t->point[kind]);
         TEST_ASSERT_NOT_NULL(t->point[kind]);
-        for (int64_t i = 0; i < p->n; i++) {
+        for (int64_t i = 0; i < particles->n; i++) {
             struct twin_point *const q = &t->point[kind][i];
-            *q = (struct twin_point){.x = p->x[i], .y = p->y[i], .u = p->vx[i], .v = p->vy[i]};
-            q->m = t->mass * (kind == KIND_FLUID && p->m ? p->m[i] : 1);
-            if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * p->dens[i];
-            if (kind == KIND_FLUID && p->dens_slow)
-                q->rho_slow = t->rho0 + t->rho0 * p->dens_slow[i];
-            if (kind == KIND_WALL) q->sticks = scene->wall[p->body[i]].slip == SLIP_NONE;
-            if (kind == KIND_SOLID) q->sticks = scene->solid[p->body[i]].slip == SLIP_NONE;
-            if (kind == KIND_SOLID) q->u = p->wx[i];
-            if (kind == KIND_SOLID) q->v = p->wy[i];
-            if (kind != KIND_FLUID && p->ax) q->ax = p->ax[i];
-            if (kind != KIND_FLUID && p->ay) q->ay = p->ay[i];
+            *q = (struct twin_point){.x = particles->x[i],
+                                     .y = particles->y[i],
+                                     .u = particles->vx[i],
+                                     .v = particles->vy[i]};
+            q->m = t->mass * (kind == KIND_FLUID && particles->m ? particles->m[i] : 1);
+            if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * particles->dens[i];
+            if (kind == KIND_FLUID && particles->dens_slow)
+                q->rho_slow = t->rho0 + t->rho0 * particles->dens_slow[i];
+            if (kind == KIND_WALL) q->sticks = scene->wall[particles->body[i]].slip == SLIP_NONE;
+            if (kind == KIND_SOLID) q->sticks = scene->solid[particles->body[i]].slip == SLIP_NONE;
+            if (kind == KIND_SOLID) q->u = particles->wx[i];
+            if (kind == KIND_SOLID) q->v = particles->wy[i];
+            if (kind != KIND_FLUID && particles->ax) q->ax = particles->ax[i];
+            if (kind != KIND_FLUID && particles->ay) q->ay = particles->ay[i];
         }
     }
 }
@@ -157,7 +160,8 @@ static void laminar_pair(const struct twin *t, struct twin_point *a, const struc
     a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
 }
 
-/* P_s and P_f in the forces between a fluid particle and a wall or solid one, with what keeps them apart. */
+/* P_s and P_f in the forces between a fluid particle and a wall or solid one, with what keeps them
+ * apart. */
 static double surface_pressure(const struct twin *t, const struct twin_point *f,
                                const struct twin_point *s)
 {

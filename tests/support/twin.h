@@ -40,7 +40,7 @@ struct twin {
 };
 
 /* Copies the state, but nothing that the code has computed from it. */
-void twin_copy(struct twin *t, const struct simulation *s);
+void twin_copy(struct twin *t, const struct simulation *sim);
 /* Eqs. 19-20 for walls and solids, Eqs. 4, 6, 7 and 21a for the fluid, Eq. 21b for the solids. */
 void twin_evaluate(struct twin *t);
 void twin_free(struct twin *t);

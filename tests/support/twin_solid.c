@@ -128,24 +128,24 @@ struct twin_mat twin_solid_stress(const struct scene_solid *body, struct twin_ma
     return P;
 }
 
-void twin_solid_copy(struct twin_solid *t, const struct simulation *s)
+void twin_solid_copy(struct twin_solid *t, const struct simulation *sim)
 {
-    const struct particles *const p = &s->kind[KIND_SOLID];
-    *t = (struct twin_solid){.h = s->scene->numerics.h_over_dp * s->scene->top.dp,
-                             .dp = s->scene->top.dp,
-                             .body = s->scene->solid,
-                             .contact = s->scene->n_contact ? s->scene->contact : NULL,
-                             .n = p->n};
-    t->point = calloc((size_t)p->n, sizeof *t->point);
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    *t = (struct twin_solid){.h = sim->scene->numerics.h_over_dp * sim->scene->top.dp,
+                             .dp = sim->scene->top.dp,
+                             .body = sim->scene->solid,
+                             .contact = sim->scene->n_contact ? sim->scene->contact : NULL,
+                             .n = particles->n};
+    t->point = calloc((size_t)particles->n, sizeof *t->point);
     TEST_ASSERT_NOT_NULL(t->point);
-    for (int64_t i = 0; i < p->n; i++)
-        t->point[i] = (struct twin_solid_point){.body = p->body[i],
-                                                .X = p->X[i],
-                                                .Y = p->Y[i],
-                                                .x = p->X[i] + p->ux[i],
-                                                .y = p->Y[i] + p->uy[i],
-                                                .u = p->vx[i],
-                                                .v = p->vy[i]};
+    for (int64_t i = 0; i < particles->n; i++)
+        t->point[i] = (struct twin_solid_point){.body = particles->body[i],
+                                                .X = particles->X[i],
+                                                .Y = particles->Y[i],
+                                                .x = particles->X[i] + particles->ux[i],
+                                                .y = particles->Y[i] + particles->uy[i],
+                                                .u = particles->vx[i],
+                                                .v = particles->vy[i]};
 }
 
 void twin_solid_free(struct twin_solid *t)
@@ -241,8 +241,8 @@ static double spring(const struct twin_solid *t, const struct twin_solid_point *
     return body->hourglass * t->dp * t->dp * young * kernel(q->r, t->h) / (q->r * q->r);
 }
 
-/* Where the hourglass force is the derivative of the sum over pairs of V_a V_b k |e|^2/2, its share of
- * the stress conjugate to F_a. */
+/* Where the hourglass force is the derivative of the sum over pairs of V_a V_b k |e|^2/2, its share
+ * of the stress conjugate to F_a. */
 static struct twin_mat hourglass_share(const struct twin_solid *t, const struct twin_solid_point *a)
 {
     struct twin_mat share = {{{0}}};
@@ -321,7 +321,8 @@ static bool has(const struct twin_solid *t, int body, double X, double Y)
     return false;
 }
 
-/* Whether the line from a to its neighbour b is a piece of a surface: nothing beside both on one side. */
+/* Whether the line from a to its neighbour b is a piece of a surface: nothing beside both on one
+ * side. */
 static bool is_edge(const struct twin_solid *t, const struct twin_solid_point *a,
                     const struct twin_solid_point *b)
 {
@@ -349,15 +350,15 @@ static void give(const struct twin_solid *t, struct twin_solid_point *a, double 
     a->size += fabs(part) * hypot(f[0], f[1]) / mass;
 }
 
-/* What the other body does to a point: the sum of its normal forces; the edge nearest to it, of equally near
- * ones the last. */
+/* What the other body does to a point: the sum of its normal forces; the edge nearest to it, of
+ * equally near ones the last. */
 struct press {
     double f[2], distance;
     struct twin_solid_point *a, *b;
 };
 
-/* What the place at the share s of the way from a to b does to p, times `sign`: half of k dp (dp/r - 1) with
- * k = stiffness 2 E_A E_B/(E_A + E_B), less the dashpot. */
+/* What the place at the share s of the way from a to b does to p, times `sign`: half of k dp (dp/r
+ * - 1) with k = stiffness 2 E_A E_B/(E_A + E_B), less the dashpot. */
 static void touch(const struct twin_solid *t, struct twin_solid_point *p,
                   struct twin_solid_point *a, struct twin_solid_point *b, double s, double sign,
                   struct press *on)
@@ -381,9 +382,9 @@ static void touch(const struct twin_solid *t, struct twin_solid_point *p,
     if (a != b && r <= on->distance) *on = (struct press){{on->f[0], on->f[1]}, r, a, b};
 }
 
-/* T-62 to T-62d where a point has no place yet: half of a dashpot across the sum of the normal forces, at
- * most Coulomb's friction. The edge moves, and bears the force, as if it reached to the point. In complex
- * numbers. */
+/* T-62 to T-62d where a point has no place yet: half of a dashpot across the sum of the normal
+ * forces, at most Coulomb's friction. The edge moves, and bears the force, as if it reached to the
+ * point. In complex numbers. */
 static void rub(const struct twin_solid *t, struct twin_solid_point *p, const struct press *on)
 {
     const struct scene_solid *const A = &t->body[p->body], *const B = &t->body[on->a->body];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The solid's equations of the paper (Eqs. 9-18) a second time: plain double loops over all pairs of
- * the reference configuration, written from the article and not from the code under test. */
+ * The solid's equations of the paper (Eqs. 9-18) a second time: plain double loops over all pairs
+ * of the reference configuration, written from the article and not from the code under test. */
 #ifndef TWIN_SOLID_H
 #define TWIN_SOLID_H
 
@@ -26,7 +26,7 @@ struct twin_solid {
     struct twin_solid_point *point;
 };
 
-void twin_solid_copy(struct twin_solid *t, const struct simulation *s);
+void twin_solid_copy(struct twin_solid *t, const struct simulation *sim);
 /* All of Eqs. 13-18, with the linear gradient of Eq. 13b whatever the scene says. */
 void twin_solid_evaluate(struct twin_solid *t);
 void twin_solid_free(struct twin_solid *t);

@@ -165,17 +165,17 @@ static void test_what_repulsion_holds(void)
         "sound_speed = 10\nwall_repulsion = 0.3\n[wall bed]\nshape = box -0.03, -0.03, 0.04, 0\n"
         "[domain]\nlower = -0.2, -0.2\nupper = 0.2, 0.2\n";
     begin(one, "numerics.h_over_dp=2", NULL, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     double work = 0, before, after, of[SCENE_MAX_SECTIONS];
     const double from = 4e-3, way = 1e-6;
-    p->y[0] = from;
+    particles->y[0] = from;
     repulsion_energy(&rig.sim, of);
     before = of[0];
-    for (; p->y[0] > -1e-3;) {
-        p->y[0] -= 0.5 * way;
+    for (; particles->y[0] > -1e-3;) {
+        particles->y[0] -= 0.5 * way;
         rig_evaluate(&rig);
-        work += rig.sim.fluid.k.mass * p->ay[0] * way;
-        p->y[0] -= 0.5 * way;
+        work += rig.sim.fluid.k.mass * particles->ay[0] * way;
+        particles->y[0] -= 0.5 * way;
     }
     repulsion_energy(&rig.sim, of);
     after = of[0];
@@ -223,11 +223,11 @@ static void test_what_the_damper_holds(void)
 {
     begin(drop, NULL, NULL, NULL);
     go_on(0.012);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     const struct fluid_constants *const k = &rig.sim.fluid.k;
     double held = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        held += 0.5 * k->mass * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
+    for (int64_t i = 0; i < particles->n; i++)
+        held += 0.5 * k->mass * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
     energy_find_gain(&rig.sim);
     const struct energy_account *const a = &rig.sim.state.energy;
     TEST_ASSERT_TRUE(held > 1e-4);

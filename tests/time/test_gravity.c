@@ -29,16 +29,17 @@ void tearDown(void) { rig_close(&rig); }
 /* All particles have the velocity and the path of a free fall from rest. */
 static void falls(enum kind kind, double tolerance)
 {
-    const struct particles *const p = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.kind[kind];
     const double t = rig.sim.state.time;
     const double v[2] = {0.6 * sin(5 * t), -9.81 * t + 10 * t * t};
     const double d[2] = {0.12 * (1 - cos(5 * t)), -4.905 * t * t + 10.0 / 3 * t * t * t};
-    for (int64_t i = 0; i < p->n; i++) {
-        const double X = kind == KIND_SOLID ? p->X[i] : rig.scene.points[KIND_FLUID].x[0];
-        assert_near(tolerance, v[0], p->vx[i], "vx");
-        assert_near(tolerance, v[1], p->vy[i], "vy");
-        if (kind == KIND_SOLID) assert_near(tolerance, d[0], p->x[i] - X, "x");
-        if (kind == KIND_SOLID) assert_near(tolerance, d[1], p->y[i] - p->Y[i], "y");
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double X = kind == KIND_SOLID ? particles->X[i] : rig.scene.points[KIND_FLUID].x[0];
+        assert_near(tolerance, v[0], particles->vx[i], "vx");
+        assert_near(tolerance, v[1], particles->vy[i], "vy");
+        if (kind == KIND_SOLID) assert_near(tolerance, d[0], particles->x[i] - X, "x");
+        if (kind == KIND_SOLID)
+            assert_near(tolerance, d[1], particles->y[i] - particles->Y[i], "y");
     }
 }
 
@@ -119,10 +120,10 @@ static void test_a_table_is_added(void)
 {
     open_with_table("gravity=0, -1", "# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n");
     rig_run(&rig, 0.1);
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        assert_near(2e-4, 0.5 * 0.05 * 0.5 + 0.5 * 0.05, p->vx[i], "vx");
-        assert_near(1e-12, 0, p->vy[i], "vy");
+    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        assert_near(2e-4, 0.5 * 0.05 * 0.5 + 0.5 * 0.05, particles->vx[i], "vx");
+        assert_near(1e-12, 0, particles->vy[i], "vy");
     }
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The guards: a state that is not sound is found, and the sentence names particle, place, quantity. */
+ * The guards: a state that is not sound is found, and the sentence names particle, place, quantity.
+ */
 #include "time/energy.h"
 #include "time/guards.h"
 
@@ -49,12 +50,12 @@ static enum err check(void)
 /* The sentence holds the particle's kind and number, its place, the quantity and the time. */
 static void expect(enum kind kind, int64_t at, const char *quantity)
 {
-    const struct particles *const p = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.kind[kind];
     char text[128];
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, rig.diag.code);
     snprintf(text, sizeof text, "%s particle %lld at (%.6g, %.6g) m", kind_names[kind],
-             (long long)p->id[at], p->x[at], p->y[at]);
+             (long long)particles->id[at], particles->x[at], particles->y[at]);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, text), rig.diag.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, quantity), rig.diag.text);
     snprintf(text, sizeof text, "t = %.6g s, step %lld", rig.sim.state.time,
@@ -98,13 +99,13 @@ static void test_speed_of_sound_of_the_fluid(void)
 
 static void test_density_of_the_fluid(void)
 {
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    p->dens[5] = 0.29;
-    p->dens[6] = -0.29;
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    particles->dens[5] = 0.29;
+    particles->dens[6] = -0.29;
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     assert_near(0, 0.29, rig.sim.state.dens_high, "highest density so far");
     assert_near(0, -0.29, rig.sim.state.dens_low, "lowest density so far");
-    p->dens[50] = 0.31;
+    particles->dens[50] = 0.31;
     expect(KIND_FLUID, 50, "rho/rho0 - 1 = 0.31");
 }
 
@@ -132,31 +133,32 @@ static void test_velocity_of_the_solid(void)
 /* A body as a whole may be as fast as it will. */
 static void test_velocity_of_a_body(void)
 {
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = 30 * rig.sim.solid.body[0].sound_speed;
-        p->vy[i] = -p->vx[i];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = 30 * rig.sim.solid.body[0].sound_speed;
+        particles->vy[i] = -particles->vx[i];
     }
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
 }
 
-/* A particle pushed through its neighbours turns the material inside out; found within 64 steps, where
- * the gradient is checked_at at, and in a lone solid after every batch. */
+/* A particle pushed through its neighbours turns the material inside out; found within 64 steps,
+ * where the gradient is checked_at at, and in a lone solid after every batch. */
 static void test_inverted_solid(void)
 {
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     int64_t at = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        if (hypot(p->X[i] - 0.115, p->Y[i] - 0.055) < 1e-6) at = i;
-    p->Uxx[at] = -1.5;
+    for (int64_t i = 0; i < particles->n; i++)
+        if (hypot(particles->X[i] - 0.115, particles->Y[i] - 0.055) < 1e-6) at = i;
+    particles->Uxx[at] = -1.5;
     rig.sim.state.steps = 64;
     expect(KIND_SOLID, at, "det F");
-    p->Uxx[at] = (double)NAN;
+    particles->Uxx[at] = (double)NAN;
     rig.diag = (struct diag){0};
     expect(KIND_SOLID, at, "det F");
 }
 
-/* The guards judge the gradients of the displacements as of the last sub-step, not those of the start. */
+/* The guards judge the gradients of the displacements as of the last sub-step, not those of the
+ * start. */
 static void test_lone_solid_is_judged_as_it_is(void)
 {
     rig_open(&rig,
@@ -164,14 +166,15 @@ static void test_lone_solid_is_judged_as_it_is(void)
              "clamp = box 0, 0, 0.02, 0.05\ndensity = 1100\nyoung = 1e6\npoisson = 0.3\n"
              "velocity = -4 s^-1*x, 0\n",
              NULL);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     double lowest = 1;
     for (int step = 0; step < 20; step++) {
         rig_steps(&rig, 1, 1);
         const double found = rig.sim.state.det_low;
-        solid_stress(&rig.sim.solid, p);
-        for (int64_t i = 0; i < p->n; i++)
-            lowest = min2(lowest, (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i]);
+        solid_stress(&rig.sim.solid, particles);
+        for (int64_t i = 0; i < particles->n; i++)
+            lowest = min2(lowest, (1 + particles->Uxx[i]) * (1 + particles->Uyy[i]) -
+                                      particles->Uxy[i] * particles->Uyx[i]);
         TEST_ASSERT_TRUE(lowest < 1);
         assert_near(0.1 * (1 - lowest), lowest, found, "smallest det F");
     }
@@ -183,15 +186,15 @@ static void test_lone_solid_turned_inside_out(void)
              "dp = 1 cm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
              "density = 1000\nyoung = 1e6\npoisson = 0.3\nlaw = svk\n",
              NULL);
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    for (int64_t i = 0; i < p->n; i++) p->ux[i] = -1.9 * p->X[i];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < particles->n; i++) particles->ux[i] = -1.9 * particles->X[i];
     const enum err e = simulation_step(&rig.sim, 1e-9, &rig.diag);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "solid particle"), rig.diag.text);
 }
 
-/* A step that shrinks below 1e-4 of the fluid's limit has collapsed; one cut short by an output time
- * has not. */
+/* A step that shrinks below 1e-4 of the fluid's limit has collapsed; one cut short by an output
+ * time has not. */
 static void test_collapsed_step(void)
 {
     rig.sim.state.dt = 1e-9;
@@ -211,19 +214,20 @@ static void test_one_warning_for_fast_fluid(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "6.5"), warning);
 }
 
-/* Fluid where the tank's particles are: one particle is a warning, once, more than a few are the end. In
- * the solid as well, where it has moved. */
+/* Fluid where the tank's particles are: one particle is a warning, once, more than a few are the
+ * end. In the solid as well, where it has moved. */
 static void test_fluid_inside_of_bodies(void)
 {
-    struct particles *const p = &rig.sim.kind[KIND_FLUID], *const solid = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const solid =
+                                                                       &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
     rig.sim.state.steps = 64;
     rig_sort(&rig);
     TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
     TEST_ASSERT_EQUAL_INT(0, warnings);
-    p->x[3] = solid->x[30] + 0.003;
-    p->y[3] = solid->y[30];
-    const int64_t id = p->id[3];
+    particles->x[3] = solid->x[30] + 0.003;
+    particles->y[3] = solid->y[30];
+    const int64_t id = particles->id[3];
     rig_sort(&rig);
     for (int k = 0; k < 3; k++)
         TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
@@ -232,8 +236,8 @@ static void test_fluid_inside_of_bodies(void)
     snprintf(text, sizeof text, "fluid particle %lld at", (long long)id);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
     for (int k = 0; k < 5; k++) {
-        p->x[10 + k] = 0.005 + 0.01 * k;
-        p->y[10 + k] = -0.013;
+        particles->x[10 + k] = 0.005 + 0.01 * k;
+        particles->y[10 + k] = -0.013;
     }
     rig_sort(&rig);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_penetration(&rig.sim, &rig.diag));
@@ -417,7 +421,8 @@ static void test_warnings_before_the_end(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
 }
 
-/* A full channel from which fluid is missing; not one with a surface, nor at a step between checks. */
+/* A full channel from which fluid is missing; not one with a surface, nor at a step between checks.
+ */
 static void test_voids_in_a_full_channel(void)
 {
     static const char channel[] =
@@ -431,16 +436,16 @@ static void test_voids_in_a_full_channel(void)
         rig_open(&rig, text, NULL);
         rig_steps(&rig, 1, 1);
         rig.diag = (struct diag){.warn = note};
-        struct particles *const p = &rig.sim.kind[KIND_FLUID];
-        const int64_t n = p->n;
+        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        const int64_t n = particles->n;
         for (int k = 0; k < 3; k++) {
-            p->n = k == 0 ? n - n / 50 : n - n / 10; /* a row of the buffers is no void */
+            particles->n = k == 0 ? n - n / 50 : n - n / 10; /* a row of the buffers is no void */
             rig.sim.state.steps = k == 1 ? 511 : 512;
             warnings = 0;
             TEST_ASSERT_EQUAL_INT(ERR_OK, guards_check(&rig.sim, &rig.diag));
             TEST_ASSERT_EQUAL_INT_MESSAGE(k == 2 && !open, warnings, warning);
         }
-        p->n = n;
+        particles->n = n;
     }
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "of the channel is empty: voids"), warning);
 }

@@ -277,24 +277,25 @@ static void test_leapfrog_steps(void)
 
 /* The structure as the fluid saw it at its last evaluation (no push: all are zero). */
 static struct memory seen;
-static void look(void *context, double time, const struct particles *p, double *ax, double *ay)
+static void look(void *context, double time, const struct particles *particles, double *ax,
+                 double *ay)
 {
     (void)context, (void)time, (void)ax, (void)ay;
-    const size_t bytes = (size_t)p->n * sizeof(double);
-    memcpy(seen.x, p->x, bytes);
-    memcpy(seen.y, p->y, bytes);
-    memcpy(seen.u, p->wx, bytes);
-    memcpy(seen.v, p->wy, bytes);
-    memcpy(seen.ax, p->ax, bytes);
-    memcpy(seen.ay, p->ay, bytes);
+    const size_t bytes = (size_t)particles->n * sizeof(double);
+    memcpy(seen.x, particles->x, bytes);
+    memcpy(seen.y, particles->y, bytes);
+    memcpy(seen.u, particles->wx, bytes);
+    memcpy(seen.v, particles->wy, bytes);
+    memcpy(seen.ax, particles->ax, bytes);
+    memcpy(seen.ay, particles->ay, bytes);
 }
 
-static void look_at_places(void *context, double time, const struct particles *p, double *ax,
-                           double *ay)
+static void look_at_places(void *context, double time, const struct particles *particles,
+                           double *ax, double *ay)
 {
     (void)context, (void)time, (void)ax, (void)ay;
-    memcpy(seen.x, p->x, (size_t)p->n * sizeof(double));
-    memcpy(seen.y, p->y, (size_t)p->n * sizeof(double));
+    memcpy(seen.x, particles->x, (size_t)particles->n * sizeof(double));
+    memcpy(seen.y, particles->y, (size_t)particles->n * sizeof(double));
 }
 
 /* A lone solid is shown to a program where it is in the middle of its step, for Verlet at its
@@ -544,13 +545,13 @@ static void test_the_damper_follows_once_a_step(void)
                  "[domain]\nlower = 0, 0\nupper = 0.2, 0.2\nperiodic = xy\n",
                  integrators[k], NULL);
         const struct fluid_constants *const c = &rig.sim.fluid.k;
-        struct particles *const p = &rig.sim.kind[KIND_FLUID];
-        for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0.01;
+        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0.01;
         rig_steps(&rig, 4, 1);
         const double tau = 4 * c->h / c->c0, kept = tau / (tau + 1e-4);
-        for (int64_t i = 0; i < p->n; i++)
-            assert_near(1e-12, 0.01 * kept * kept * kept, p->dens[i] - p->dens_slow[i],
-                        integrators[k]);
+        for (int64_t i = 0; i < particles->n; i++)
+            assert_near(1e-12, 0.01 * kept * kept * kept,
+                        particles->dens[i] - particles->dens_slow[i], integrators[k]);
         rig_close(&rig);
     }
 }

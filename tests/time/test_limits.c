@@ -52,10 +52,11 @@ static uint64_t hash_of(const char *scene, const char *set, const char *another)
     rig_open(&rig, scene, set, *another ? another : "title=limit", NULL);
     rig_steps(&rig, 12, 1);
     uint64_t h = HASH_START;
-    const struct particles *const p = &rig.sim.kind[scene == fluid ? KIND_FLUID : KIND_SOLID];
-    const double *const fields[] = {p->x, p->y, p->vx, p->vy};
+    const struct particles *const particles =
+        &rig.sim.kind[scene == fluid ? KIND_FLUID : KIND_SOLID];
+    const double *const fields[] = {particles->x, particles->y, particles->vx, particles->vy};
     for (size_t f = 0; f < COUNT_OF(fields); f++)
-        for (int64_t i = 0; i < p->n; i++) {
+        for (int64_t i = 0; i < particles->n; i++) {
             uint64_t bits;
             memcpy(&bits, &fields[f][i], sizeof bits);
             h = (h ^ bits) * HASH_PRIME;

@@ -21,11 +21,11 @@ static int64_t found(double dp, const char *periodic, double share)
              "[wall bed]\nshape = box 0, %g, %g, 0\n",
              dp, -5 * dp, 40 * dp, 20 * dp, periodic, 40 * dp, 10 * dp, -5 * dp, 40 * dp);
     rig_open(&rig, text, NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
     for (int k = 0; k < 160; k++) {
         const int side = k % 4;
-        p->x[k] = (k / 4 + 0.5 + share * (side == 0) - share * (side == 1)) * dp;
-        p->y[k] = (-0.5 + share * (side == 2) - share * (side == 3)) * dp;
+        particles->x[k] = (k / 4 + 0.5 + share * (side == 0) - share * (side == 1)) * dp;
+        particles->y[k] = (-0.5 + share * (side == 2) - share * (side == 3)) * dp;
     }
     rig_sort(&rig);
     int64_t first;
@@ -55,7 +55,8 @@ static void test_fluid_in_a_stretched_body(void)
              "[fluid w]\nshape = box 0.3, 0, 0.4, 0.1\nsound_speed = 20\n"
              "[solid s]\nshape = box 0, 0, 0.1, 0.1\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n",
              NULL);
-    struct particles *const p = &rig.sim.kind[KIND_FLUID], *const s = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
+                                                                       &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < s->n; i++) {
         s->x[i] = 1.5 * s->X[i];
         s->y[i] = 0.8 * s->Y[i];
@@ -64,15 +65,15 @@ static void test_fluid_in_a_stretched_body(void)
         s->Uxy[i] = s->Uyx[i] = 0;
     }
     for (size_t k = 0; k < COUNT_OF(row); k++) {
-        p->x[0] = 1.5 * 0.055 + 0.01 * row[k].x;
-        p->y[0] = 0.8 * 0.055 + 0.01 * row[k].y;
+        particles->x[0] = 1.5 * 0.055 + 0.01 * row[k].x;
+        particles->y[0] = 0.8 * 0.055 + 0.01 * row[k].y;
         rig_sort(&rig);
         int64_t first;
         char what[64];
         snprintf(what, sizeof what, "(%g, %g)", row[k].x, row[k].y);
         TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, penetration_count(&rig.sim, &first), what);
-        for (int64_t i = 0; i < p->n; i++) /* sorting has moved it */
-            if (p->x[i] < 0.2) p->x[i] = 0.5, p->y[i] = 0.5;
+        for (int64_t i = 0; i < particles->n; i++) /* sorting has moved it */
+            if (particles->x[i] < 0.2) particles->x[i] = 0.5, particles->y[i] = 0.5;
     }
 }
 

@@ -22,9 +22,9 @@ void tearDown(void) { rig_close(&rig); }
 /* Those of one particle, wherever it is sorted to. */
 static double slope_of(int64_t id)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->id[i] == id) return p->slope_x[i] + 2 * p->slope_y[i];
+    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++)
+        if (particles->id[i] == id) return particles->slope_x[i] + 2 * particles->slope_y[i];
     TEST_FAIL_MESSAGE("the particle is gone");
     return 0;
 }

@@ -51,10 +51,11 @@ static void test_bounds_by_hand(void)
 }
 
 /* A sliver at the end is shared: within two steps of the limit both are equal. */
-static void pull_down(void *context, double time, const struct particles *p, double *ax, double *ay)
+static void pull_down(void *context, double time, const struct particles *particles, double *ax,
+                      double *ay)
 {
     (void)context, (void)time, (void)ax;
-    for (int64_t i = 0; i < p->n; i++) ay[i] = -30;
+    for (int64_t i = 0; i < particles->n; i++) ay[i] = -30;
 }
 
 /* A program's acceleration counts together with gravity: 40 m/s^2 in Eq. 28a. */
@@ -285,11 +286,11 @@ static void test_a_lone_solid_hits_its_times_in_batches(void)
  * infinity if a guard stops it. */
 static double energy_after(int steps, double *start)
 {
-    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     uint64_t seed = 5;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = 0.01 * noise(&seed);
-        p->vy[i] = 0.01 * noise(&seed);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = 0.01 * noise(&seed);
+        particles->vy[i] = 0.01 * noise(&seed);
     }
     struct ledger row = simulation_ledger(&rig.sim);
     *start = row.kinetic;
@@ -384,17 +385,17 @@ static void test_bound_of_a_stretched_block(void)
 {
     for (int much = 0; much < 2; much++) {
         rig_open(&rig, block, "block.law=svk", NULL);
-        struct particles *const p = &rig.sim.kind[KIND_SOLID];
+        struct particles *const particles = &rig.sim.kind[KIND_SOLID];
         const double share = much ? 0.2 : 0.01, before = rig.sim.solid.omega_max;
-        for (int64_t i = 0; i < p->n; i++) {
-            p->ux[i] = share * p->X[i];
-            p->uy[i] = much * share * p->Y[i];
+        for (int64_t i = 0; i < particles->n; i++) {
+            particles->ux[i] = share * particles->X[i];
+            particles->uy[i] = much * share * particles->Y[i];
         }
-        solid_stress(&rig.sim.solid, p);
-        const double stiffening = solid_stiffening(&rig.sim.solid, p);
+        solid_stress(&rig.sim.solid, particles);
+        const double stiffening = solid_stiffening(&rig.sim.solid, particles);
         TEST_ASSERT_TRUE(much ? stiffening > 1 && stiffening < 5 : stiffening == 1);
         double omega, damping;
-        solid_stable_step(&rig.sim.solid, p, &omega, &damping);
+        solid_stable_step(&rig.sim.solid, particles, &omega, &damping);
         if (!much) assert_near(0.1 * before, before, omega, "frequency");
     }
 }
