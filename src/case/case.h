@@ -89,6 +89,9 @@ struct reader {
 
 /* Stores "FILE:LINE: ..." or "--set ...: ..."; returns ERR_INPUT. */
 enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
+/* A name that no section of a kind has, nor of `also`, if that is another kind. */
+enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
+                         enum section_id kind, enum section_id also);
 enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
 /* Stores "FILE:LINE: key = value: ...". */
@@ -146,10 +149,6 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: checks that involve several values. Those whose values depend on a problem already
  * stored are left out. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
-/* A name that no section has; `also`: another kind of section that may be meant; the same kind:
- * none. */
-enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
-                         enum section_id kind, enum section_id also);
 /* case/check_motion.c */
 enum err case_check_motion(struct reader *r, const struct scene_motion *m) SPHFSI_CHECKED;
 /* case/open.c */

@@ -92,30 +92,6 @@ static enum err check_fluids(struct reader *r)
 
 /* --- references between sections --- */
 
-static void offer_names(const struct reader *r, enum section_id kind, const char *given,
-                        struct nearest *near)
-{
-    for (int k = 0; k < section_count(r->scene, kind); k++) {
-        const struct scene_section_common *c = section_at(r->scene, kind, k);
-        nearest_offer(near, given, c->name);
-    }
-}
-
-enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
-                         enum section_id kind, enum section_id also)
-{
-    struct nearest near = {0};
-    offer_names(r, kind, given, &near);
-    offer_names(r, also, given, &near);
-    char word[2 * SCENE_NAME];
-    snprintf(word, sizeof word, also == kind ? "%s" : "%s] or [%s", section_table[kind].word,
-             section_table[also].word);
-    if (near.name)
-        return bad_line(r, line, "%s = %.60s: there is no [%s] of that name; did you mean `%s`?",
-                        what, given, word, near.name);
-    return bad_line(r, line, "%s = %.60s: there is no [%s] of that name", what, given, word);
-}
-
 /* The sections that name a motion. */
 static enum err check_moved(struct reader *r)
 {

@@ -87,6 +87,30 @@ static void sort_problems(struct reader *r, int n)
     }
 }
 
+static void offer_names(const struct reader *r, enum section_id kind, const char *given,
+                        struct nearest *near)
+{
+    for (int k = 0; k < section_count(r->scene, kind); k++) {
+        const struct scene_section_common *c = section_at(r->scene, kind, k);
+        nearest_offer(near, given, c->name);
+    }
+}
+
+enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
+                         enum section_id kind, enum section_id also)
+{
+    struct nearest near = {0};
+    offer_names(r, kind, given, &near);
+    offer_names(r, also, given, &near);
+    char word[2 * SCENE_NAME];
+    snprintf(word, sizeof word, also == kind ? "%s" : "%s] or [%s", section_table[kind].word,
+             section_table[also].word);
+    if (near.name)
+        return bad_line(r, line, "%s = %.60s: there is no [%s] of that name; did you mean `%s`?",
+                        what, given, word, near.name);
+    return bad_line(r, line, "%s = %.60s: there is no [%s] of that name", what, given, word);
+}
+
 void case_report(struct reader *r)
 {
     const int n = r->n_problems < CASE_MAX_PROBLEMS ? r->n_problems : CASE_MAX_PROBLEMS;
