@@ -6,14 +6,14 @@
 #   make test-sanitize | test-thread | memcheck | analyze    tests and short runs under checkers
 #   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
 #   make check | format  style, layers and exported symbols | clang-format in place
-#   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
+#   make bench           what a step costs by phase, against bench/<processor>.csv
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
 #   make web | test-web  the program as a page for browsers | drive it in a headless Chromium
 #   make examples        build examples/*.c, programs that use the library
 #   make docs            write the reference of keys in docs/cases.md
 #   make install         to PREFIX (/usr/local), below DESTDIR
 #   make info | dist | clean | distclean
-#   make help-reports    the goals that write the reports in docs/: validation, accuracy, stability, ...
+#   make help-reports    the goals that write the reports in docs/
 #
 # Variables: CC, CFLAGS, LDFLAGS, ARCH (native, x86-64-v3, x86-64-v4, armv8-a, ...), HDF5_PREFIX,
 # UNITY_DIR, PYTHON, WERROR=1, V=1 (show commands), SETUP=no (install nothing that is missing).
@@ -46,7 +46,8 @@ PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
 # --- flags (CMakeLists.txt lists the same ones; tools/dev/check_style.py compares them) ---
 # No contraction, no reassociation: the same bits from every compiler and instruction set.
-COMMON := -std=gnu11 -pthread -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
+COMMON := -std=gnu11 -pthread -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math
+COMMON += -fvisibility=hidden
 WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
 OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
@@ -62,9 +63,10 @@ $(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: $(CONFIGS)))
 ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
-# clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles, and loops of
-# `omp simd` that it leaves alone without optimisation, and fields that a designated initialiser leaves out.
-WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion -Wno-pass-failed \
+# clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles, loops of
+# `omp simd` that it leaves alone without optimisation, and fields that an initialiser leaves out.
+WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion \
+          -Wno-pass-failed \
           -Wno-missing-field-initializers)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
 OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopenmp)
@@ -101,7 +103,8 @@ UNIT_DIRS := $(patsubst src/%/,%,$(wildcard src/*/)) tools
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: all help debug sanitize serial test test-sanitize test-thread test-neon memcheck analyze gate \
+.PHONY: all help debug sanitize serial test test-sanitize test-thread test-neon memcheck analyze \
+        gate \
         examples check docs format info install dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -115,8 +118,8 @@ debug sanitize serial:
 	@$(MAKE) --no-print-directory CONFIG=$@ all
 
 # --- rules ---
-# Rebuild when compiler or flags change, the files that name the version when that does, and the embedded
-# texts when their list does.
+# Rebuild when compiler or flags change, the files that name the version when that does, and the
+# embedded texts when their list does.
 STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/null)
 STAMP_TEXT-version := $(FULL_VERSION)
 STAMP_TEXT-embedded := $(EMBEDDED)
@@ -147,7 +150,8 @@ $(LIB): $(LIB_OBJ)
 
 $(SHARED): $(LIB_OBJ)
 	$(Q)$(COMPILE) $(LDFLAGS) -shared -o $@ $^ \
-	  $(if $(DARWIN),,-Wl$(comma)-soname$(comma)libsphfsi.so.$(ABI) -Wl$(comma)--exclude-libs$(comma)ALL) \
+	  $(if $(DARWIN),,-Wl$(comma)-soname$(comma)libsphfsi.so.$(ABI) \
+	    -Wl$(comma)--exclude-libs$(comma)ALL) \
 	  $(HDF5_LIBS) -lm
 
 $(PROGRAM): $(B)/src/app/main.o $(LIB)
@@ -184,8 +188,8 @@ test-neon:
 test-sanitize:
 	@TEST_DIRS='$(UNIT_DIRS) agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
 
-# gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher). Tests
-# that look at files or at long runs say nothing here and would take hours.
+# gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher).
+# Tests that look at files or at long runs say nothing here and would take hours.
 test-thread: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=66
 test-thread: export OMP_NUM_THREADS := 2
 test-thread:
@@ -232,7 +236,7 @@ docs: $(PROGRAM)
 
 format:
 	clang-format -i $(wildcard src/*/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch] \
-	                         examples/*.c)
+	                         examples/*.c web/*.c)
 
 info:
 	@echo "sphfsi   $(FULL_VERSION)"; echo "compile  $(COMPILE)"; echo "link     $(HDF5_LIBS) -lm"; \
@@ -246,7 +250,8 @@ install: $(PROGRAM) $(LIB) $(SHARED)
 	ln -sf libsphfsi.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/libsphfsi.so.$(ABI)
 	ln -sf libsphfsi.so.$(ABI) $(DESTDIR)$(PREFIX)/lib/libsphfsi.so
 	install -m 644 include/sphfsi.h $(DESTDIR)$(PREFIX)/include
-	@for f in sphfsi.pc:pkgconfig sphfsiConfig.cmake:cmake/sphfsi sphfsiConfigVersion.cmake:cmake/sphfsi; do \
+	@for f in sphfsi.pc:pkgconfig sphfsiConfig.cmake:cmake/sphfsi \
+	   sphfsiConfigVersion.cmake:cmake/sphfsi; do \
 	   sed -e 's|@CMAKE_INSTALL_PREFIX@|$(PREFIX)|' -e 's|@PROJECT_VERSION@|$(VERSION)|' \
 	     -e 's|@SPHFSI_LINK@|$(HDF5_LIBS) $(OMP) -pthread -lm|' -e 's|@CMAKE_INSTALL_LIBDIR@|lib|' \
 	     -e 's|@SPHFSI_OPENMP@|$(if $(filter serial,$(CONFIG)),OFF,ON)|' -e 's|@SPHFSI_ABI@|$(ABI)|' \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What worker.js calls: one simulation at a time, through include/sphfsi.h. Texts are UTF-8 with a zero at
- * their end. */
+ * What worker.js calls: one simulation at a time, through include/sphfsi.h. Texts are UTF-8 with a
+ * zero at their end. */
 #include "base/simd.h"
 #include "sphfsi.h"
 
@@ -45,7 +45,8 @@ static void keep_message(void *context, enum sphfsi_message kind, const char *te
              kind == SPHFSI_WARNING ? "warning: " : "", text);
 }
 
-/* Replaces the simulation by that of a case; frees both texts. `sets`: a change `key=value` on each line. */
+/* Replaces the simulation by that of a case; frees both texts. `sets`: a change `key=value` on each
+ * line. */
 EXPORT(create) int create(char *name, char *text, char *sets, double until)
 {
     enum { MOST = 64 };
@@ -114,7 +115,8 @@ static float size_of(const double *v, int components)
     return (float)(components == 1 ? v[0] : __builtin_sqrt(v[0] * v[0] + v[1] * v[1]));
 }
 
-/* x, y and the value of a field for each particle; without such a field the value is 0. NULL: no memory. */
+/* x, y and the value of a field for each particle; without such a field the value is 0. NULL: no
+ * memory. */
 EXPORT(particles) const float *particles(int kind_number, const char *name)
 {
     const enum sphfsi_kind kind = (enum sphfsi_kind)kind_number;

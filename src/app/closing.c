@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-static void say_cost(const struct sphfsi_options *o, const struct simulation *sim,
-                     const struct record *r)
+static void say_run_cost(const struct sphfsi_options *o, const struct simulation *sim,
+                         const struct record *r)
 {
     char text[1024] = "";
     size_t at = 0;
@@ -49,7 +49,7 @@ void closing_say(const struct sphfsi_options *o, const struct simulation *sim,
                  const struct record *r)
 {
     char text[1024];
-    say_cost(o, sim, r);
+    say_run_cost(o, sim, r);
     say_losses(o, sim);
     for (int k = 0; r->score && k < r->references->n; k++) {
         reference_line(&r->references->item[k], &r->score[k], text, sizeof text);

@@ -90,7 +90,7 @@ void manual_example(const struct param *param, char *text, size_t size)
     default_of(param, text, size);
 }
 
-static void type_of(const struct param *param, char *text, size_t size)
+static void param_type_text(const struct param *param, char *text, size_t size)
 {
     static const char *const names[] = {
         [PARAM_REAL] = "number",
@@ -184,7 +184,7 @@ static void default_cell(const struct param *param, char *cell, size_t size)
 static void say_key(const struct param *param, const struct sphfsi_options *o)
 {
     char type[64], fallback[3 * SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
-    type_of(param, type, sizeof type);
+    param_type_text(param, type, sizeof type);
     default_cell(param, fallback, sizeof fallback);
     range_of(param, range, sizeof range);
     manual_example(param, example, sizeof example);
@@ -242,7 +242,7 @@ static void say_quantities(const struct sphfsi_options *o)
     }
 }
 
-static void say_effects(const struct sphfsi_options *o)
+static void list_effects(const struct sphfsi_options *o)
 {
     session_say(o, "%s", "");
     session_say(o, "### Effects");
@@ -265,7 +265,7 @@ void manual_keys(const struct sphfsi_options *o)
     session_say(o, "## Sections and keys");
     for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
     say_quantities(o);
-    say_effects(o);
+    list_effects(o);
 }
 
 /* --- templates of cases: the files of cases/templates --- */

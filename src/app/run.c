@@ -97,7 +97,7 @@ static enum err write_ledger(struct run *r)
 }
 
 /* Compares the probes with their references; a failure is only a warning. */
-static void compare(struct run *r)
+static void score_references(struct run *r)
 {
     struct diag why = session_diag(r->options);
     r->record.references = &r->references;
@@ -468,7 +468,7 @@ static enum err load_checkpoint(struct run *r)
 
 /* Prepares all files. A restart changes files of the run only after its checkpoint has been
  * checked. */
-static enum err begin(struct run *r)
+static enum err begin_run(struct run *r)
 {
     char part[PATH_BYTES];
     TRY(write_case(r, part));
@@ -500,7 +500,7 @@ static enum err simulate(struct run *r)
         save_last_state(r, failed);
         return failed;
     }
-    compare(r);
+    score_references(r);
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
@@ -512,7 +512,7 @@ static enum err simulate(struct run *r)
     return ERR_OK;
 }
 
-static void end(struct run *r)
+static void end_run(struct run *r)
 {
     for (int k = 0; r->probe_rows && k < r->probes.n_files; k++) series_close(&r->probe_rows[k]);
     series_close(&r->ledger_rows);
@@ -550,7 +550,7 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
     TRY(create_probes(r));
     TRY(open_references(r));
     TRY(run_dir_open(&r->folder, path, use, r->diag));
-    TRY(begin(r));
+    TRY(begin_run(r));
     return simulate(r);
 }
 
@@ -573,7 +573,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     if (!e) {
         check_simulation(r->s, d);
         e = run_session(r, path, use);
-        end(r);
+        end_run(r);
         session_close(&r->session);
     }
     free(r);

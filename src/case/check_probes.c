@@ -90,7 +90,7 @@ static enum err check_clamp(struct reader *r, const struct scene_probe *probe)
                     probe->common.name, probe->body);
 }
 
-static enum err check_fluid(struct reader *r, const struct scene_probe *probe)
+static enum err check_fluid_probe(struct reader *r, const struct scene_probe *probe)
 {
     char quantity[SCENE_NAME];
     param_choice_name(param_find(SECTION_probe, "quantity"), probe->quantity, quantity);
@@ -136,10 +136,10 @@ static enum err check_probe(struct reader *r, const struct scene_probe *probe)
     TRY(check_on(r, probe));
     TRY(check_average(r, probe));
     switch (scene_probe_target(probe)) {
-    case TARGET_BODY: TRY(check_bodies(r, probe)); return check_fluid(r, probe);
+    case TARGET_BODY: TRY(check_bodies(r, probe)); return check_fluid_probe(r, probe);
     case TARGET_SOLID:
     case TARGET_SOLID_POINT: TRY(check_body(r, probe)); return check_clamp(r, probe);
-    default: return check_fluid(r, probe);
+    default: return check_fluid_probe(r, probe);
     }
 }
 

@@ -112,8 +112,8 @@ static enum err check_fluid(const struct sampler *sampler, const struct scene_op
 }
 
 /* The particle at the position of a buffer particle, if any. */
-static enum err check_place(const struct sampler *sampler, const struct scene_open *o,
-                            const struct around kinds[KIND_COUNT], const double x[2])
+static enum err check_line(const struct sampler *sampler, const struct scene_open *o,
+                           const struct around kinds[KIND_COUNT], const double x[2])
 {
     const double near = SAME_PLACE * sampler->scene->top.dp;
     const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
@@ -141,7 +141,7 @@ static enum err append(struct sampler *sampler, int number, const struct scene_o
         for (int i = 0; i < l.across; i++) {
             double x[2];
             if (!lattice_point(scene, o, &l, i, j, x)) continue;
-            TRY(check_place(sampler, o, kinds, x));
+            TRY(check_line(sampler, o, kinds, x));
             p->x[p->n] = x[0];
             p->y[p->n] = x[1];
             p->body[p->n] = 0;

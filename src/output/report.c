@@ -159,7 +159,7 @@ static void write_ledger(struct json *j, const char *name, const struct ledger *
     json_close(j, '}');
 }
 
-static double energy(const struct ledger *l)
+static double energy_of(const struct ledger *l)
 {
     return l->kinetic + l->potential + l->internal + l->elastic + l->hourglass;
 }
@@ -194,8 +194,8 @@ static void write_drift(struct json *j, const struct simulation *sim, const stru
     const double moved = fabs(b->potential - a->potential) + fabs(b->internal - a->internal) +
                          fabs(b->elastic - a->elastic) + max2(a->kinetic, b->kinetic);
     json_open(j, "drift", '{');
-    json_number(j, "energy_start", energy(a));
-    json_number(j, "energy_end", energy(b));
+    json_number(j, "energy_start", energy_of(a));
+    json_number(j, "energy_end", energy_of(b));
     json_number(j, "wall_work", sim->state.wall_work);
     json_number(j, "energy_lost_with_particles", sim->state.lost_energy);
     json_number(j, "dissipated", b->dissipated);

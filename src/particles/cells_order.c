@@ -19,7 +19,7 @@ struct points {
 _Static_assert(CELL_CAPACITY % LANES_DOUBLE == 0, "the points of a cell fill whole vectors");
 
 /* An integer with the order of x; a NaN comes before or after all numbers. */
-static int64_t key_of(double x)
+static int64_t split_key(double x)
 {
     int64_t key;
     x += 0.0; /* -0 becomes 0 */
@@ -93,8 +93,8 @@ static void order_cell(uint64_t *pair, int n, const struct particles *particles)
     for (int k = 0; k < n; k++) {
         const uint32_t i = (uint32_t)pair[k];
         ASSERT(i < particles->n);
-        s.key[0][k] = key_of(s.at[0][k] = x[i]);
-        s.key[1][k] = key_of(s.at[1][k] = y[i]);
+        s.key[0][k] = split_key(s.at[0][k] = x[i]);
+        s.key[1][k] = split_key(s.at[1][k] = y[i]);
         s.id[k] = particles->id[i];
         particle[k] = i;
         point[k] = (uint16_t)k;

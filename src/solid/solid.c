@@ -269,7 +269,7 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
 }
 
 /* Packs new positions and velocities for the sweeps immediately. */
-static void pack_motion(const struct chunk *own)
+static void pack_all_motion(const struct chunk *own)
 {
     sweep(own, own->s->sweeps->pack_motion);
 #pragma omp barrier
@@ -294,7 +294,7 @@ static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, 
     const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : particles->n;
     const int64_t first = own->first < own->last ? pack[own->first].i : end;
     f(particles, first, end, kick, drift);
-    pack_motion(own);
+    pack_all_motion(own);
 }
 
 void solid_stress(struct solid *solid, struct particles *particles)
@@ -302,7 +302,7 @@ void solid_stress(struct solid *solid, struct particles *particles)
 #pragma omp parallel num_threads(solid->threads)
     {
         const struct chunk own = chunk_of(solid, particles);
-        pack_motion(&own);
+        pack_all_motion(&own);
         stress_sweeps(&own, true);
         sweep(&own, solid->sweeps->write_stress);
     }
@@ -313,7 +313,7 @@ void solid_operator(struct solid *solid, struct particles *particles, bool displ
 #pragma omp parallel num_threads(solid->threads)
     {
         const struct chunk own = chunk_of(solid, particles);
-        pack_motion(&own);
+        pack_all_motion(&own);
         stress_sweeps(&own, displaced);
         sweep(&own, solid->sweeps->forces);
 #pragma omp barrier
@@ -360,7 +360,7 @@ static void place_clamps(const struct chunk *own, double time)
     if (!solid->loads) return;
 #pragma omp single
     loads_place_clamps(solid->loads, own->p, time);
-    pack_motion(own);
+    pack_all_motion(own);
 }
 
 /* The sub-steps of solid_advance by one of its threads. */
