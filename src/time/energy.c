@@ -398,12 +398,15 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     struct energies of[ENERGY_ENTRIES];
     double terms[ENERGY_ENTRIES][ENERGY_TERMS];
     struct energy_gain worst = {.entry = -1, .available = 1};
+    int list[ENERGY_ENTRIES];
+    const int n = energy_entries(sim, list);
     find_all_energies(sim, of);
     join_distant(sim, of[energy_entry(KIND_SOLID, 0)].row.contact > 0);
     join_neighbours(sim);
     find_terms(sim, of, terms);
     memset(account->now, 0, sizeof account->now);
-    for (int k = 0; k < ENERGY_ENTRIES; k++) {
+    for (int m = 0; m < n; m++) {
+        const int k = list[m];
         for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += terms[k][t];
         if (energy_region(account, k) != k) continue;
         const struct region region = sum_region(sim, k, of, terms);
@@ -421,14 +424,14 @@ void energy_test_due(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     const double time = sim->state.time;
-    const int64_t interval = sim->effects & FX_FLUID ? TEST_STEPS : SOLID_ONLY_TEST_STEPS;
+    const int interval = sim->effects & FX_FLUID ? TEST_STEPS : SOLID_ONLY_TEST_STEPS;
     if (!(sim->effects & FX_ENERGY_ACCOUNT)) return;
     if (sim->effects & FX_OPEN) { /* brought in other than by the constraint */
         const double now = open_energy(&sim->open);
         energy_supply(sim, KIND_FLUID, 0, now - account->open);
         account->open = now;
     }
-    if (sim->state.steps / interval == (int64_t)account->tested_steps / interval &&
+    if ((double)sim->state.steps - account->tested_steps < interval &&
         !(time - account->tested_at >= TEST_TIME))
         return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);

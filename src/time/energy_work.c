@@ -85,7 +85,7 @@ static void sum_fluid(const struct simulation *sim, enum quantity quantity,
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
 #pragma omp parallel for schedule(static) num_threads(sim->fluid.threads)
     for (int m = 0; m < SLICES; m++) {
-        memset(part[m], 0, sizeof part[m]);
+        memset(part[m], 0, (size_t)sim->scene->n_fluid * sizeof part[m][0]);
         sum_slice(sim, quantity, n * m / SLICES, n * (m + 1) / SLICES, part[m]);
     }
     for (int m = 0; m < SLICES; m++)
