@@ -4,6 +4,7 @@
 #include "output/probes.h"
 #include "output/series.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 #include <math.h>
 #include <string.h>

@@ -13,6 +13,7 @@
 #include "output/snapshot.h"
 #include "time/guards.h"
 #include "time/relax.h"
+#include "time/energy.h"
 
 #include <errno.h>
 #include <math.h>

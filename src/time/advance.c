@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "time/timestep.h"
+#include "time/energy.h"
 
 void advance_structure(struct simulation *sim, double dt, double kick)
 {

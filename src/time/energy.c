@@ -11,6 +11,24 @@
 
 /* --- energies --- */
 
+void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double since = sim->state.dt;
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int64_t i = 0; i < particles->n && particles->vx_old; i++) {
+        if (particles->open && particles->open[i]) continue; /* set anew at each evaluation */
+        const double u = particles->vx_old[i] + since * particles->ax[i],
+                     v = particles->vy_old[i] + since * particles->ay[i];
+        const double d = particles->dens_old[i] + since * particles->ddens[i];
+        of[particles->body[i]] +=
+            0.5 * particle_mass(k, particles, i) *
+            (0.5 * (square(particles->vx[i]) + square(particles->vy[i]) - square(u) - square(v)) +
+             eos_energy(particles->dens[i], k->c0) - eos_energy(d, k->c0));
+    }
+}
+
 /* Of a section: its share of the ledger, and what only the account has. */
 struct energies {
     struct ledger row;
@@ -139,6 +157,12 @@ static void find_all_energies(struct simulation *sim, struct energies of[ENERGY_
         fluid[k].repulsion = repulsion[k];
         fluid[k].alternating = alternating[k];
     }
+}
+
+void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
+{
+    if (sim->effects & FX_ENERGY_ACCOUNT)
+        sim->state.energy.entry[energy_entry(kind, section)].supplied += work;
 }
 
 /* --- regions: sections that exchange energy with each other and with no others --- */

@@ -190,24 +190,6 @@ void energy_of_midpoint(struct simulation *sim, double dt)
 
 /* --- Verlet --- */
 
-void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
-{
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double since = sim->state.dt;
-    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-    for (int64_t i = 0; i < particles->n && particles->vx_old; i++) {
-        if (particles->open && particles->open[i]) continue; /* set anew at each evaluation */
-        const double u = particles->vx_old[i] + since * particles->ax[i],
-                     v = particles->vy_old[i] + since * particles->ay[i];
-        const double d = particles->dens_old[i] + since * particles->ddens[i];
-        of[particles->body[i]] +=
-            0.5 * particle_mass(k, particles, i) *
-            (0.5 * (square(particles->vx[i]) + square(particles->vy[i]) - square(u) - square(v)) +
-             eos_energy(particles->dens[i], k->c0) - eos_energy(d, k->c0));
-    }
-}
-
 void energy_of_restart(struct simulation *sim)
 {
     double lost[SCENE_MAX_SECTIONS];
@@ -256,11 +238,6 @@ void energy_drop_density(struct simulation *sim, int64_t i)
                             ? 0.5 * (eos_energy(d, c0) + eos_energy(particles->dens_old[i], c0))
                             : eos_energy(d, c0) - half;
     dissipate(sim, particles->body[i], particle_mass(&sim->fluid.k, particles, i) * held);
-}
-
-void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
-{
-    if (keeps_account(sim)) entry_of(sim, kind, section)->supplied += work;
 }
 
 /* --- the solid, and work from outside --- */

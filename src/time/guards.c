@@ -8,6 +8,7 @@
 
 #include "time/penetration.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 /* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h.
  * Steps over the largest step of the fluid. */

@@ -9,6 +9,7 @@
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 /* T-32b: mean rate over the coming step dt from the present rates, those dt_old earlier, and those
  * dt_older before these. Equal steps: the 23/12, -16/12, 5/12 of Adams and Bashforth. */

@@ -12,6 +12,7 @@
 #include "time/evaluation.h"
 #include "time/simulation.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 bool relax_due(const struct simulation *sim)
 {

@@ -13,6 +13,7 @@
 #include "time/sorting.h"
 #include "time/tension.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 static const struct integrator *const integrators[] = {
     [INTEGRATOR_SYMPLECTIC] = &integrator_symplectic,

@@ -7,6 +7,7 @@
 #include "time/evaluation.h"
 #include "time/guards.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 /* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = CHECK_INTERVAL };

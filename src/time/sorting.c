@@ -6,6 +6,7 @@
 #include "particles/kernel.h"
 #include "time/guards.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
  * one. */

@@ -10,7 +10,7 @@
 #include "particles/cells.h"
 #include "solid/contact.h"
 #include "solid/loads.h"
-#include "time/energy.h"
+#include "time/energy_account.h"
 
 struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */

@@ -7,6 +7,7 @@
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 static void predict_fluid(struct particles *particles, double half)
 {

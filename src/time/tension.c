@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/tension.h"
+#include "time/energy.h"
 
 #include <math.h>
 

@@ -5,6 +5,7 @@
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */

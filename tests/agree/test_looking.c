@@ -2,6 +2,7 @@
  * Looking at a run must not change it: ledgers, hashes and checkpoints between two steps, and
  * output times that nearly meet. */
 #include "rig.h"
+#include "time/energy.h"
 
 #include "unity.h"
 #include "geometry/load.h"

@@ -4,6 +4,7 @@
  * and where it is taken. */
 #include "rig.h"
 #include "solid/packed.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -243,7 +243,6 @@ static void test_paths_that_are_too_long(void)
 {
     memset(long_text, 'a', 5000);
     long_text[5000] = '\0';
-    struct scene scene;
     setUp();
     memset(long_text, 'a', 5000);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, TOP SOLID, long_text, 0, NULL, &diag));

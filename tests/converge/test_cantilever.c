@@ -7,6 +7,7 @@
  * known to dp/L: 2.5 % at ts/dp = 4, 1.25 % at 8. Measured: 0.25978 s (+1.9 %) and 0.25738 s (+0.9
  * %). */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

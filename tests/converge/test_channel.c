@@ -4,6 +4,7 @@
  *     - sum of 4 F L^2/(nu pi^3 (2n + 1)^3) sin((2n + 1) pi y/L) exp(-((2n + 1) pi/L)^2 nu t)
  * (Morris et al. 1997, Eq. 26), and the decay of Taylor-Green vortices in a periodic box. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
  * The small cases that each show an effect, made coarse: a beam pressed onto another, two posts in
  * a dam break, a patch of fluid under tension, an accelerated and a rolling tank. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 #include "geometry/load.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A plate that rings in a vacuum: its viscous force takes energy, and gives none. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -2,6 +2,7 @@
  * Still water in a rigid tank, H = 0.2 m, dp = H/20: the pressure it settles to, and that it comes
  * to rest. */
 #include "output/fluid_sample.h"
+#include "time/energy.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Fluid and structure: equal and opposite forces (Eq. 21), and what follows for momentum. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -7,6 +7,7 @@
  * rho_a = 1010 and rho_b = 1020 kg/m^3 have by Eq. 2 the pressures
  *   P_a = 1e5/7 (1.01^7 - 1) = 1030.5050301001436 Pa, P_b = 2124.080966418286 Pa. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  * direction, sound leaves, and what makes no sense is refused. */
 #include "geometry/load.h"
 #include "output/fluid_sample.h"
+#include "time/energy.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A solid finer than the fluid: sampling, its forces, the fluid's force on it, momentum. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 #include "geometry/load.h"
 

@@ -4,6 +4,7 @@
 #include "output/ranges.h"
 #include "base/hash.h"
 #include "geometry/load.h"
+#include "time/energy.h"
 #include "fuzz.h"
 #include "tiny.h"
 #include "unity.h"

@@ -2,6 +2,7 @@
  * Contact against what is known: restitution, Coulomb's friction, a stack, a pressed disc, bodies
  * that nothing lets through. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

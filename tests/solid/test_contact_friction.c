@@ -3,6 +3,7 @@
 #include "contact_rig.h"
 #include "solid/contact_friction.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * them. */
 #include "output/checkpoint.h"
 #include "coupling/impulse.h"
+#include "time/energy.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -3,6 +3,7 @@
  * other; in double, and with pairs in float. */
 #include "rig.h"
 #include "solid/packed.h"
+#include "time/energy.h"
 #include "geometry/load.h"
 #include "unity.h"
 

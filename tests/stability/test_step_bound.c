@@ -3,6 +3,7 @@
  * unstable a tenth above it, over kappa, nu, h/dp, law, thickness, gradient and hourglass form,
  * both integrators. */
 #include "rig.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

@@ -26,5 +26,5 @@ def test_kept():
 
 os.environ["SPHFSI"] = str(PROGRAM)
 test_kept()
-sys.exit(subprocess.run([sys.executable, str(TOOLS / "stability.py"), "--quick"],
+sys.exit(subprocess.run([sys.executable, str(TOOLS / "report/stability.py"), "--quick"],
                         check=False).returncode)

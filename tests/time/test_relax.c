@@ -5,6 +5,7 @@
 #include "output/checkpoint.h"
 #include "rig.h"
 #include "time/relax.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

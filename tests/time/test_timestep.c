@@ -5,6 +5,7 @@
 #include "rig.h"
 #include "coupling/bounds.h"
 #include "time/timestep.h"
+#include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>

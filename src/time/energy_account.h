@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ * What a run keeps of its energy: a row of ledger.csv, and the account of work (T-46). */
+#ifndef SPHFSI_TIME_ENERGY_ACCOUNT_H
+#define SPHFSI_TIME_ENERGY_ACCOUNT_H
+
+#include "case/scene.h"
+#include "particles/particles.h"
+
+/* The columns of ledger.csv with their units, in order: LEDGER(name, unit, meaning). Per depth. */
+/* clang-format off */
+#define LEDGER_COLUMNS(LEDGER)                                                                    \
+    LEDGER(time, "s", "simulated time")                                                           \
+    LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                               \
+    LEDGER(potential, "J_per_m", "potential energy in gravity at t = 0, relative to the origin")  \
+    LEDGER(internal, "J_per_m", "compression energy of the fluid")                                \
+    LEDGER(elastic, "J_per_m", "strain energy of the solid")                                      \
+    LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                 \
+    LEDGER(contact, "J_per_m", "energy of the contact forces")                                    \
+    LEDGER(dissipated, "J_per_m",                                                                 \
+           "energy at the start plus external work, minus all of the above")                      \
+    LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                              \
+    LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                              \
+    LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                           \
+    LEDGER(dens_extreme, "1", "current largest |rho/rho0 - 1| of the fluid")                      \
+    LEDGER(det_low, "1", "current smallest det F")                                                \
+    LEDGER(dt, "s", "last time step")
+/* clang-format on */
+
+struct ledger {
+#define LEDGER(name, unit, meaning) double name;
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+};
+
+/* --- the account --- */
+
+/* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
+enum { ENERGY_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
+SPHFSI_INLINE int energy_entry(enum kind kind, int section)
+{
+    return (int)kind * SCENE_MAX_SECTIONS + section;
+}
+
+/* Terms of the account, J/m. Each is negative in an exact solution, or zero (T-46). */
+enum energy_term {
+    TERM_FLUID,       /* what the fluid's energy gains beyond the work of all its rates */
+    TERM_DISSIPATION, /* work of viscosity, diffusion, shifting and T-45 */
+    TERM_INTERFACE,   /* work on structures less what the fluid delivers */
+    TERM_SOLID,       /* what the solid's energy gains beyond the work on it */
+    TERM_RESTARTS,    /* what Verlet's Euler steps add (Eq. 26) */
+    TERM_ALL,         /* these, and the work of dummies */
+    ENERGY_TERMS
+};
+
+/* Work of a step on a section. */
+enum work_source { WORK_OF_FLUID, WORK_FROM_OUTSIDE, WORK_SOURCES };
+
+/* Energies of a section, or of a region at its first section, J/m. */
+struct energy_entry {
+    double supplied;                /* energy at the start and all work since then */
+    double last_work[WORK_SOURCES]; /* of the last step */
+    double work_change;             /* largest change of either from step to step */
+    double dissipated, restarts;    /* TERM_DISSIPATION and TERM_RESTARTS of fluids */
+    double dummies;                 /* work of dummies on the fluid beyond that on the structure */
+    double interface;               /* TERM_INTERFACE of solids, with the work still to return */
+    double region; /* the first section of the region that the section belongs to */
+    /* Of a region: the lowest value of each term, the largest available energy since then, and the
+     * lowest potential energy. */
+    double lowest[ENERGY_TERMS], available[ENERGY_TERMS], lowest_potential;
+};
+
+/* Saved in checkpoints and not hashed: doubles only. */
+struct energy_account {
+    struct energy_entry entry[ENERGY_ENTRIES];
+    double most[ENERGY_TERMS]; /* that a region has gained by each term, J/m */
+    double largest_available;  /* energy of any region, J/m */
+    double now[ENERGY_TERMS];  /* sums over all sections at the last test, J/m */
+    double pending;            /* time that the last evaluation still counts for, s */
+    double open;               /* energy through open boundaries as far as it is counted, J/m */
+    double tested_at, tested_steps; /* time and steps at the last test */
+};
+enum { ENERGY_NUMBERS = sizeof(struct energy_account) / sizeof(double) };
+
+/* What a region has gained, J/m. */
+struct energy_gain {
+    int entry; /* first section of the region; -1: no region has gained energy */
+    enum energy_term term;
+    double all;        /* gain of all terms together over the available energy */
+    double energy;     /* beyond the lowest value of the term */
+    double available;  /* largest available energy since then */
+    struct ledger now; /* the region's share of it */
+};
+
+#endif
