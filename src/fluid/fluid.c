@@ -226,6 +226,8 @@ static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                        const struct cells *cells)
 {
     const int32_t n_active = cells->kind[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
+    fluid_rates *const rates =
+        fluid->finds_body_power ? fluid->kernel->rates_and_power : fluid->kernel->rates;
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(fluid->threads) \
     reduction(max                                                     \
@@ -235,7 +237,7 @@ static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                       end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
         struct fluid_extremes top = {acceleration2, approach};
-        fluid->kernel->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
+        rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
         acceleration2 = top.acceleration2;
         approach = top.approach;
     }

@@ -91,13 +91,17 @@ struct packed_fields {
 
 struct fluid;
 
-/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, for a set of
- * pair effects, and their extremes. */
+/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, and their
+ * extremes. */
+typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
+                         const struct cells *cells, int32_t first, int32_t end,
+                         struct fluid_extremes *top);
+
+/* They for a set of pair effects, without and with the power of walls and structures. */
 struct fluid_kernel {
     const char *name;
     effect_set effects; /* ANY_EFFECTS: generic */
-    void (*rates)(const struct fluid *f, struct particles *p, const struct cells *c, int32_t first,
-                  int32_t end, struct fluid_extremes *top);
+    fluid_rates *rates, *rates_and_power;
 };
 #define ANY_EFFECTS (~(effect_set)0)
 

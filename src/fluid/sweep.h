@@ -135,15 +135,14 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
                                     const struct vector_constants *k, struct pair_set fx,
-                                    const struct chunk *chunk, struct chunk_maxima *top)
+                                    bool power, const struct chunk *chunk, struct chunk_maxima *top)
 {
     const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
-    const bool near_bodies = neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n;
-    if (FX_ENERGY_ACCOUNT && near_bodies && fluid->finds_body_power) {
+    if (power && (neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n)) {
         find_body_power(fluid, particles, i, count, neighbours, a, k, fx, &s);
     } else {
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
@@ -160,7 +159,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
                                  const struct cells *cells, int32_t cell,
-                                 const struct vector_constants *k, struct pair_set fx,
+                                 const struct vector_constants *k, struct pair_set fx, bool power,
                                  const struct chunk *chunk, struct chunk_maxima *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
@@ -185,15 +184,15 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                                               (enum kind)kind, KIND_FLUID, cluster)
                                             : (struct neighbours){.n = 0};
         rates_of_cluster(fluid, particles, list->start[cell] + m * CLUSTER,
-                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, chunk,
-                         top);
+                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, power,
+                         chunk, top);
     }
 }
 
-/* A chunk of the active cells, first to end - 1. */
+/* A chunk of the active cells, first to end - 1; `power`: the power of bodies is found as well. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t first, int32_t end,
-                                  const struct vector_constants *k, struct pair_set fx,
+                                  const struct vector_constants *k, struct pair_set fx, bool power,
                                   struct fluid_extremes *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
@@ -201,7 +200,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
                                 fluid->neighbour_scratch[thread_index()].deferred};
     struct chunk_maxima here = {.approach = {0}};
     for (int32_t m = first; m < end; m++)
-        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, &chunk, &here);
+        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, power, &chunk, &here);
     top->approach = max2(top->approach, (double)vtop(here.approach));
     for (int r = 0; r < CLUSTER; r++)
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
@@ -209,20 +208,26 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
 
 /* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a
  * separate function before it can see that fx is a constant. */
-#define VARIANT(variant, set)                                                                  \
-    static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \
-                                       const struct cells *cells, int32_t first, int32_t end,  \
-                                       struct fluid_extremes *top)                             \
+#define RATES(name, set, power)                                                                \
+    static void SWEEP(name)(const struct fluid *fluid, struct particles *particles,            \
+                            const struct cells *cells, int32_t first, int32_t end,             \
+                            struct fluid_extremes *top)                                        \
     {                                                                                          \
         const struct vector_constants k = constants_of_sweep(fluid);                           \
-        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top);  \
+        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, power, \
+                       top);                                                                   \
     }
+#define VARIANT(variant, set)          \
+    RATES(rates_##variant, set, false) \
+    RATES(power_##variant, set, FX_ENERGY_ACCOUNT != 0)
 #include "fluid/variants.def"
 VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
+#undef RATES
 
 static const struct fluid_kernel SWEEP(kernels)[] = {
-#define VARIANT(variant, set) {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant)},
+#define VARIANT(variant, set) \
+    {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant), SWEEP(power_##variant)},
 #include "fluid/variants.def"
     VARIANT(any, ANY_EFFECTS)
 #undef VARIANT

@@ -244,13 +244,13 @@ void energy_drop_density(struct simulation *sim, int64_t i)
 
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
 {
+    if (!keeps_account(sim)) return;
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     const double *const *const external = sim->solid.external;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
     const double late = centred ? 0 : 0.5 * dt / n;
     double fluid[SCENE_MAX_SECTIONS] = {0}, outside[SCENE_MAX_SECTIONS] = {0};
-    if (!keeps_account(sim)) return;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->free[i] == 0) continue;
         const double mass = sim->solid.body[particles->body[i]].mass;
