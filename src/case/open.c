@@ -19,7 +19,7 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
         .kind = from->speed.e[0] || from->velocity.e[0] ? OPEN_VELOCITY : OPEN_PRESSURE,
         .word = section_table[id].word,
         .common = &from->common,
-        .section = id,
+        .section = (int)id,
         .index = index,
         .inflow = inflow,
         .from = {from->from[0], from->from[1]},
@@ -82,7 +82,7 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
     static const char *const ends[] = {"from", "to"};
     bool both = o->length > 0;
     for (int k = 0; k < 2; k++)
-        both &= scene_given(r->scene, o->section, o->index, ends[k]) != NULL;
+        both &= scene_given(r->scene, (enum section_id)o->section, o->index, ends[k]) != NULL;
     if (!both)
         return bad_line(r, line,
                         "[%s %s] needs `from` and `to`, the two ends of the line through which the "
