@@ -7,12 +7,14 @@ import sys
 import warnings
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
 try:
-    import sphfsi
     from sphfsi import Case, CaseWarning, Error, InputError, Interrupted
-except (ImportError, sphfsi.Error) as missing:
-    sys.exit(f"{Path(sys.argv[0]).stem}: {missing}")
+except ModuleNotFoundError as missing:
+    sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; "
+             f"{ROOT}/tools/setup.sh plot installs it; then run $(cat {ROOT}/build/python) "
+             f"{' '.join(sys.argv)}")
 
 UNITS = {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600}
 
@@ -92,5 +94,5 @@ def run_tool(main):
         print(f"{name}: {stop}", file=sys.stderr)
         sys.exit(130)
     except (Error, OSError, MemoryError) as problem:
-        print(f"{name}: {problem}", file=sys.stderr)
+        print(f"{name}: {str(problem).removeprefix(name + ': ')}", file=sys.stderr)
         sys.exit(1 if isinstance(problem, InputError) else 2)
