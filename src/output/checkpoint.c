@@ -10,7 +10,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 6, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
+enum { FORMAT = 7, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 
 /* Owners of blocks: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
