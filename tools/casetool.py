@@ -62,7 +62,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--until", type=until, default=0.0, metavar="TIME",
                           help="simulated time to end at, in s or as 50ms (end_time of the case)")
         self.add_argument("--threads", type=number(1, 2**31 - 1, int), default=0, metavar="N",
-                          help="threads to use (as many as are useful and idle)")
+                          help="threads to use (as many as are useful)")
 
     def error(self, message):
         self.exit(1, f"{self.prog}: {message}; --help lists the options\n")

@@ -165,7 +165,7 @@ class Case:
 
     def simulation(self, *, threads: int = 0) -> Simulation:
         """A simulation in memory at time zero, to be stepped; no file is written. `threads`: 0 for
-        as many as are useful and idle."""
+        as many as are useful."""
         return Simulation(self._call(threads=threads))
 
     def folder(self, *, fork: bool = False) -> Path:

@@ -8,16 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
-#if defined __linux__ && defined _OPENMP && !defined __clang__
-#include <sys/auxv.h>
-#endif
 
 static const char usage[] =
     "usage: sphfsi CASE.cfg [options]\n"
     "  --out DIR         folder of the results (runs/<case name>)\n"
-    "  --threads N       threads to use (as many as are useful and idle)\n"
+    "  --threads N       threads to use at most (as many as are useful)\n"
     "  --until TIME      simulated time to end at, in s or as 50ms (end_time of the case)\n"
     "  --set KEY=VALUE   replace a value of the case: dp=1mm, \"solid gate.young=12MPa\"; "
     "repeatable\n"
@@ -380,65 +376,6 @@ static void fill_standard_streams(void)
     if (fd >= 0) close(fd);
 }
 
-#if defined __linux__ && defined _OPENMP && !defined __clang__
-/* Seconds that a wait should spin before the thread sleeps: about what sleeping and waking up cost,
- * so that a wait never costs more than twice the best (Karlin et al. 1991). */
-static const double spin_time = 33e-6;
-
-static double clock_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Rounds of gcc's waiting loop in the spin time; the shortest of some measurements is the
- * undisturbed one. */
-static long spin_rounds(void)
-{
-    enum { ROUNDS = 1000, TRIES = 4 };
-    const volatile int word = 0;
-    double least = INFINITY;
-    for (int n = 0; n < TRIES; n++) {
-        const double start = clock_seconds();
-        for (int k = 0; k < ROUNDS && word == 0; k++) {
-#if defined __x86_64__
-            __builtin_ia32_pause();
-#endif
-        }
-        least = fmin(least, clock_seconds() - start);
-    }
-    return lrint(fmin(fmax(ROUNDS * spin_time / least, 100), 300000));
-}
-
-/* gcc's OpenMP runtime lets a waiting thread spin for milliseconds, which beside other programs
- * takes their cores and delays its own team. It reads the number of rounds before main, so the
- * program starts itself again with that number, unless the user has chosen one; the process stays
- * the same. Started by name of the dynamic linker (AT_BASE 0), /proc/self/exe would be that linker.
- */
-static void shorten_waits(const struct command *c, char **argv)
-{
-    static const char variable[] = "GOMP_SPINCOUNT";
-    const char *const number = getenv("OMP_NUM_THREADS");
-    const int one = c->options.threads > 0 ? c->options.threads == 1 : number && atoi(number) == 1;
-    if (one || getenv(variable) || getenv("OMP_WAIT_POLICY") || !getauxval(AT_BASE)) return;
-    char path[4096], rounds[32];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-    if (length <= 0) return;
-    path[length] = '\0';
-    snprintf(rounds, sizeof rounds, "%ld", spin_rounds());
-    if (setenv(variable, rounds, 1)) return;
-    execv(path, argv);
-    unsetenv(variable); /* the program could not be started: this one goes on */
-}
-#else
-static void shorten_waits(const struct command *c, char **argv)
-{
-    (void)c;
-    (void)argv;
-}
-#endif
-
 int main(int argc, char **argv)
 {
     fill_standard_streams();
@@ -447,7 +384,6 @@ int main(int argc, char **argv)
     if (!sets) return complain("%s%s", "no memory", "");
     c.options.sets = sets;
     int status = parse(&c, argc, argv);
-    if (!status && c.options.case_path) shorten_waits(&c, argv);
     if (!status) status = execute(&c);
     free(sets);
     if (status != 2) return status;

@@ -153,45 +153,17 @@ static int threads_asked(const struct sphfsi_options *o, int offered, const char
     return o->threads > 0 ? o->threads : variable && *variable ? offered : 0;
 }
 
-static int threads_by_default(int64_t n, int offered, const struct sphfsi_options *o)
-{
-    const int useful = thread_useful(n), most = useful < offered ? useful : offered;
-    if (most == 1) return 1;
-    const int idle = thread_idle_cores();
-    if (idle >= most) return most;
-    session_say(o,
-                "the machine is busy: %d of %d cores idle, so the run uses %d thread%s; to use %d "
-                "anyway, give --threads %d",
-                idle, thread_cores(), idle, idle == 1 ? "" : "s", most, most);
-    return idle;
-}
-
-/* Threads wait for each other several times a step, and one without a core delays all. */
-static void say_busy(int asked, const struct sphfsi_options *o)
-{
-    if (asked == 1) return;
-    const int idle = thread_idle_cores();
-    if (idle < asked)
-        session_say(o,
-                    "the machine is busy: %d of %d cores idle for the %d threads that are asked "
-                    "for, so they wait for each other; --threads %d is no slower now",
-                    idle, thread_cores(), asked, idle);
-}
-
-/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it
- * can use; else `offered` or fewer, as its particles and the idle cores are. A lower number than
- * asked for is warned of, a busy machine said. */
+/* The number of threads for a scene, at most: what the options or OMP_NUM_THREADS ask for, within
+ * what it can use, which is warned of; else `offered` or fewer, as its particles are. */
 static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                           struct diag *d)
 {
     const char *name;
     const int64_t n = scene->points[KIND_FLUID].n + scene->points[KIND_SOLID].n;
     const int asked = threads_asked(o, offered, &name), limit = thread_limit(n);
-    if (asked == 0) return threads_by_default(n, offered < limit ? offered : limit, o);
-    if (asked <= limit) {
-        say_busy(asked, o);
-        return asked;
-    }
+    const int useful = thread_useful(n);
+    if (asked == 0) return useful < offered ? useful : offered;
+    if (asked <= limit) return asked;
     diag_warn(d,
               "%s = %d is too many: %lld particles on %d cores can use at most %d thread%s, so the "
               "run uses %d; give that number or fewer",

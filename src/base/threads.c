@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/threads.h"
 
+#include <math.h>
 #include <pthread.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
-#include <unistd.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -44,42 +42,6 @@ int thread_cores(void)
 #endif
 }
 
-/* Threads that run or wait for a core on the whole machine, this one among them; 0: unknown. */
-static int running_threads(void)
-{
-    int running = 0;
-    FILE *const file = fopen("/proc/loadavg", "r");
-    if (!file) return 0;
-    if (fscanf(file, "%*s %*s %*s %d/", &running) != 1) running = 0;
-    fclose(file);
-    return running;
-}
-
-static int compare_counts(const void *a, const void *b)
-{
-    const int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
-
-int thread_idle_of(int cores, int online, int running)
-{
-    const int idle = online - (running > 0 ? running - 1 : 0);
-    return idle < 1 ? 1 : idle < cores ? idle : cores;
-}
-
-int thread_idle_cores(void)
-{
-    enum { SAMPLES = 7 }; /* their median: many threads run for a moment only */
-    int seen[SAMPLES];
-    const struct timespec pause = {.tv_nsec = 2000000};
-    for (int k = 0; k < SAMPLES; k++) {
-        if (k) nanosleep(&pause, NULL);
-        seen[k] = running_threads();
-    }
-    qsort(seen, SAMPLES, sizeof *seen, compare_counts);
-    return thread_idle_of(thread_cores(), (int)sysconf(_SC_NPROCESSORS_ONLN), seen[SAMPLES / 2]);
-}
-
 /* Two threads were 1.25 times as fast as one where each had 400 particles, 1.6 times with 1300,
  * 1.8 times with 3000 (docs/accuracy.md, "Forecast against reality"). */
 int thread_useful(int64_t n)
@@ -94,6 +56,37 @@ int thread_limit(int64_t n)
     enum { PARTICLES = 16 };
     const int64_t most = n / PARTICLES, cores = (int64_t)THREADS_PER_CORE * thread_cores();
     return (int)(most < 1 ? 1 : most < cores ? most : cores);
+}
+
+int team_next(struct team *team, double seconds)
+{
+    /* A block is long against the time slice of a scheduler, by which a busy core delays a team. */
+    static const double block_seconds = 0.02, pause_in_trials = 50, slower = 1.5;
+    team->seconds += seconds;
+    team->steps++;
+    if (team->most == 1 || team->seconds < block_seconds || team->steps < 2) return team->now;
+    const double each = team->seconds / team->steps, spent = team->seconds;
+    team->seconds = team->steps = 0;
+    if (team->settled == 0) { /* the first block touches memory for the first time */
+        team->settled = HUGE_VAL;
+        return team->now;
+    }
+    if (team->now != team->chosen) { /* a trial ends */
+        if (each < team->each) team->chosen = team->now;
+        team->settled = min2(each, team->each);
+        team->wait = pause_in_trials * spent;
+        return team->now = team->chosen;
+    }
+    team->each = each;
+    team->wait -= spent;
+    if (team->wait <= 0 || each > slower * team->settled)
+        team->now = team->chosen == 1 ? team->most : 1;
+    return team->now;
+}
+
+void team_begin(struct team *team, int most)
+{
+    *team = (struct team){.most = most, .now = most, .chosen = most};
 }
 
 int thread_team(void)

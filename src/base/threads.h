@@ -19,18 +19,28 @@ enum { THREADS_PER_CORE = 4 };
 int thread_count(void);
 void thread_use(int n);
 
-/* Cores that this process may use, and how many of them are idle now, at least 1. The second
- * takes some milliseconds; where the system does not tell, all are idle. */
+/* Cores that this process may use. */
 int thread_cores(void);
-int thread_idle_cores(void);
-
-/* Of `cores` that may be used on a machine of `online`, those idle while `running` threads run,
- * this one among them. */
-int thread_idle_of(int cores, int online, int running);
 
 /* Threads that n particles keep busy; the most that they may be asked to occupy. */
 int thread_useful(int64_t n);
 int thread_limit(int64_t n);
+
+/* The choice between one thread and all by the time that steps take: a thread without a core, on a
+ * machine that other programs use, delays all others. Now and then some steps use the other number;
+ * the faster one stays. Bits do not depend on it. */
+struct team {
+    int most, now, chosen; /* threads to use at most, in the next step, and between trials */
+    int steps;             /* of the present block */
+    double seconds;        /* of the present block */
+    double each, settled;  /* s a step of `chosen`: in its last block, at the last trial */
+    double wait;           /* s until the next trial */
+};
+
+void team_begin(struct team *team, int most);
+
+/* Adds a step of that many seconds; returns the number of threads for the next one. */
+int team_next(struct team *team, double seconds);
 
 /* Inside a parallel region: its number of threads, and the index of the calling thread. */
 int thread_team(void);

@@ -27,6 +27,7 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     sim->scene = scene;
     sim->effects = effects_of_scene(scene);
     sim->integrator = integrators[scene->top.integrator];
+    team_begin(&sim->team, thread_count());
     const enum err e = initial_state(sim, d);
     if (e) {
         simulation_free(sim);
@@ -104,7 +105,7 @@ static enum err step_without_fluid(struct simulation *sim, double t_limit, struc
     return ERR_OK;
 }
 
-enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
+static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     sim->solid.time = sim->state.time;
     t_limit = timestep_stop(sim, t_limit);
@@ -133,6 +134,17 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     TRY(guards_penetration(sim, d));
     phase_add(sim, PHASE_update, clock);
     return ERR_OK;
+}
+
+enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
+{
+    const double begin = wall_clock();
+    thread_use(sim->team.now);
+    sim->fluid.threads = sim->team.now;
+    if (sim->kind[KIND_SOLID].n >= SOLID_PARALLEL) sim->solid.threads = sim->team.now;
+    const enum err e = take_step(sim, t_limit, d);
+    team_next(&sim->team, wall_clock() - begin);
+    return e;
 }
 
 enum err simulation_resume(struct simulation *sim, struct diag *d)

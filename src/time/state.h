@@ -91,6 +91,7 @@ struct simulation {
     double dt_solid;              /* stable step of the solid times its safety, s */
     double dt_lone_solid;         /* the same as if there were no contact */
     int substeps;                 /* solid steps in the last fluid step */
+    struct team team;
     double phase_seconds[PHASE_COUNT];
     struct extremes extremes; /* of the fluid */
     double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */

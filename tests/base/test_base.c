@@ -206,7 +206,7 @@ static void test_the_clock_goes_forward(void)
     TEST_ASSERT_EQUAL_INT(0, thread_index());
 }
 
-static void test_threads_follow_particles_and_idle_cores(void)
+static void test_threads_follow_particles(void)
 {
     TEST_ASSERT_EQUAL_INT(1, thread_useful(0));
     TEST_ASSERT_EQUAL_INT(1, thread_useful(1999));
@@ -215,16 +215,40 @@ static void test_threads_follow_particles_and_idle_cores(void)
     TEST_ASSERT_EQUAL_INT(INT16_MAX, thread_useful(INT64_MAX));
     TEST_ASSERT_EQUAL_INT(1, thread_limit(0));
     TEST_ASSERT_EQUAL_INT(THREADS_PER_CORE * thread_cores(), thread_limit(INT64_MAX));
-    TEST_ASSERT_EQUAL_INT(8, thread_idle_of(8, 8, 1)); /* only this one runs */
-    TEST_ASSERT_EQUAL_INT(8, thread_idle_of(8, 8, 0)); /* unknown */
-    TEST_ASSERT_EQUAL_INT(5, thread_idle_of(8, 8, 4));
-    TEST_ASSERT_EQUAL_INT(1, thread_idle_of(8, 8, 30));
-    TEST_ASSERT_EQUAL_INT(2, thread_idle_of(2, 64, 31)); /* may use two of many */
-    TEST_ASSERT_TRUE(thread_idle_cores() >= 1 && thread_idle_cores() <= thread_cores());
-    /* Seven looks with 2 ms in between. */
-    const double begin = wall_clock();
-    thread_idle_cores();
-    TEST_ASSERT_TRUE(wall_clock() - begin >= 0.012);
+}
+
+/* Seconds that a team spends in `span` seconds, where a step takes as long as given for one thread
+ * and for all; its mean number of steps in a second. */
+static double steps_per_second(struct team *team, double span, double one, double all)
+{
+    double spent = 0;
+    int64_t steps = 0;
+    for (; spent < span; steps++) {
+        const double seconds = team->now == 1 ? one : all;
+        spent += seconds;
+        team_next(team, seconds);
+    }
+    return (double)steps / spent;
+}
+
+static void test_a_team_keeps_the_faster_number_of_threads(void)
+{
+    struct team team;
+    team_begin(&team, 1);
+    TEST_ASSERT_EQUAL_INT(1, team_next(&team, 1));
+    team_begin(&team, 8);
+    /* On an idle machine trials cost at most 2 %. */
+    TEST_ASSERT_TRUE(steps_per_second(&team, 100, 4e-4, 1e-4) > 0.97 / 1e-4);
+    TEST_ASSERT_EQUAL_INT(8, team.chosen);
+    /* Another program delays the team by a factor of 40: one thread within two blocks. */
+    TEST_ASSERT_TRUE(steps_per_second(&team, 0.2, 4e-4, 4e-3) > 0.5 / 4e-4);
+    TEST_ASSERT_EQUAL_INT(1, team.chosen);
+    TEST_ASSERT_TRUE(steps_per_second(&team, 100, 4e-4, 4e-3) > 0.97 / 4e-4);
+    /* It ends: the next trial finds the team faster. */
+    steps_per_second(&team, 2, 4e-4, 1e-4);
+    TEST_ASSERT_EQUAL_INT(8, team.chosen);
+    /* Steps that are long against a block: two of them are a trial. */
+    TEST_ASSERT_TRUE(steps_per_second(&team, 5000, 4, 1) > 0.9);
 }
 
 int main(void)
@@ -243,6 +267,7 @@ int main(void)
     RUN_TEST(test_large_memory_is_first_touched_by_shares);
     RUN_TEST(test_freed_arenas_can_be_used_again);
     RUN_TEST(test_the_clock_goes_forward);
-    RUN_TEST(test_threads_follow_particles_and_idle_cores);
+    RUN_TEST(test_threads_follow_particles);
+    RUN_TEST(test_a_team_keeps_the_faster_number_of_threads);
     return UNITY_END();
 }
