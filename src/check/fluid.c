@@ -451,7 +451,7 @@ static bool wall_is_at(const struct check *check, int wall, const double at[2])
     for (int corner = 0; corner < 4; corner++) {
         double to[2];
         corner_around(check, at, corner, to);
-        if (geometry_covers(&check->shapes, region, to[0], to[1])) return true;
+        if (geometry_covers(region, to[0], to[1])) return true;
     }
     return false;
 }

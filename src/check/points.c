@@ -10,7 +10,7 @@ bool is_drawn(const struct check *check, double x, double y)
 {
     for (int r = 0; r < check->shapes.n_regions; r++)
         if (check->shapes.regions[r].kind != KIND_FLUID &&
-            geometry_covers(&check->shapes, &check->shapes.regions[r], x, y))
+            geometry_covers(&check->shapes.regions[r], x, y))
             return true;
     return false;
 }

@@ -159,11 +159,9 @@ static void warn_of_region(struct check *check, const struct region *region)
 /* --- openings cut out by `minus` --- */
 
 /* Whether a piece of `minus` covers a lattice point of the region. */
-static bool removes_any(const struct check *check, const struct region *region,
-                        const struct outline *cut)
+static bool removes_any(const struct region *region, const struct outline *cut)
 {
     const struct scene_lattice *const l = &region->lattice;
-    double *const scratch = check->shapes.scratch;
     int64_t from[2], to[2];
     for (int c = 0; c < 2; c++) {
         from[c] = (int64_t)floor(cells_to(region, c, max2(cut->low[c], region->box.low[c])));
@@ -173,9 +171,9 @@ static bool removes_any(const struct check *check, const struct region *region,
         for (int64_t i = from[0]; i <= to[0]; i++) {
             const double x = l->origin[0] + ((double)i + 0.5 + NUDGE_X) * l->spacing[0];
             const double y = l->origin[1] + ((double)j + 0.5 + NUDGE_Y) * l->spacing[1];
-            if (!outline_contains(cut, x, y, scratch)) continue;
+            if (!outline_contains(cut, x, y)) continue;
             for (int k = 0; k < region->add.n; k++)
-                if (outline_contains(&region->add.item[k], x, y, scratch)) return true;
+                if (outline_contains(&region->add.item[k], x, y)) return true;
         }
     return false;
 }
@@ -185,8 +183,8 @@ static void warn_of_cuts(struct check *check, const struct region *region)
     for (int shape = 0; shape < region->minus_list->n; shape++) {
         bool removes = false;
         for (int k = 0; k < region->minus.n && !removes; k++)
-            removes = region->minus.shape[k] == shape &&
-                      removes_any(check, region, &region->minus.item[k]);
+            removes =
+                region->minus.shape[k] == shape && removes_any(region, &region->minus.item[k]);
         if (removes) continue;
         warn_at(check->diag, check->scene, region->minus_list->item[shape].line,
                 "`minus` removes no particle of [%s %s], because it is narrower than dp = %g "
@@ -261,8 +259,7 @@ static const struct region *region_of(const struct check *check, int64_t k)
 
 static int shape_of(const struct check *check, int64_t k)
 {
-    return geometry_shape_at(&check->shapes, region_of(check, k), check->points.x[k],
-                             check->points.y[k]);
+    return geometry_shape_at(region_of(check, k), check->points.x[k], check->points.y[k]);
 }
 
 /* Shapes are told apart unless there are too many to mark each with each. */
@@ -442,9 +439,7 @@ static bool find_opening(const struct check *check, int64_t k, int64_t m, double
     for (int n = 0; n < POINTS; n++) {
         const double t = (n + 0.5) / POINTS;
         const double x = px[k] + t * (px[m] - px[k]), y = py[k] + t * (py[m] - py[k]);
-        now = geometry_covers(&check->shapes, a, x, y) || geometry_covers(&check->shapes, b, x, y)
-                  ? 0
-                  : now + 1;
+        now = geometry_covers(a, x, y) || geometry_covers(b, x, y) ? 0 : now + 1;
         if (now <= longest) continue;
         longest = now;
         const double middle = (n + 1 - 0.5 * now) / POINTS;

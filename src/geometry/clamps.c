@@ -26,7 +26,7 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
         lattice_place(&region->lattice, samples->x[k], samples->y[k], at);
         for (int c = 0; c < o->n; c++) {
             if (!outline_contains(&o->item[c], at[0] + NUDGE_X * spacing[0],
-                                  at[1] + NUDGE_Y * spacing[1], sampler->scratch))
+                                  at[1] + NUDGE_Y * spacing[1]))
                 continue;
             const int shape = o->shape[c];
             held[shape]++;

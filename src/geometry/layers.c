@@ -120,25 +120,12 @@ static enum err make_loop(const struct outlines *o, int first, int end, bool pol
 
 /* --- faces --- */
 
-static bool in_any(const struct outlines *o, const bool *which, double x, double y, double *scratch)
-{
-    for (int k = 0; k < o->n; k++)
-        if ((!which || which[k]) && outline_contains(&o->item[k], x, y, scratch)) return true;
-    return false;
-}
-
-static bool in_wall(const struct layers *l, double x, double y)
-{
-    return in_any(&l->region->add, NULL, x, y, l->g->scratch) &&
-           !in_any(&l->region->minus, NULL, x, y, l->g->scratch);
-}
-
 /* Whether a point is in a piece that is sampled on the lattice. */
 static bool on_the_lattice(const struct layers *l, double x, double y)
 {
     const struct region *const r = l->region;
     for (int k = 0; k < r->add.n; k++)
-        if (!r->layered[k] && outline_contains(&r->add.item[k], x, y, l->g->scratch)) return true;
+        if (!r->layered[k] && outline_contains(&r->add.item[k], x, y)) return true;
     return false;
 }
 
@@ -174,7 +161,8 @@ static bool exposed(const struct layers *l, const struct edge *e, int k)
     double left[2], right[2];
     part_of(e, k, 1e-3 * l->dp, left);
     part_of(e, k, -1e-3 * l->dp, right);
-    return in_wall(l, left[0], left[1]) && !in_wall(l, right[0], right[1]);
+    return geometry_piece_at(l->region, left[0], left[1]) >= 0 &&
+           geometry_piece_at(l->region, right[0], right[1]) < 0;
 }
 
 static enum err add_faces(struct layers *l, struct face_set *set, const struct loop *o)
@@ -204,7 +192,7 @@ struct trace {
 static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
 {
     if (point_grid_any(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
-        !in_wall(l, at[0], at[1]) || on_the_lattice(l, at[0], at[1]))
+        geometry_piece_at(l->region, at[0], at[1]) < 0 || on_the_lattice(l, at[0], at[1]))
         return ERR_OK;
     if (t->n == t->capacity) {
         const int64_t capacity = t->capacity ? 2 * t->capacity : 256;

@@ -6,9 +6,8 @@
 #include "case/case.h"
 
 #include <math.h>
+#include <stdio.h>
 
-/* Two points nearer than this many spacings coincide (geometry/overlap.c). */
-#define SAME_PLACE 0.7
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 
@@ -20,17 +19,16 @@ static enum err refuse(const struct sampler *sampler, const struct scene_open *o
                    o->common->name, what, x[0], x[1], mend);
 }
 
-/* Points of a kind around a boundary's buffer. */
+/* Fluid around a boundary's buffer. */
 struct around {
     const struct scene_points *points;
     int64_t n;
     int64_t *at;
 };
 
-static enum err find_around(struct sampler *sampler, const struct scene_open *o, enum kind kind,
-                            struct around *a)
+static enum err find_around(struct sampler *sampler, const struct scene_open *o, struct around *a)
 {
-    const struct scene_points *const p = &sampler->scene->points[kind];
+    const struct scene_points *const p = &sampler->scene->points[KIND_FLUID];
     const double margin = 2 * sampler->scene->top.dp;
     *a = (struct around){.points = p};
     a->at =
@@ -45,17 +43,24 @@ static enum err find_around(struct sampler *sampler, const struct scene_open *o,
     return ERR_OK;
 }
 
-/* The nearest of the points to x within a distance; -1: none. */
-static int64_t nearest(const struct around *a, const double x[2], double within)
+/* Whether fluid is nearer to x than a distance. */
+static bool is_near(const struct around *a, const double x[2], double within)
 {
-    int64_t found = -1;
-    double best = square(within);
-    for (int64_t k = 0; k < a->n; k++) {
-        const int64_t i = a->at[k];
-        const double r2 = square(a->points->x[i] - x[0]) + square(a->points->y[i] - x[1]);
-        if (r2 < best) best = r2, found = i;
-    }
-    return found;
+    for (int64_t k = 0; k < a->n; k++)
+        if (square(a->points->x[a->at[k]] - x[0]) + square(a->points->y[a->at[k]] - x[1]) <
+            square(within))
+            return true;
+    return false;
+}
+
+/* Whether a point lies in a boundary's buffer, and further from its edges than round-off. */
+static bool in_buffer(const struct scene *scene, const struct scene_open *o, const double x[2])
+{
+    const double nothing = 1e-6 * scene->top.dp;
+    double in, along;
+    scene_open_place(o, x, &in, &along);
+    return in < -nothing && in > nothing - o->depth && along > nothing &&
+           along < o->length - nothing;
 }
 
 /* Positions across the line and rows behind it. */
@@ -86,15 +91,11 @@ static bool lattice_point(const struct scene *scene, const struct scene_open *o,
 static enum err check_fluid(const struct sampler *sampler, const struct scene_open *o,
                             const struct around *fluid)
 {
-    const double dp = sampler->scene->top.dp;
     const struct lattice l = lattice_of(sampler->scene, o);
     for (int64_t k = 0; k < fluid->n; k++) {
         const int64_t i = fluid->at[k];
         const double x[2] = {fluid->points->x[i], fluid->points->y[i]};
-        double in, along;
-        scene_open_place(o, x, &in, &along);
-        if (fluid->points->open[i] == 0 && in < -1e-6 * dp && in > -o->depth && along > 0 &&
-            along < o->length)
+        if (fluid->points->open[i] == 0 && in_buffer(sampler->scene, o, x))
             return refuse(sampler, o, "has fluid behind its line", x,
                           "end the fluid's shape at the line, or change `side`");
     }
@@ -103,7 +104,7 @@ static enum err check_fluid(const struct sampler *sampler, const struct scene_op
     for (int i = 0; i < l.across; i++) {
         if (!lattice_point(sampler->scene, o, &l, i, -1, x)) continue;
         places++;
-        wet += nearest(fluid, x, NEXT_TO * dp) >= 0;
+        wet += is_near(fluid, x, NEXT_TO * sampler->scene->top.dp);
     }
     if (places > 0 && 2 * wet >= places) return ERR_OK;
     return refuse(sampler, o, "has no fluid along its line", x,
@@ -111,19 +112,25 @@ static enum err check_fluid(const struct sampler *sampler, const struct scene_op
                   "on the other side");
 }
 
-/* The particle at the position of a buffer particle, if any. */
-static enum err check_line(const struct sampler *sampler, const struct scene_open *o,
-                           const struct around kinds[KIND_COUNT], const double x[2])
+/* What else lies where a buffer particle does. */
+static enum err check_buffer_point(const struct sampler *sampler, const struct scene_open *o,
+                                   int number, const double x[2])
 {
-    const double near = SAME_PLACE * sampler->scene->top.dp;
-    const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
-    if (nearest(&kinds[KIND_WALL], x, near) >= 0)
-        return refuse(sampler, o, "lies in a wall", x,
-                      "shorten the line, or cut an opening in the wall with `minus`");
-    if (nearest(&kinds[KIND_SOLID], x, near) >= 0)
-        return refuse(sampler, o, "lies in a solid", x, "move the line");
-    if (fluid >= 0 && kinds[KIND_FLUID].points->open[fluid])
-        return refuse(sampler, o, "overlaps another open boundary", x, "move one of the two");
+    for (int r = 0; r < sampler->n_regions; r++) {
+        const struct region *const region = &sampler->regions[r];
+        if (region->kind == KIND_FLUID || !geometry_covers_strictly(region, x[0], x[1])) continue;
+        char what[SCENE_NAME + 16];
+        snprintf(what, sizeof what, "lies in [%s %s]", kind_names[region->kind], region->name);
+        return refuse(sampler, o, what, x,
+                      region->kind == KIND_WALL
+                          ? "shorten the line, or cut an opening in the wall with `minus`"
+                          : "move the line");
+    }
+    for (int k = 0; k < number; k++) {
+        const struct scene_open other = scene_open_at(sampler->scene, k);
+        if (in_buffer(sampler->scene, &other, x))
+            return refuse(sampler, o, "overlaps another open boundary", x, "move one of the two");
+    }
     return ERR_OK;
 }
 
@@ -133,15 +140,14 @@ static enum err append(struct sampler *sampler, int number, const struct scene_o
     struct scene_points *const p = &scene->points[KIND_FLUID];
     const struct lattice l = lattice_of(scene, o);
     const int64_t before = p->n;
-    struct around kinds[KIND_COUNT];
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        TRY(find_around(sampler, o, (enum kind)kind, &kinds[kind]));
-    TRY(check_fluid(sampler, o, &kinds[KIND_FLUID]));
+    struct around fluid;
+    TRY(find_around(sampler, o, &fluid));
+    TRY(check_fluid(sampler, o, &fluid));
     for (int j = 0; j < l.rows; j++)
         for (int i = 0; i < l.across; i++) {
             double x[2];
             if (!lattice_point(scene, o, &l, i, j, x)) continue;
-            TRY(check_line(sampler, o, kinds, x));
+            TRY(check_buffer_point(sampler, o, number, x));
             p->x[p->n] = x[0];
             p->y[p->n] = x[1];
             p->body[p->n] = 0;

@@ -146,6 +146,16 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+/* Where the line at height y crosses edge k, if it does. */
+static bool edge_crossing(const struct outline *o, int k, double y, double *x)
+{
+    const double *a = o->pt[k], *b = o->pt[k + 1 < o->n ? k + 1 : 0];
+    if ((a[1] <= y) == (b[1] <= y)) return false;
+    const double *low = a[1] <= y ? a : b, *high = a[1] <= y ? b : a;
+    *x = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+    return true;
+}
+
 int outline_crossings(const struct outline *o, double y, double *from)
 {
     if (!o->n) {
@@ -157,12 +167,7 @@ int outline_crossings(const struct outline *o, double y, double *from)
         return 2;
     }
     int n = 0;
-    for (int k = 0; k < o->n; k++) {
-        const double *a = o->pt[k], *b = o->pt[k + 1 < o->n ? k + 1 : 0];
-        if ((a[1] <= y) == (b[1] <= y)) continue;
-        const double *low = a[1] <= y ? a : b, *high = a[1] <= y ? b : a;
-        from[n++] = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
-    }
+    for (int k = 0; k < o->n; k++) n += edge_crossing(o, k, y, &from[n]);
     if (n > 2)
         qsort(from, (size_t)n, sizeof *from, ascending);
     else if (n == 2 && from[0] > from[1]) {
@@ -173,13 +178,21 @@ int outline_crossings(const struct outline *o, double y, double *from)
     return n;
 }
 
-bool outline_contains(const struct outline *o, double x, double y, double *scratch)
+bool outline_contains(const struct outline *o, double x, double y)
 {
+    double crossing, ends[2];
+    bool inside = false;
     if (x < o->low[0] || x > o->high[0] || y < o->low[1] || y > o->high[1]) return false;
-    const int n = outline_crossings(o, y, scratch);
-    int left = 0;
-    while (left < n && scratch[left] <= x) left++;
-    return left & 1;
+    if (!o->n) return outline_crossings(o, y, ends) && ends[0] <= x && x < ends[1];
+    for (int k = 0; k < o->n; k++) inside ^= edge_crossing(o, k, y, &crossing) && crossing <= x;
+    return inside;
+}
+
+int outlines_find(const struct outlines *o, double x, double y)
+{
+    for (int k = 0; k < o->n; k++)
+        if (outline_contains(&o->item[k], x, y)) return k;
+    return -1;
 }
 
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)

@@ -48,6 +48,8 @@ int outlines_ends(const struct outlines *o);
 enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
                        double *area, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-bool outline_contains(const struct outline *o, double x, double y, double *scratch);
+bool outline_contains(const struct outline *o, double x, double y);
+/* The first piece that has a point inside, or -1. */
+int outlines_find(const struct outlines *o, double x, double y);
 
 #endif

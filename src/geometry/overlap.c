@@ -1,37 +1,54 @@
 /* SPDX-License-Identifier: MIT
- * Which particles remain where regions overlap. Solids have priority: a clamped part replaces the
- * wall that holds it. Walls form a union. Any other overlap is an error of the case. */
+ * Which particles remain where regions overlap. Two regions overlap if the centre of a particle of
+ * one lies in the outlines of the other. Solids have priority: a clamped part replaces the wall
+ * that holds it. Walls that move together form a union. Any other overlap is an error of the
+ * case. */
 #include "geometry/sampling.h"
 #include "base/point_grid.h"
 
 #include "case/case.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-/* Two points nearer than this many dp coincide. The distance on a lattice is 1. Between two
- * lattices, it is at most sqrt(1/2) from a point to the nearest one of the other. */
-static const double same_place = 0.7;
+/* Beside a common edge of shapes that are sampled on different lattices, or in layers, particles
+ * may be nearer to each other than this many dp. The one of less priority is left out. */
+static const double too_near = 0.7;
 
-/* Mean of the spacings of two points' lattices. */
-static double spacing(const struct region *regions, const struct samples *samples, int64_t a,
-                      int64_t b)
+int geometry_piece_at(const struct region *region, double u, double v)
 {
-    return 0.5 * (regions[samples->region[a]].lattice.dp + regions[samples->region[b]].lattice.dp);
+    const struct box2 *const box = &region->box;
+    if (u < box->low[0] || u > box->high[0] || v < box->low[1] || v > box->high[1] ||
+        outlines_find(&region->minus, u, v) >= 0)
+        return -1;
+    return outlines_find(&region->add, u, v);
 }
 
-/* The first point in the table, of another region, that coincides with point k; -1: none. */
-static int64_t coinciding(const struct point_grid *t, const struct region *regions,
-                          const struct samples *samples, int64_t k)
+int geometry_shape_at(const struct region *region, double x, double y)
 {
-    struct point_visit v = point_grid_visit(t, samples->x[k], samples->y[k], t->side);
-    while (point_grid_next(t, &v))
-        if (samples->region[v.k] != samples->region[k] &&
-            square(samples->x[v.k] - samples->x[k]) + square(samples->y[v.k] - samples->y[k]) <
-                square(same_place * spacing(regions, samples, k, v.k)))
-            return v.k;
-    return -1;
+    double at[2];
+    lattice_place(&region->lattice, x, y, at);
+    at[0] += NUDGE_X * region->lattice.spacing[0];
+    at[1] += NUDGE_Y * region->lattice.spacing[1];
+    const int piece = geometry_piece_at(region, at[0], at[1]);
+    return piece < 0 ? -1 : region->add.shape[piece];
+}
+
+bool geometry_covers(const struct region *region, double x, double y)
+{
+    return geometry_shape_at(region, x, y) >= 0;
+}
+
+bool geometry_covers_strictly(const struct region *region, double x, double y)
+{
+    double at[2];
+    lattice_place(&region->lattice, x, y, at);
+    for (int k = 0; k < 4; k++) {
+        const double u = at[0] + (k & 1 ? NUDGE_X : -NUDGE_X) * region->lattice.dp,
+                     v = at[1] + (k & 2 ? NUDGE_Y : -NUDGE_Y) * region->lattice.dp;
+        if (geometry_piece_at(region, u, v) < 0) return false;
+    }
+    return true;
 }
 
 static int motion_of(const struct scene *scene, const struct region *wall)
@@ -39,38 +56,20 @@ static int motion_of(const struct scene *scene, const struct region *wall)
     return scene_find_motion(scene, scene->wall[wall->body].motion);
 }
 
-int geometry_shape_at(const struct sampler *sampler, const struct region *region, double x,
-                      double y)
+/* Whether particle k may lie in another region: a clamped one in a wall, one of a wall in a clamp
+ * or in a wall that moves with it. */
+static bool may_lie_in(const struct sampler *sampler, const struct samples *samples, int64_t k,
+                       const struct region *its)
 {
+    const struct region *const mine = &sampler->regions[samples->region[k]];
     double at[2];
-    lattice_place(&region->lattice, x, y, at);
-    at[0] += NUDGE_X * region->lattice.spacing[0];
-    at[1] += NUDGE_Y * region->lattice.spacing[1];
-    for (int k = 0; k < region->minus.n; k++)
-        if (outline_contains(&region->minus.item[k], at[0], at[1], sampler->scratch)) return -1;
-    for (int k = 0; k < region->add.n; k++)
-        if (outline_contains(&region->add.item[k], at[0], at[1], sampler->scratch))
-            return region->add.shape[k];
-    return -1;
-}
-
-bool geometry_covers(const struct sampler *sampler, const struct region *region, double x, double y)
-{
-    return geometry_shape_at(sampler, region, x, y) >= 0;
-}
-
-/* Whether point k can be omitted because of point `other`. Lattices at different angles, and
- * layers, have points too near to each other on both sides of a common edge. */
-static bool yields_to(const struct sampler *sampler, const struct samples *samples, int64_t k,
-                      int64_t other)
-{
-    const struct region *mine = &sampler->regions[samples->region[k]],
-                        *its = &sampler->regions[samples->region[other]];
-    if (!geometry_covers(sampler, its, samples->x[k], samples->y[k])) return true;
-    if (mine->kind != KIND_WALL) return false;
-    if (its->kind == KIND_SOLID) return samples->clamped[other];
-    return its->kind == KIND_WALL &&
-           motion_of(sampler->scene, mine) == motion_of(sampler->scene, its);
+    if (its->kind == KIND_WALL && mine->kind == KIND_SOLID) return samples->clamped[k];
+    if (mine->kind != KIND_WALL || its->kind == KIND_FLUID) return false;
+    if (its->kind == KIND_WALL)
+        return motion_of(sampler->scene, mine) == motion_of(sampler->scene, its);
+    lattice_place(&its->lattice, samples->x[k], samples->y[k], at);
+    return outlines_find(&its->clamps, at[0] + NUDGE_X * its->lattice.spacing[0],
+                         at[1] + NUDGE_Y * its->lattice.spacing[1]) >= 0;
 }
 
 static bool has_band(const struct region *region)
@@ -83,46 +82,62 @@ static bool has_band(const struct region *region)
 static enum err fail_overlap(struct sampler *sampler, const struct region *mine,
                              const struct region *its, double x, double y, int64_t count)
 {
-    const char *mend = "move one of the shapes, or subtract the overlap with `minus`";
-    if (has_band(mine) || has_band(its))
-        mend = "change the sign of `thickness` if the band of the polyline is on the wrong side, "
-               "move one of the shapes, or subtract the overlap with `minus`";
-    if (mine->kind == KIND_WALL && its->kind == KIND_SOLID)
-        mend = has_band(mine) ? "only the clamped part of a solid may lie in a wall; change the "
-                                "sign of `thickness` if the band of the polyline is on the wrong "
-                                "side"
-                              : "only the clamped part of a solid may lie in a wall";
-    if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
-        mend = "walls that move differently must not overlap";
+    const bool fluid = mine->kind == KIND_FLUID || its->kind == KIND_FLUID,
+               wall = mine->kind == KIND_WALL || its->kind == KIND_WALL;
     return fail_at(sampler->diag, sampler->scene, mine->line,
-                   "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s",
+                   "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s%s",
                    (long long)count, kind_names[mine->kind], mine->name, kind_names[its->kind],
-                   its->name, x, y, mend);
+                   its->name, x, y,
+                   fluid || !wall ? "move one of the shapes, or subtract the overlap with `minus`"
+                   : mine->kind == its->kind ? "walls that move differently must not overlap"
+                                             : "only the clamped part of a solid may lie in a wall",
+                   has_band(mine) || has_band(its)
+                       ? "; if a polyline has its band on the wrong side, change the sign of its "
+                         "thickness"
+                       : "");
 }
 
-/* Sets `kept`; fails if a region overlaps another one and must not. */
+/* Sets `covered` where a particle lies in a region of more priority; fails if it must not lie in
+ * one. From the last region on, so that a message names fluid in a body, not a body in fluid. */
 static enum err find_overlaps(struct sampler *sampler, const struct samples *samples,
-                              struct point_grid *t, uint8_t *kept)
+                              uint8_t *covered)
 {
-    int64_t k = 0;
-    for (int region = 0; region < sampler->n_regions; region++) {
-        int64_t wrong = 0, first = -1, first_other = -1;
-        for (; k < samples->n && samples->region[k] == region; k++) {
-            const int64_t other = coinciding(t, sampler->regions, samples, k);
-            kept[k] = other < 0;
-            if (kept[k]) point_grid_insert(t, k);
-            if (kept[k] || yields_to(sampler, samples, k, other)) continue;
-            if (!wrong++) {
-                first = k;
-                first_other = other;
+    for (int64_t k = samples->n - 1, first; k >= 0; k = first - 1) {
+        const int region = samples->region[k];
+        const struct region *other = NULL;
+        int64_t wrong = 0, at = 0;
+        for (first = k; first > 0 && samples->region[first - 1] == region;) first--;
+        for (int64_t j = first; j <= k; j++)
+            for (int r = 0; r < sampler->n_regions; r++) {
+                const struct region *const its = &sampler->regions[r];
+                if (r == region || !geometry_covers_strictly(its, samples->x[j], samples->y[j]))
+                    continue;
+                covered[j] |= r < region;
+                if ((other && its != other) || may_lie_in(sampler, samples, j, its)) continue;
+                if (!wrong++) other = its, at = j;
             }
-        }
         if (wrong)
-            return fail_overlap(sampler, &sampler->regions[region],
-                                &sampler->regions[samples->region[first_other]], samples->x[first],
-                                samples->y[first], wrong);
+            return fail_overlap(sampler, &sampler->regions[region], other, samples->x[at],
+                                samples->y[at], wrong);
     }
     return ERR_OK;
+}
+
+/* Whether a particle that remains, of another region, is too near to particle k. */
+static bool is_crowded(const struct point_grid *t, const struct sampler *sampler,
+                       const struct samples *samples, int64_t k)
+{
+    const struct region *const mine = &sampler->regions[samples->region[k]];
+    struct point_visit v = point_grid_visit(t, samples->x[k], samples->y[k], t->side);
+    while (point_grid_next(t, &v)) {
+        const struct region *const its = &sampler->regions[samples->region[v.k]];
+        const double spacing = 0.5 * (mine->lattice.dp + its->lattice.dp);
+        if (its != mine &&
+            square(samples->x[v.k] - samples->x[k]) + square(samples->y[v.k] - samples->y[k]) <
+                square(too_near * spacing))
+            return true;
+    }
+    return false;
 }
 
 static enum err store(struct sampler *sampler, const struct samples *samples, const uint8_t *kept,
@@ -157,11 +172,18 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
 {
     struct point_grid t;
-    uint8_t *kept = arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
-    if (!kept) return ERR_MEMORY;
+    uint8_t *const covered =
+        arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
+    uint8_t *const kept =
+        arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
+    if (!covered || !kept) return ERR_MEMORY;
+    TRY(find_overlaps(sampler, samples, covered));
     TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,
                           &sampler->temp, sampler->diag));
-    TRY(find_overlaps(sampler, samples, &t, kept));
+    for (int64_t k = 0; k < samples->n; k++) {
+        kept[k] = !covered[k] && !is_crowded(&t, sampler, samples, k);
+        if (kept[k]) point_grid_insert(&t, k);
+    }
     for (int kind = 0; kind < KIND_COUNT; kind++)
         TRY(store(sampler, samples, kept, (enum kind)kind));
     return ERR_OK;

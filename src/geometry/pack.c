@@ -41,23 +41,14 @@ static void cells_of(const struct region *region, double x, double y, double at[
     at[1] = (y - l->origin[1]) / l->spacing[1];
 }
 
-static bool in_shape(const struct sampler *sampler, const struct region *r, double x, double y)
-{
-    for (int k = 0; k < r->minus.n; k++)
-        if (outline_contains(&r->minus.item[k], x, y, sampler->scratch)) return false;
-    for (int k = 0; k < r->add.n; k++)
-        if (outline_contains(&r->add.item[k], x, y, sampler->scratch)) return true;
-    return false;
-}
-
 /* Adds the cell of a point of an edge with this normal, unless the shape is on both of its
  * sides. */
 static enum err visit(struct cut_cells *c, struct sampler *sampler, const double at[2],
                       const double normal[2])
 {
     const double step = 1e-3 * c->region->lattice.dp;
-    if (in_shape(sampler, c->region, at[0] + step * normal[0], at[1] + step * normal[1]) ==
-        in_shape(sampler, c->region, at[0] - step * normal[0], at[1] - step * normal[1]))
+    if ((geometry_piece_at(c->region, at[0] + step * normal[0], at[1] + step * normal[1]) < 0) ==
+        (geometry_piece_at(c->region, at[0] - step * normal[0], at[1] - step * normal[1]) < 0))
         return ERR_OK;
     double cell[2];
     cells_of(c->region, at[0], at[1], cell);
@@ -214,7 +205,7 @@ static enum cover cover_of(const struct sampler *sampler, const double cell[2], 
     place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
                      l->origin[1] + cell[1] * l->spacing[1], at);
     for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
-        if (geometry_covers(sampler, &sampler->regions[r], at[0], at[1]))
+        if (geometry_covers(&sampler->regions[r], at[0], at[1]))
             found = sampler->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
     return found;
 }

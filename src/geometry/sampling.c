@@ -185,11 +185,6 @@ static enum err prepare_rows(struct sampler *sampler)
         most = add > most ? add : most;
         most = minus > most ? minus : most;
     }
-    for (int k = 0; k < sampler->scene->n_solid; k++)
-        for (int j = 0; j < sampler->scene->solid[k].clamp.n; j++)
-            most = sampler->scene->solid[k].clamp.item[j].n > most
-                       ? sampler->scene->solid[k].clamp.item[j].n
-                       : most;
     sampler->mask = arena_alloc(&sampler->temp, (size_t)widest, 1, "sampling", sampler->diag);
     sampler->scratch =
         arena_alloc(&sampler->temp, (size_t)most + 4, sizeof(double), "sampling", sampler->diag);

@@ -97,12 +97,14 @@ enum err geometry_merge(struct sampler *sampler, const struct samples *samples) 
  * (geometry/pack.c). */
 enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
 
+/* The piece of a region at a place in the axes of its lattice, or -1. */
+int geometry_piece_at(const struct region *region, double u, double v);
 /* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or
  * -1; and whether there is one. */
-int geometry_shape_at(const struct sampler *sampler, const struct region *region, double x,
-                      double y);
-bool geometry_covers(const struct sampler *sampler, const struct region *region, double x,
-                     double y);
+int geometry_shape_at(const struct region *region, double x, double y);
+bool geometry_covers(const struct region *region, double x, double y);
+/* Whether a point lies in a region, and further from its edges than round-off. */
+bool geometry_covers_strictly(const struct region *region, double x, double y);
 
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *sampler) SPHFSI_CHECKED;

@@ -257,7 +257,6 @@ struct region {
 struct regions {
     int n;
     struct region *item;
-    double *scratch;
 };
 
 static enum err add_region(struct regions *r, const struct scene *scene, int group,
@@ -285,30 +284,15 @@ static enum err regions_create(struct regions *r, const struct contact *contact,
         TRY(add_region(r, scene,
                        contact->n_solids + 1 + scene_find_motion(scene, scene->wall[k].motion),
                        &scene->wall[k].shape, &scene->wall[k].minus, a, d));
-    int most = 2;
-    for (int k = 0; k < r->n; k++) {
-        const int add = outlines_capacity(&r->item[k].add);
-        const int minus = outlines_capacity(&r->item[k].minus);
-        most = add > most ? add : most;
-        most = minus > most ? minus : most;
-    }
-    r->scratch = arena_alloc(a, (size_t)most, sizeof *r->scratch, "contact", d);
-    return r->scratch ? ERR_OK : ERR_MEMORY;
-}
-
-static bool in_any(const struct outlines *o, double x, double y, double *scratch)
-{
-    for (int k = 0; k < o->n; k++)
-        if (outline_contains(&o->item[k], x, y, scratch)) return true;
-    return false;
+    return ERR_OK;
 }
 
 static bool inside(const struct regions *r, int group, double x, double y)
 {
     for (int k = 0; k < r->n; k++) {
         const struct region *const of = &r->item[k];
-        if (of->group == group && in_any(&of->add, x, y, r->scratch) &&
-            !in_any(&of->minus, x, y, r->scratch))
+        if (of->group == group && outlines_find(&of->add, x, y) >= 0 &&
+            outlines_find(&of->minus, x, y) < 0)
             return true;
     }
     return false;

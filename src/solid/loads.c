@@ -39,16 +39,12 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
     const int body = scene_find_solid(v->scene, from->body);
     struct outlines o;
     TRY(outlines_of(&o, v->scene, &from->shape, temp, d));
-    double *const scratch =
-        arena_alloc(temp, (size_t)outlines_capacity(&o) + 4, sizeof *scratch, "loads", d);
-    if (!scratch) return ERR_MEMORY;
     load->first = v->n_loaded;
     const double nudge = 1e-6 * v->scene->top.dp;
     for (int64_t i = 0; i < particles->n; i++) {
-        bool inside = false;
-        for (int k = 0; k < o.n && particles->body[i] == body && !inside; k++)
-            inside = outline_contains(&o.item[k], particles->X[i] + nudge,
-                                      particles->Y[i] + 0.618 * nudge, scratch);
+        const bool inside =
+            particles->body[i] == body &&
+            outlines_find(&o, particles->X[i] + nudge, particles->Y[i] + 0.618 * nudge) >= 0;
         if (inside) v->loaded[v->n_loaded++] = (int32_t)i;
     }
     load->end = v->n_loaded;

@@ -90,8 +90,8 @@ static const struct {
      "is expected"},
     {TOP FLUID "[wall w]\nshape = polyline thickness 5 mm: 0, 0; 20 mm, 0\n", NULL,
      "bad.cfg:3: 100 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0005) m: "
-     "change the sign of `thickness` if the band of the polyline is on the wrong side, move one of "
-     "the shapes, or subtract the overlap with `minus`"},
+     "move one of the shapes, or subtract the overlap with `minus`; if a polyline has its band on "
+     "the wrong side, change the sign of its thickness"},
     {TOP "[solid]\n", NULL, "bad.cfg:3: [solid] needs a name: [solid NAME]"},
     {TOP "[numerics fast]\n", NULL, "bad.cfg:3: [numerics] takes no name"},
     {TOP "[solid a/b]\n", NULL,

@@ -336,7 +336,7 @@ static void test_refused(void)
         {LEFT "speed = 1/(t - 5)\n", "speed is not finite"},
         {LEFT "speed = 1\nside = right\n", "[inflow left] has fluid behind its line"},
         {"[inflow i]\nfrom = -3, 0.5\nto = -3, 0\nspeed = 1\n", "has no fluid along its line"},
-        {"[inflow i]\nfrom = 0, 0.7\nto = 0, 0\nspeed = 1\n", "[inflow i] lies in a wall"},
+        {"[inflow i]\nfrom = 0, 0.7\nto = 0, 0\nspeed = 1\n", "[inflow i] lies in [wall plates]"},
         {LEFT "speed = 1\n[outflow o]\nfrom = 0, 0.3\nto = 0, 0\npressure = 0\n",
          "[outflow o] overlaps another open boundary"},
     };

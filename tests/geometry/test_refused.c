@@ -44,7 +44,7 @@ static const struct {
      "[fluid w]\nshape = box 0, 0, 0.1, 0.06\nsound_speed = 20\n",
      "periodic in y and only 0.06 m wide there"},
     {CHANNEL "[solid s]\nshape = box -0.06, 0.03, -0.02, 0.07\n" SOLID,
-     "[inflow i] lies in a solid at (-0.025, 0.065) m: move the line"},
+     "[inflow i] lies in [solid s] at (-0.025, 0.065) m: move the line"},
     {"dp = 1 mm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
      "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n"
      "[inflow i]\nfrom = 2e7, 0\nto = 0, 0\nspeed = 0.1\n",
