@@ -13,13 +13,16 @@
 /* (C_delta l/h)^2 of Meringolo et al. 2019 with C_delta = 6 and the reach of the kernel, l = 2h. */
 #define STRAIN_DIFFUSION (6 * KERNEL_REACH * 6 * KERNEL_REACH)
 
-/* The contribution of a pair to its receiver. The candidate gets the opposite, except for the rate
- * and div_r, which are even. With the volumes of both, over h^4. */
+/* The contribution of a pair to its receiver: factors of xi, v and v.xi, whose products the sums
+ * take with one rounding. The candidate gets the opposite, except for the rate and div_r, which are
+ * even. With the volumes of both, over h^4. */
 struct exchange {
-    vreal ax, ay; /* Pa */
-    vreal rate;   /* m/s */
-    vreal mixing; /* of Eq. 6, without its factor 2/(1 + dens_a) and, unless limited, delta c0 */
-    vreal grad_c_x, grad_c_y, div_r; /* 1: sums of slope xi and of slope |xi|^2 */
+    struct pair pair;
+    vreal radial; /* of xi in the forces, Pa */
+    vreal drag;   /* of -v in the forces, kg/(m^2 s) */
+    vreal rate;   /* of v.xi in the rate, 1 */
+    vreal step;   /* difference of dens that diffuses, 1 */
+    vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
 };
 
 /* Constants of the sweep, in all SIMD lanes. */
@@ -33,12 +36,16 @@ struct vector_constants {
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
     vreal diffusion;      /* delta c0, m/s */
     vreal eta2;           /* (eta/h)^2 = 0.01 */
+    /* Factors of the sums in the rates: the slope of the kernel over the volume of a particle, with
+     * 1/rho0 in that of forces; and of Eq. 6. */
+    double slope, acceleration, mixing;
 };
 
 SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *fluid)
 {
     const struct fluid_constants *const fk = &fluid->k;
     const double per_c2 = fk->h / square(fk->c0);
+    const double slope = PAIR_SLOPE * fk->h / (fk->mass / fk->rho0);
     return (struct vector_constants){
         .viscosity = vset((real)sqrt(2 * fk->model->artificial_viscosity * fk->c0 * fk->rho0)),
         .laminar = vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / fk->h)),
@@ -51,11 +58,14 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
         .gy = vset((real)(fk->gravity[1] * per_c2)),
         .diffusion = vset((real)(fk->model->density_diffusion * fk->c0)),
         .eta2 = vset((real)ETA2),
+        .slope = slope,
+        .acceleration = slope / fk->rho0,
+        .mixing = 2 * fk->model->density_diffusion * fk->c0,
     };
 }
 
-/* Eq. 4a: a pair's term of the sum of V_b v_ab . grad W. */
-SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope * q->vx; }
+/* Eq. 4a: factor of v.xi in the sum of V_b v_ab . grad W. */
+SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope; }
 
 /* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the slope of the pair. */
 SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
@@ -125,7 +135,7 @@ SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
 
 /* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:
  *   rho_a dv_a/dt = sum of V_b 2 nu rho0 x_ab . grad W/(|x|^2 + eta^2) v_ab.
- * The pair's weight; the sums are of weight * v_ab, downwards. */
+ * The factor of -v_ab. */
 SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
     return k->laminar * q->slope * (q->r2 * inv);
@@ -141,27 +151,34 @@ SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vec
     return vmin(vset(STRAIN_DIFFUSION) * fx_approach(q, inv), k->diffusion);
 }
 
-/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2).
- * With FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the
- * difference, g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its
- * linear part, by the mean of both particles' gradients. */
-SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
-                                 const struct vector_constants *k, struct pair_set fx)
+/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). The
+ * difference that diffuses: with FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) without its
+ * hydrostatic part, g . x_ba/c0^2; with ANTUONO (Antuono et al. 2010, Eq. 3) without its linear
+ * part, by the mean of both particles' gradients. */
+SPHFSI_INLINE vreal fx_diffused(const struct receiver *a, const struct pair *q,
+                                const struct vector_constants *k, struct pair_set fx)
 {
     vreal step = a->dens - q->dens;
     if (PAIR_HAS(fx, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
     if (PAIR_HAS(fx, ANTUONO))
         step = step - vset((real)0.5) *
                           vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
-    const vreal mixing = step * (q->slope * (q->r2 * inv));
+    return step;
+}
+
+/* Its factor. */
+SPHFSI_INLINE vreal fx_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
+                                 struct pair_set fx)
+{
+    const vreal mixing = q->slope * (q->r2 * inv);
     return PAIR_HAS(fx, LIMITER) ? mixing * fx_limiter(q, inv, k) : mixing;
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
  * - sum of V_b x_ab . grad W. */
-SPHFSI_INLINE void fx_concentration(const struct pair *q, struct exchange *e)
+SPHFSI_INLINE void fx_concentration(const struct pair *q, vreal sum[SUMS])
 {
-    e->grad_c_x = q->slope * q->x;
-    e->grad_c_y = q->slope * q->y;
-    e->div_r = q->slope * q->r2;
+    sum[SUM_GRAD_C_X] = vfma(q->slope, q->x, sum[SUM_GRAD_C_X]);
+    sum[SUM_GRAD_C_Y] = vfma(q->slope, q->y, sum[SUM_GRAD_C_Y]);
+    sum[SUM_DIV_R] = vfma(q->slope, q->r2, sum[SUM_DIV_R]);
 }

@@ -53,42 +53,48 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
         for (int r = 0; r < count; r++) to[r] = four[r];
 }
 
+/* A sum of `count` particles as receivers and candidates, which have its opposite. */
+SPHFSI_INLINE four_double odd_sum(const struct cluster_sums *s, real *deferred, enum pair_sum which)
+{
+    return own_sum(s, which) - take_deferred(DEFERRED(deferred, which));
+}
+SPHFSI_INLINE four_double even_sum(const struct cluster_sums *s, real *deferred,
+                                   enum pair_sum which)
+{
+    return own_sum(s, which) + take_deferred(DEFERRED(deferred, which));
+}
+
 /* Writes the rates of `count` particles from i on, from their sums and the factors not included in
  * them. */
 SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
                                int count, const struct cluster_sums *s, real *deferred,
-                               struct pair_set fx, double acceleration2[CLUSTER])
+                               const struct vector_constants *k, struct pair_set fx,
+                               double acceleration2[CLUSTER])
 {
-    const struct fluid_constants *const k = &fluid->k;
-    const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
-    const double mix = PAIR_HAS(fx, LIMITER) ? 2 : 2 * k->model->density_diffusion * k->c0;
-    four_double full = 1 + FOUR(particles->dens, i), factor = slope / k->rho0 + 0 * full;
-    four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
+    const double *const gravity = fluid->k.gravity;
+    four_double full = 1 + FOUR(particles->dens, i), factor = k->acceleration + 0 * full;
+    four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
-        factor = factor / FOUR(particles->m, i);
-        full = full / FOUR(particles->m, i);
+        const four_double share = 1 / FOUR(particles->m, i);
+        factor = factor * share;
+        full = full * share;
     }
-    const four_double ax =
-        factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
-    const four_double ay =
-        factor * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
-    if (PAIR_HAS(fx, DIFFUSION))
-        rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
-    const four_double ddens = -slope * full * rate;
+    const four_double ax = factor * odd_sum(s, deferred, SUM_X) + gravity[0];
+    const four_double ay = factor * odd_sum(s, deferred, SUM_Y) + gravity[1];
+    if (PAIR_HAS(fx, DIFFUSION)) {
+        const double mixing = PAIR_HAS(fx, LIMITER) ? 2 : k->mixing;
+        rate = rate + mixing * odd_sum(s, deferred, SUM_MIXING);
+    }
+    full = k->slope * full;
     store_four(particles->ax + i, ax, count);
     store_four(particles->ay + i, ay, count);
-    store_four(particles->ddens + i, ddens, count);
+    store_four(particles->ddens + i, -full * rate, count);
     const four_double a2 = ax * ax + ay * ay;
     for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
     if (!(PAIR_HAS(fx, SHIFTING))) return;
-    const four_double grad_c_x =
-        own_sum(s->grad_c_x) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_X));
-    const four_double grad_c_y =
-        own_sum(s->grad_c_y) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_Y));
-    const four_double div_r = own_sum(s->div_r) + take_deferred(DEFERRED(deferred, SUM_DIV_R));
-    store_four(particles->grad_c_x + i, -slope * full * grad_c_x, count);
-    store_four(particles->grad_c_y + i, -slope * full * grad_c_y, count);
-    store_four(particles->div_r + i, slope * k->h * full * div_r, count);
+    store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
+    store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
+    store_four(particles->div_r + i, fluid->k.h * full * even_sum(s, deferred, SUM_DIV_R), count);
 }
 
 /* Sums with walls and structures, and their power on `count` particles from i on: what they add in
@@ -99,15 +105,15 @@ SPHFSI_INLINE void find_body_power(const struct fluid *fluid, struct particles *
                                    const struct receiver a[ROWS], const struct vector_constants *k,
                                    struct pair_set fx, struct cluster_sums *s)
 {
-    const four_double ax = own_sum(s->ax), ay = own_sum(s->ay), rate = own_sum(s->rate);
+    const four_double ax = own_sum(s, SUM_X), ay = own_sum(s, SUM_Y), rate = own_sum(s, SUM_RATE);
     const four_double pressure = acting_pressure(fluid, particles, i, fluid->effects);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, s);
     store_four(particles->body_power + i,
                PAIR_SLOPE * fluid->k.h *
-                   (FOUR(particles->vx, i) * (own_sum(s->ax) - ax) +
-                    FOUR(particles->vy, i) * (own_sum(s->ay) - ay) -
-                    pressure * (own_sum(s->rate) - rate)),
+                   (FOUR(particles->vx, i) * (own_sum(s, SUM_X) - ax) +
+                    FOUR(particles->vy, i) * (own_sum(s, SUM_Y) - ay) -
+                    pressure * (own_sum(s, SUM_RATE) - rate)),
                count);
 }
 
@@ -152,9 +158,9 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
     if (count == CLUSTER) /* a compile-time constant */
-        rates_store(fluid, particles, i, CLUSTER, &s, deferred, fx, top->acceleration2);
+        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, fx, top->acceleration2);
     else
-        rates_store(fluid, particles, i, count, &s, deferred, fx, top->acceleration2);
+        rates_store(fluid, particles, i, count, &s, deferred, k, fx, top->acceleration2);
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,

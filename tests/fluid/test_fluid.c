@@ -541,11 +541,12 @@ static void test_forces_between_particles_cancel(void)
     assert_near(1e-13 * size, 0, sum_y, "sum of forces, y");
 }
 
-/* As few chunks as hold the cells, in whole rounds of 24, and each cell in one of them. */
+/* As few chunks as hold the cells, in whole rounds of 24 or, of few cells, 8, and each cell in one
+ * of them. */
 static void test_chunks_of_cells(void)
 {
-    const int32_t cells[] = {0, 1, 1535, 1536, 1537, 3072, 3073, 100000};
-    const int32_t chunks[] = {0, 24, 24, 24, 48, 48, 72, 1584};
+    const int32_t cells[] = {0, 1, 512, 513, 1535, 1536, 1537, 3072, 3073, 100000};
+    const int32_t chunks[] = {0, 8, 8, 16, 24, 24, 48, 48, 72, 1584};
     for (size_t k = 0; k < COUNT_OF(cells); k++) {
         TEST_ASSERT_EQUAL_INT32(chunks[k], fluid_chunk_count(cells[k]));
         if (cells[k] == 0) continue;
