@@ -1,21 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The validation over damaged folders of runs: each costs its own lines of the report, which name
-it, and is run anew; what is interrupted goes on, or is discarded with its reason. Exit 77: a
-package is missing."""
+it, and is run anew; what is interrupted goes on, or begins anew with the reason. Exit 77: a package
+is missing."""
 
 import contextlib
-import fcntl
 import io
 import json
 import shutil
 import sys
 import tempfile
-import zipfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from scripts import PROGRAM, packages
+from scripts import packages
 with packages():
     import h5py  # noqa: F401  the snapshots need it
     import validation_cases
@@ -24,8 +22,6 @@ with packages():
     import validation_report
     import validation_runs
     from runfiles import BadFile, Run
-    from validation_sound import check_ended
-SPHFSI = validation_runs.Program(PROGRAM)
 SHORT = {"wave-40-1.5": ["ratio=10", "end_time=0.3"],
          "taylor-green-25": ["ratio=10", "end_time=0.3"],
          "block-20": ["ratio=10", "turns=0.05"]}  # water with probes, water without, a solid
@@ -37,7 +33,7 @@ class Bench:
 
     def __init__(self, folder):
         self.folder = folder
-        for spec in validation_runs.SPECS:
+        for spec in validation_runs.JOBS:
             spec.folder = folder / "runs" / spec.name
         for name, sets in SHORT.items():
             self.spec(name).sets = list(sets)
@@ -53,11 +49,11 @@ class Bench:
         return self.spec(name).folder
 
     def kept(self):
-        return validation_kept.Kept(self.folder / "kept", SPHFSI.means)
+        return validation_kept.Kept(self.folder / "kept")
 
     def run(self, name, method="run", **options):
         """What is said, and the runner."""
-        runner = validation_runs.Runner(SPHFSI, self.kept(), **options)
+        runner = validation_runs.Runner(self.kept(), **options)
         with contextlib.redirect_stdout(io.StringIO()) as said:
             getattr(runner, method)(self.spec(name))
         return said.getvalue(), runner
@@ -66,7 +62,7 @@ class Bench:
         """The text, what is wrong, and what stderr says."""
         with contextlib.redirect_stdout(io.StringIO()), \
             contextlib.redirect_stderr(io.StringIO()) as errors:
-            wrong = validation_report.write_report(self.folder, {}, self.kept(), SPHFSI.version)
+            wrong = validation_report.write_report(self.folder, {}, self.kept())
         return (self.folder / "validation.md").read_text(), wrong, errors.getvalue()
 
 
@@ -97,10 +93,8 @@ DAMAGE = (
     (WAVE, lambda folder: (folder / "probes.csv").unlink(), "/probes.csv: No such file"),
     (WAVE, edit_table("ledger.csv", lambda t: t.replace("momentum_x", "impetus_x")),
      "no column momentum_x"),
-    (WAVE, edit_table("ledger.csv", lambda t: t.rstrip().rpartition(",")[0] + ",nan\n"),
-     "dt is nan"),
     (WAVE, edit_table("probes.csv", lambda t: t + t.splitlines()[-2] + "\n"), "must increase"),
-    (WAVE, edit_summary(lambda s: s.pop("steps")), "summary.json: steps is missing"),
+    (WAVE, edit_summary(lambda s: s.pop("steps")), "summary.json: steps is 'missing'"),
     (WAVE, edit_summary(lambda s: s.update(wall_seconds=None)), "wall_seconds is None"),
     (WAVE, edit_summary(lambda s: s.update(derived={})), "c0 is missing"),
     (WAVE, edit_summary(lambda s: s.update(exit_reason="guard", time="late")), "time is 'late'"),
@@ -135,83 +129,66 @@ def test_report(bench):
 
 
 def test_anew(bench):
-    """Each of these is run anew, with its reason in one line; so is a folder without its case."""
-    for name, damage, _ in (*DAMAGE, (WAVE, lambda folder: (folder / "case.cfg").unlink(), "")):
+    """Each of these is run anew, with its reason in one line; so is a folder without its record."""
+    for name, damage, words in DAMAGE:
         folder = bench.spec(name).folder
         damage(folder)
         said, runner = bench.run(name)
         assert not runner.failed, (runner.failed, said)
         lines = said.splitlines()
-        assert len(lines) == 2 and f"runs {name}" in lines[1], said
-        assert f"discards {folder}: it is " in lines[0], said
-        check_ended(Run(folder))
+        assert len(lines) == 2 and f"{name} is damaged: " in lines[0] and words in lines[0] and \
+            f"runs {name}" in lines[1], said
+        validation_kept.check_ended(Run(folder))
         bench.restore(name)
-    # A folder that holds no result is none of a run, and nothing in it is removed.
-    folder = bench.spec(WAVE).folder
-    shutil.rmtree(folder)
-    folder.mkdir()
-    (folder / "notes.txt").write_text("mine")
-    said, _ = bench.run(WAVE)
-    assert "discards" not in said and (folder / "notes.txt").exists(), said
-    bench.restore(WAVE)
+    job = bench.spec(WAVE)
+    whole = job.record_path.read_text()
+    for text in ("{", "{}"):
+        job.record_path.write_text(text)
+        assert bench.run(WAVE)[0].startswith(f"runs {WAVE}")
+        assert job.record()["outcome"] == "finished" and json.loads(whole)["case"]
 
 
 def test_interrupted(bench):
-    """An interrupted run of another version goes on with any_version, unless the program does not
-    take its checkpoint; without, it is discarded with the reason. What is being written is left
-    alone."""
-    folder, old = bench.spec(WAVE).folder, "0.0.1+old"
-    interrupt = edit_summary(lambda s: s.update(exit_reason="interrupted", version=old))
-    interrupt(folder)
-    said, runner = bench.run(WAVE, any_version=True)
+    """An interrupted run goes on, unless the program does not take its checkpoint; that of another
+    program begins anew."""
+    job = bench.spec(WAVE)
+
+    def interrupt(**more):
+        edit_summary(lambda s: s.update(exit_reason="interrupted"))(job.folder)
+        job.store({**json.loads(job.record_path.read_text()), "outcome": "started", **more})
+    interrupt()
+    said, runner = bench.run(WAVE)
     assert said.startswith(f"continues {WAVE}") and said.count("\n") == 1 and not runner.failed, \
         said
-    assert json.loads((folder / "summary.json").read_text())["restarted_from"]
-    interrupt(folder)
-    for path in folder.glob("*.ckpt"):
+    assert json.loads((job.folder / "summary.json").read_text())["restarted_from"]
+    interrupt()
+    for path in job.folder.glob("*.ckpt"):
         path.write_bytes(path.read_bytes()[:200])
-    said, runner = bench.run(WAVE, any_version=True)
-    lines = said.splitlines()
-    assert len(lines) == 3 and "discards" in lines[1] and "does not go on from it" in lines[1], said
-    assert lines[2].startswith(f"runs {WAVE}") and not runner.failed, (said, runner.failed)
-    interrupt(folder)
-    with open(folder / ".lock", "w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        _, runner = bench.run(WAVE)
-        assert "another process" in runner.failed[WAVE] and (folder / "summary.json").exists()
     said, runner = bench.run(WAVE)
-    assert f"it is by version {old}, not {SPHFSI.version}" in said and "--any-version" in said, said
-    check_ended(Run(folder))
-    for path in folder.glob("*.ckpt"):
-        path.unlink()
-    interrupt(folder)
-    assert "it was interrupted and has no checkpoint" in bench.run(WAVE)[0]
+    lines = said.splitlines()
+    assert len(lines) == 3 and "checkpoint" in lines[1], said
+    assert lines[2].startswith(f"runs {WAVE}") and not runner.failed, (said, runner.failed)
+    interrupt(program="older")
+    said, runner = bench.run(WAVE)
+    assert said.startswith(f"runs {WAVE}") and not runner.failed, said
+    validation_kept.check_ended(Run(job.folder))
     bench.restore(WAVE)
 
 
 def test_kept(bench):
-    """What is kept stands for a damaged run, which is said; it is not kept itself, and lacks
-    nothing."""
-    said, _ = bench.run(WAVE, "store", keep=True)
-    assert f"kept {WAVE}" in said
+    """What is damaged is not kept; without its folder what is kept stands for the run."""
+    assert f"kept {WAVE}" in bench.run(WAVE, "store", keep=True)[0]
     archive = bench.folder / "kept" / f"{WAVE}.zip"
     whole = archive.read_bytes()
     (bench.spec(WAVE).folder / "summary.json").write_text("{")
-    said, _ = bench.run(WAVE, "store", keep=True)
-    assert f"{WAVE} is not kept: " in said and "not valid JSON" in said and \
-        archive.read_bytes() == whole
-    text, wrong, _ = bench.report()
-    assert not wrong and "finished (3)" in text and "what is kept of it stands instead" in text, \
-        wrong
-    with zipfile.ZipFile(archive) as file:
-        texts = {name: file.read(name).decode() for name in file.namelist()}
-    texts["summary.json"] = json.dumps({**json.loads(texts["summary.json"]), "derived": {}})
-    archive.write_bytes(validation_kept.archive(texts))
     try:
-        bench.kept().unpack(bench.spec(WAVE))
-        raise AssertionError("taken without the speed of sound")
+        bench.run(WAVE, "store", keep=True)
+        raise AssertionError("kept, though it is damaged")
     except BadFile as problem:
-        assert f"{WAVE}.zip: summary.json: c0 is missing" in str(problem), problem
+        assert "not valid JSON" in str(problem) and archive.read_bytes() == whole
+    shutil.rmtree(bench.spec(WAVE).folder)
+    text, wrong, _ = bench.report()
+    assert not wrong and "finished (3)" in text and "1 of the 3 runs are kept" in text, wrong
     archive.unlink()
     bench.restore(WAVE)
 

@@ -16,7 +16,6 @@ with packages():
     import performance_targets
     import validation_cases
     import validation_measures
-    import validation_rates
 
 
 def lattice(nx, ny, low=(0.0, 0.0)):
@@ -98,7 +97,7 @@ class Made:
     def run(self, name):
         return self.means[name.replace("3.125mm", "fine")]
 
-    def try_target(self, case, words, measure):
+    def target(self, case, words, measure):
         try:
             self.found[words] = measure()
         except KeyError:
@@ -131,19 +130,19 @@ def test_apart():
     other = {"time_s": time[:51:2], "M1_dx_m": 2 * time[:51:2] + 0.1}
     made = [types.SimpleNamespace(folder=Path("/nowhere"), table=lambda name, t=t: t)
             for t in (run, other)]
-    off, top = validation_rates.apart(*made, "M1_dx_m")
+    off, top = validation_cases.apart(*made, "M1_dx_m")
     assert abs(off - 0.1) < 1e-12 and abs(top - 1.0) < 1e-12
 
 
 def test_gained():
     """The rows up to an instant only, and as the ledger's own reader names them."""
     ledger = {"time": np.array([0, 1, 2, 3.0]), "dissipated": np.array([0, 2, 1.5, -4])}
-    before, validation_rates.read_ledger = validation_rates.read_ledger, lambda run: ledger
+    before, validation_cases.read_ledger = validation_cases.read_ledger, lambda run: ledger
     try:
-        assert validation_rates.gained(None, 2.0) == 0.5 and validation_rates.gained(None,
-                                                                                     3.0) == 6.0
+        assert validation_cases.gained(None, 2.0) == 0.5
+        assert validation_cases.gained(None, 3.0) == 6.0
     finally:
-        validation_rates.read_ledger = before
+        validation_cases.read_ledger = before
 
 
 def test_performance_targets():

@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from scripts import PROGRAM, ROOT, packages
+from scripts import ROOT, packages
 with packages():
     import h5py  # noqa: F401  the snapshots need it
     import numpy as np
@@ -23,6 +23,7 @@ with packages():
     import validation_kept
     import validation_report
     import validation_runs
+    from runs import Job, program_hash
     from runfiles import BadFile, Reference, Run, read_table
 
 
@@ -153,51 +154,45 @@ def test_build(folder):
 def test_runner(folder):
     """Finished runs of the same case stay; another setting runs anew; an interrupted one goes
     on."""
-    spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
-    spec.folder = folder / "tiny"
-    program = validation_runs.Program(PROGRAM)
-    kept = validation_kept.Kept(folder / "kept", program.means)
-    runner = validation_runs.Runner(program, kept)
-    runner.say = lambda text: None
-    runner.run(spec)
+    job = Job(folder / "tiny", ROOT / "cases" / "still_water.cfg",
+              ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
+    runner = validation_runs.Runner(validation_kept.Kept(folder / "kept"))
+    validation_runs.say = lambda text: None
+    runner.run(job)
     assert not runner.failed, runner.failed
-    summary = spec.folder / "summary.json"
+    summary = job.folder / "summary.json"
 
-    def state_after(edit):
-        data = json.loads(summary.read_text())
-        data.update(edit)
-        summary.write_text(json.dumps(data))
-        return runner.state(spec)[0]
-    assert runner.state(spec) == ("finished", "")
+    def edit(**more):
+        job.store({**json.loads(job.record_path.read_text()), **more})
+    assert job.record()["outcome"] == "finished"
     before = summary.stat().st_mtime_ns
-    runner.run(spec)
+    runner.run(job)
     assert summary.stat().st_mtime_ns == before
-    assert state_after({"version": "0.0.0"}) == "other"
-    assert validation_runs.Runner(program, kept, any_version=True).state(spec)[0] == "finished"
-    assert state_after({"version": program.version, "exit_reason": "interrupted"}) == "interrupted"
-    runner.run(spec)
-    assert runner.state(spec)[0] == "finished" and json.loads(summary.read_text())["restarted_from"]
-    spec.sets[2] = "end_time=1 ms"
-    assert runner.state(spec)[0] == "other"
-    runner.run(spec)
-    assert json.loads(summary.read_text())["time"] == 1e-3
-    spec.sets.append("water.no_such_key=1")
-    runner.run(spec)
+    edit(program="older")
+    assert not job.record() and job.record(any_program=True)["outcome"] == "finished"
+    edit(program=program_hash(), outcome="started")
+    runner.run(job)
+    assert job.record()["outcome"] == "finished" and \
+        json.loads(summary.read_text())["restarted_from"]
+    job.sets[2] = "end_time=1 ms"
+    assert not job.record()
+    runner.run(job)
+    assert 1e-3 <= json.loads(summary.read_text())["time"] < 2e-3
+    job.sets.append("water.no_such_key=1")
+    runner.run(job)
     assert "no_such_key" in runner.failed["tiny"], runner.failed
 
 
 def report_text(folder, failed):
-    program = validation_runs.Program(PROGRAM)
-    kept = validation_kept.Kept(folder / "kept", program.means)
-    validation_report.write_report(folder, failed, kept, program.version)
+    validation_report.write_report(folder, failed, validation_kept.Kept(folder / "kept"))
     return (folder / "validation.md").read_text()
 
 
 def test_report(folder):
     """Without runs every section stands and says so; a broken reference ends its own section only;
     a run that a guard stopped is shown as failed; no figure is drawn without data."""
-    for spec in validation_runs.SPECS:
-        spec.folder = folder / "runs" / spec.name
+    for job in validation_runs.JOBS:
+        job.folder = folder / "runs" / job.name
     halted = validation_runs.BY_NAME["plate"].folder
     halted.mkdir(parents=True)
     (halted / "summary.json").write_text(json.dumps(

@@ -108,6 +108,12 @@ def case_of(scene, folder):
     return path
 
 
+def options(doc):
+    """A parser that shows the tool's own text."""
+    return argparse.ArgumentParser(description=doc,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
 # --- kept results ---
 def load(path, default=None):
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else default
@@ -178,8 +184,7 @@ def run_scenes(doc, names, run_scene, path, report):
     those of all scenes are kept beside the report at `path`, so that --only runs some anew.
     report(known) gives the values of its text, which lies beside the tool under the name of
     `path`."""
-    parser = argparse.ArgumentParser(description=doc,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(doc)
     parser.add_argument("--list", action="store_true", help="say which scenes there are")
     parser.add_argument("--only", default="", help="part of a scene's name")
     args = parser.parse_args()

@@ -46,40 +46,17 @@ def whole_run(prefixes, *parts):
     return decorate
 
 
-def measures_of(name):
-    """Names of the measures that are for a run."""
-    return [key for key, (_, prefixes, _) in MEASURES.items() if name.startswith(prefixes)]
-
-
 def measure_all(run):
     """The measures of a run to keep, for JSON."""
     found = {}
-    for name in measures_of(run.name):
-        compute, _, parts = MEASURES[name]
+    for name, (compute, prefixes, parts) in MEASURES.items():
+        if not run.name.startswith(prefixes):
+            continue
         try:
             found[name] = dict(zip(parts, compute(run)))
         except Missing as reason:
             found[name] = {"missing": str(reason)}
     return found
-
-
-def malformed(found, name):
-    """What is wrong with the measures of a run as they were read back, or None."""
-    def is_number(value):
-        return isinstance(value, (int, float)) and not isinstance(value, bool)
-    for key in measures_of(name):
-        parts = MEASURES[key][2]
-        entry = found.get(key)
-        if not isinstance(entry, dict):
-            return f"no {key}"
-        if set(entry) == {"missing"} and isinstance(entry["missing"], str):
-            continue
-        if set(entry) != set(parts):
-            return f"{key} needs {', '.join(parts)}"
-        for part, value in entry.items():
-            if not all(map(is_number, value if isinstance(value, list) else [value])):
-                return f"{key}: {part} is neither a number nor a list of them"
-    return None
 
 
 def number(run, name):
