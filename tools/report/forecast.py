@@ -19,10 +19,9 @@ import tempfile
 from pathlib import Path
 
 import study_report
-from common import BadFile, run_tool
-from study_points import PROGRAM, ROOT
-from study_results import machine
-from study_runs import timed
+from common import PROGRAM, ROOT, BadFile, run_tool
+from runs import timed
+from study import machine
 from study_tables import forecast_cells
 
 UNITS = {"s": 1, "min": 60, "h": 3600}
@@ -103,7 +102,7 @@ def main():
         for threads in all_threads:
             rows.append(compare(case, threads, args.seconds))
             print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
-    head = {"machine": machine(ROOT), "seconds": args.seconds}
+    head = {"machine": machine(), "seconds": args.seconds}
     lines = ",\n".join(json.dumps(row) for row in rows)
     args.data.write_text(json.dumps(head)[:-1] + ', "rows": [\n' + lines + "\n]}\n")
     print(f"written {args.data}")

@@ -105,7 +105,7 @@ class Job:
         say(f"{'continues' if goes_on else 'runs'} {self.name}: {self.words}")
         if not goes_on:
             shutil.rmtree(self.folder, ignore_errors=True)
-        self.folder.parent.mkdir(parents=True, exist_ok=True)
+        self.folder.mkdir(parents=True, exist_ok=True)
         record = {"case": case_hash(self.effective()), "program": program_hash(),
                   "version": program_version(), "outcome": "started"}
         self.store(record)

@@ -4,7 +4,7 @@ import csv
 import io
 
 from common import fill, np
-from study_points import SCENES
+from study import SCENES
 from study_results import CROSSING, across, cost, finished, main_error, percent
 from study_tables import table
 

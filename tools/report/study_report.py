@@ -11,7 +11,7 @@ from matplotlib.ticker import LogFormatter
 
 from common import COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
 from palette import shrink
-from study_points import SCENES
+from study import SCENES
 from study_presets import fronts, preset_table, write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
                            main_error,
@@ -166,9 +166,6 @@ def circumstances(study):
                                                   "case")):
         number = sum(map(is_so, points))
         lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
-    if not any(t.get("joules") is not None for t in timings):
-        lines.append("* Energy (J) is not measured: the machine has no counter in "
-                     "/sys/class/powercap.")
     return "\n".join(lines)
 
 

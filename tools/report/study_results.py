@@ -2,20 +2,8 @@
 """The collected results of an accuracy study (results.json), and what follows from them."""
 
 import json
-import os
 
-import common
 from common import BadFile, np, read_text
-
-
-def machine(root):
-    """What the timings depend on besides the program."""
-    flags = root / "build" / "release" / "flags"
-    words = flags.read_text().split() if flags.exists() else ["unknown compiler"]
-    compiler = f"{words[0]} {words[-1]}" if len(words) > 1 else words[0]
-    options = " ".join(w for w in words if w.startswith(("-O", "-march", "-mcpu")))
-    return {"cpu": common.machine(), "cores": os.cpu_count(),
-            "compiler": f"{compiler} {options}".strip()}
 
 
 def machine_text(m):

@@ -5,7 +5,7 @@ import math
 
 import common
 from common import np
-from study_points import SCENES
+from study import SCENES
 from study_results import CROSSING, across, against, cost, finished, main_error, percent, seconds
 
 AIMS = (0.1, 0.05, 0.02, 0.01, 0.005)
@@ -69,7 +69,7 @@ def base_table(study, case):
     names = [e["name"] for e in entry["error"]]
     head = [entry.get("what", "across"), "dp (mm)"] + \
         [f"{e['name']} (%), against: {against(e)}" for e in entry["error"]] + \
-        ["CPU s: median (spread)", "wall s", "million particle steps", "evaluations", "J",
+        ["CPU s: median (spread)", "wall s", "million particle steps", "evaluations",
          "ns a particle step"]
     rows = []
     for p in study.of(case, "base"):
@@ -77,13 +77,11 @@ def base_table(study, case):
             rows.append([f"level {p['level']}", f"**{p['outcome']}** {p['message']}"] +
                         [""] * (len(head) - 2))
             continue
-        energy = all(t.get("joules") is not None for t in p["timing"])
         rows.append([f"{across(entry, p):.3g}", f"{1e3 * p['dp']:.4g}"] +
                     [percent(p["errors"].get(n)) + (f" {CROSSING}" if study.crosses(p, n) else "")
                      for n in names] +
                     [f"{seconds(p, 'cpu')} {study.marks(p)}", seconds(p, "wall"),
                      f"{1e-6 * p['particle_steps']:.3g}", f"{p['evaluations']:,}",
-                     seconds(p, "joules") if energy else "-",
                      f"{1e9 * cost(p) / p['particle_steps']:.0f}"])
     return table(head, rows)
 

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""The definition of an accuracy study, its points, and running them."""
+
+import os
+import re
+import shlex
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import tomllib
+
+import common
+from common import ROOT, BadFile
+from runs import Job, case_hash
+from study_metrics import KINDS
+
+SCENES = {"solid": "solid alone", "fluid": "fluid alone", "coupled": "fluid and structure"}
+KEEP = ("probes.csv", "ledger.csv", "summary.json", "case.cfg", "fields.vtkhdf")
+
+
+def complain(text):
+    print(f"accuracy: {text}", file=sys.stderr, flush=True)
+
+
+def read_study(path):
+    try:
+        study = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        raise BadFile(f"{path}: {problem}") from None
+    for part in ("study", "preset", "case", "knob"):
+        study.setdefault(part, {})
+    wrong = list(trouble(study))
+    if wrong:
+        raise BadFile(f"{path}: {'; '.join(wrong)}")
+    return study
+
+
+def trouble(study):
+    """What is wrong with a definition."""
+    if not study["case"]:
+        yield "defines no [case.NAME]"
+    for name, case in study["case"].items():
+        lacks = [key for key in ("file", "scene", "levels", "across", "error") if not case.get(key)]
+        errors = case.get("error", [])
+        if lacks:
+            yield f"[case.{name}] lacks `{lacks[0]}`"
+        elif case["scene"] not in SCENES:
+            yield f"[case.{name}] scene = {case['scene']}: it is one of {', '.join(SCENES)}"
+        for file in [case.get("file", "."), *(error.get("file", ".") for error in errors)]:
+            if not (ROOT / file).exists():
+                yield f"[case.{name}] there is no file {file}"
+        for error in errors:
+            kind = error.get("kind")
+            if kind not in KINDS:
+                yield f"[case.{name}] error kind = {kind}: it is one of {', '.join(KINDS)}"
+            elif not set(KINDS[kind]) <= set(error):
+                yield f"[case.{name}] error {error.get('name')} of kind {kind} needs " + \
+                    ", ".join(KINDS[kind])
+    for name, knob in study["knob"].items():
+        if not knob.get("values"):
+            yield f"[knob.{name}] lacks `values`"
+    for preset, scenes in study["preset"].items():
+        for scene, setting in scenes.items():
+            knob, _, value = setting.partition("=")
+            values = study["knob"].get(knob, {}).get("values", {})
+            if scene not in SCENES or setting != "base" and value not in values:
+                yield f"[preset] {preset}: {scene} = {setting}: no such kind of scene, knob or value"
+
+
+# --- points ---
+def point(case, level, knob, value, sets):
+    name = f"{case}/{level}/{knob}" + (f"={value}" if value else "")
+    return {"name": name, "case": case, "level": level, "knob": knob, "value": value, "set": sets}
+
+
+def knob_points(study, name, levels):
+    """The points of a case that turn a knob."""
+    case = study["case"][name]
+    names, fixed = case.get("names", {}), case.get("set", [])
+    for knob, entry in study["knob"].items():
+        if name not in entry.get("cases", [name]) or entry.get("needs", "") not in ("", *names):
+            continue
+        numbers = entry.get("levels", case.get("knob_levels", range(len(levels))))
+        for value, sets in entry["values"].items():
+            try:
+                sets = [text.format(**names) for text in sets]
+            except (KeyError, IndexError):  # a knob of a medium that the case does not have
+                continue
+            for number in numbers:
+                if 0 <= number < len(levels):
+                    yield point(name, number, knob, value, fixed + levels[number] + sets)
+
+
+def points_of(study):
+    """Every point: (name, case, level, knob, value, --set arguments), the most important first:
+    defaults, points of presets, then the other knobs, each from coarse to fine."""
+    chosen = {tuple(setting.partition("=")[::2]) for scenes in study["preset"].values()
+              for setting in scenes.values()}
+    points = []
+    for name, case in study["case"].items():
+        levels = [[level] if isinstance(level, str) else level for level in case["levels"]]
+        points += [point(name, number, "base", "", case.get("set", []) + level)
+                   for number, level in enumerate(levels)]
+        points += knob_points(study, name, levels)
+    return sorted(points, key=lambda p: (p["knob"] != "base", (p["knob"], p["value"]) not in chosen,
+                                         p["level"]))
+
+
+# --- runs ---
+def give_jobs(points, study, runs):
+    """{name: the run of a point}, in a folder by its effective case; a point that is refused has
+    none, and the reason."""
+    def job_of(p):
+        job = Job(runs / "none", ROOT / study["case"][p["case"]]["file"], p["set"], p["name"])
+        try:
+            key = case_hash(job.effective())
+        except BadFile as problem:
+            p.update(outcome="refused", message=str(problem))
+            complain(f"{p['name']}: refused: {problem}")
+            return None
+        return Job(runs / key, job.case, job.sets, p["name"])
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return dict(zip((p["name"] for p in points), pool.map(job_of, points)))
+
+
+def done(job, older=False):
+    """The record of a run that need not be repeated: one that failed for an outside reason runs
+    again."""
+    record = job.record(older)
+    return record if record.get("outcome") not in (None, "started", "failed") else {}
+
+
+def repeats_of(cpu, rules):
+    return rules.get("repeats", 1) if cpu < rules.get("repeat_below", 1e9) else 1
+
+
+def run_point(job, study, beside, prefix):
+    """Runs a point, a cheap one several times for its timing, and keeps what it gave and took."""
+    rules, timings = study["study"], job.record().get("timings", [])
+    wanted = len(timings) + 1
+    while len(timings) < wanted:
+        record = job.run(lambda text: None, rules.get("threads", 1), rules.get("time_limit", 600),
+                         shlex.split(prefix), anew=True)
+        timings.append({**record["timing"], "beside": beside})
+        if record["outcome"] == "finished" and len(timings) == 1:
+            wanted = repeats_of(timings[0]["cpu"], rules)
+    if record["outcome"] != "finished":
+        complain(f"{job.words}: {record['outcome']}: {record['message']}")
+    for file in job.folder.glob("*"):
+        if file.name not in KEEP:
+            file.unlink()
+    job.store({**record, "timings": timings, "machine": machine(), **numbers_of(job.folder)})
+    return job.record()
+
+
+def numbers_of(folder):
+    summary = common.load(folder / "summary.json", {})
+    counters = summary.get("counters", {})
+    return {"dp": summary.get("parameters", {}).get("dp"), "steps": summary.get("steps"),
+            "solid_steps": summary.get("solid_substeps"),
+            "particle_steps": counters.get("particle_steps"),
+            "evaluations": (counters.get("evaluations") or 0) +
+                           (counters.get("solid_evaluations") or 0)}
+
+
+def machine():
+    """What the timings depend on besides the program."""
+    flags = ROOT / "build" / "release" / "flags"
+    words = flags.read_text().split() if flags.exists() else ["unknown compiler"]
+    compiler = " ".join(dict.fromkeys((words[0], words[-1])))
+    options = " ".join(w for w in words if re.match("-O|-march|-mcpu", w))
+    return {"cpu": common.machine(), "cores": os.cpu_count(),
+            "compiler": f"{compiler} {options}".strip()}
+
+
+def record_of(p, job, before, older):
+    """A point with what its run gave; of one that has not run here, what the last results say."""
+    record = job.record(older) if job else {}
+    if not job or record.get("timings"):
+        kept = {k: v for k, v in record.items() if k not in ("case", "timing", "log")}
+        return {**p, **kept, "timing": record.get("timings", [])}
+    old = before.get(p["name"], {})
+    if old.get("set") == p["set"]:
+        return {**old, **p}
+    return {**p, "timing": [], "outcome": "not run", "message": ""}
+
+
