@@ -235,8 +235,7 @@ def main():
     parser.add_argument("--filter", default="", help="part of the paths of the tests to run")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--longest", type=float, default=600, help="leave out tests that took "
-                                                                   "longer than so "
-                        "many seconds")
+                                                                   "longer than so many seconds")
     parser.add_argument("--missing", action="store_true", help="list what no test took")
     args = parser.parse_args()
     tests = collect(all_tests(args.filter), args.jobs, args.longest)

@@ -20,8 +20,7 @@ from pathlib import Path
 
 LAYERS = "base particles case geometry fluid solid coupling time output check app".split()
 LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg "
-           "stdbool "
-           "stddef stdint stdio stdlib string sys/auxv time unistd".split())
+           "stdbool stddef stdint stdio stdlib string sys/auxv time unistd".split())
 INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')
 DECLARATION = re.compile(r"^(?:extern\b.*|struct (\w+)|enum (\w+));")
 DEFINITION = re.compile(r"^(?:struct|enum) (\w+) \{")

@@ -353,10 +353,9 @@ def samples(results):
                      *counted([r for r in results if r["seed"] == seed])))
     return ["## By sample", "",
             "Tests are written for the faults of each sample that were not found. Only faults "
-            "drawn anew, "
-            "and judged before that, measure the tests. Faults that were later explained as "
-            "equivalent do "
-            "not count. Of the first sample the first verdicts were not kept.", "",
+            "drawn anew, and judged before that, measure the tests. Faults that were later "
+            "explained as equivalent do not count. Of the first sample the first verdicts were not "
+            "kept.", "",
             *table(rows, "seed", "found at first", "of", "share", "found now", "of", "share")]
 
 
@@ -380,33 +379,25 @@ def report(results, seconds):
     text = [
         "# What the tests find", "",
         f"Of {real} small faults put into the sources, the tests find {found}: {share}. This "
-        f"includes tests "
-        f"written for faults that had not been found. Of {at_first[1]} faults drawn anew last, "
-        f"before that, "
-        f"they found {at_first[2]}. "
-        f"{cover['tests']} of {cover['of']} tests run "
-        f"{100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
+        f"includes tests written for faults that had not been found. Of {at_first[1]} faults drawn "
+        f"anew last, before that, they found {at_first[2]}. {cover['tests']} of {cover['of']} "
+        f"tests run {100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
         f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version "
         f"{cover['version']}).",
         "",
         f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
         f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} "
-        f"give the "
-        f"same object code, {len(own)} are explained below. {count['does not compile']} do not "
-        f"compile. "
-        f"{count['line deleted']} stood on lines that have since been changed or deleted. "
-        f"{sanitized} are found with the build of `make test-sanitize` only. The tests that run "
-        f"its line, the shortest first, have {seconds:.0f} s of the processor to find a fault. "
-        f"Tests of more "
-        f"than {LONGEST} s were run with faults only if named by hand. So the "
+        f"give the same object code, {len(own)} are explained below. {count['does not compile']} "
+        f"do not compile. {count['line deleted']} stood on lines that have since been changed or "
+        f"deleted. {sanitized} are found with the build of `make test-sanitize` only. The tests "
+        f"that run its line, the shortest first, have {seconds:.0f} s of the processor to find a "
+        f"fault. Tests of more than {LONGEST} s were run with faults only if named by hand. So the "
         "share is a lower bound, and faults that are equivalent for a reason nobody has written "
-        "down count "
-        "as not found.", "",
+        "down count as not found.", "",
         "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit "
-        "by one, "
-        "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in "
-        "the "
-        "unoptimised build (gcov); copies of an inlined line count once.", "", *by_samples,
+        "by one, drops a term or a statement, or inverts a condition. A branch is one outcome of a "
+        "jump in the unoptimised build (gcov); copies of an inlined line count "
+        "once.", "", *by_samples,
         "## By folder", ""]
     rows = []
     for folder, share in cover["folders"].items():
@@ -457,8 +448,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
     parser.add_argument("--tests", help="judge by these only, parts of their paths with commas; "
-                                        "what they do "
-                        "not find keeps its verdict")
+                                        "what they do not find keeps its verdict")
     parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
     args = parser.parse_args()
     results = json.loads(KEPT.read_text()) if KEPT.exists() else []

@@ -23,31 +23,24 @@ LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "5"}
 FAULT_TESTS = [
     ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run finishes"),
     ("agree/test_stops.c", "a stop after every step, for every integrator, with and without "
-                           "sub-steps, and after "
-     "some steps of every shipped case. Every second run continues from an older checkpoint, on "
-     "two "
-     "threads instead of one. State, rows and snapshots are compared bit by bit"),
+                           "sub-steps, and after some steps of every shipped case. Every second "
+                           "run continues from an older checkpoint, on two threads instead of one. "
+                           "State, rows and snapshots are compared bit by bit"),
     ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another "
-                              "number "
-                              "of threads"),
+                              "number of threads"),
     ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
     ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at "
-                                 "every "
-                                 "length, or "
-     "of another case: it is recognised, and the one before it is used"),
+                                 "every length, or of another case: it is recognised, and the one "
+                                 "before it is used"),
     ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed during "
                            "a run"),
     ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file "
-                             "fails, or "
-     "the program is killed within it (strace)"),
+                             "fails, or the program is killed within it (strace)"),
     ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain "
-                           "fails "
-     "once"),
+                           "fails once"),
     ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
     ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of "
-                              "files; "
-                              "bursts of "
-     "signals"),
+                              "files; bursts of signals"),
     ("fault/test_audit.sh", "the files that a run touches, from the system calls; clocks that step "
                             "back"),
     ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
@@ -69,8 +62,7 @@ FUZZED = {
     "reference": "reference curves, and the probes compared with them",
     "series": "rows of a run that is continued",
     "checkpoint": "checkpoint reader: every input as it is, then with corrected checksums, loaded "
-                  "and "
-    "advanced by one step",
+                  "and advanced by one step",
 }
 
 
@@ -166,8 +158,7 @@ def row(first, record):
     if not record:
         return f"| {first} | not run | | | |"
     return (f"| {first} | {record['outcome']} | {'; '.join(record['found'])} | "
-            f"{record['version']}, "
-            f"{record['date']} | {record['seconds']} |")
+            f"{record['version']}, {record['date']} | {record['seconds']} |")
 
 
 def random_cases():
@@ -197,8 +188,7 @@ def summary(records):
             f"{f' but {len(found)}, which {chr(44).join(found)} mended' if found else ''}. ")
     if scenes:
         said += (f"{scenes['cases']:,} random scenes ran in {len(scenes['builds'])} builds, were "
-                 f"killed "
-                 f"{scenes['kills']:,} times, restarted and forked: "
+                 f"killed {scenes['kills']:,} times, restarted and forked: "
                  f"{f'{wrong} differ' if wrong else 'all agree bit by bit'}. ")
     return said + f"{clean} of {checks} sanitizer and analyser runs passed."
 
@@ -211,18 +201,13 @@ def random_lines():
     lines = ["", "## Random scenes", "",
              "`make random-cases` draws small scenes with a seed and runs each with every build "
              f"({', '.join(scenes['builds'])}) and on another number of threads. Each is killed "
-             f"and "
-             "restarted, stopped and restarted on another build, and forked without a change. "
-             "State, rows "
-             "and snapshots have to agree bit by bit; of a fork its last snapshot.", "",
+             "and restarted, stopped and restarted on another build, and forked without a change. "
+             "State, rows and snapshots have to agree bit by bit; of a fork its last snapshot.", "",
              f"Of {scenes['cases']:,} scenes (seeds {scenes['seeds'][0]} to {scenes['seeds'][1]}, "
              f"{scenes['steps']:,} steps) {count.get('finished', 0):,} finished with finite "
-             f"numbers and "
-             f"speeds below that of sound. {count.get('stopped by a guard', 0)} were stopped by a "
-             f"guard at "
-             f"the same step everywhere. {len(scenes['failures'])} differ. "
-             f"{count.get('refused', 0)} more "
-             f"were refused by a sentence. Program "
+             f"numbers and speeds below that of sound. {count.get('stopped by a guard', 0)} were "
+             f"stopped by a guard at the same step everywhere. {len(scenes['failures'])} differ. "
+             f"{count.get('refused', 0)} more were refused by a sentence. Program "
              f"{scenes['version']}, {scenes['date']}, {scenes['seconds']} s.",
              "", "| of the scenes | have |", "|---|---|"]
     return lines + [f"| {n} | {name} |" for name, n in scenes["features"].items()] + \
@@ -233,17 +218,15 @@ def report():
     records = kept()
     lines = ["# Reliability", "", summary(records), "",
              f"`make reliability` writes this report on {platform.system()} {platform.machine()}. "
-             f"Nothing in it "
-             "is edited by hand.", "",
+             "Nothing in it is edited by hand.", "",
              "## Fault tests", "", "Times were measured on a machine with other work.", "",
              "| test | what | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
     lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test,
               what in FAULT_TESTS]
     lines += ["", "## Fuzzers", "",
               "The fuzzers use libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and "
-              "LeakSanitizer "
-              "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the "
-              "fuzzers' logs.", "",
+              "LeakSanitizer (`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which "
+              "comes from the fuzzers' logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|",
               *fuzz_rows()]
     lines += random_lines()

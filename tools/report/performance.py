@@ -214,8 +214,7 @@ def bench_tables(rows):
                for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
     text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
                 "not measured, because this machine has no counter. [absence.md](absence.md) has "
-                "counts by "
-                "valgrind") + ".")
+                "counts by valgrind") + ".")
     if any(key[0] == "neighbours" for key in rows):
         text.append(neighbour_words(rows))
     peak = value("machine", "fma", 0, 1, "float")
@@ -273,9 +272,8 @@ def summary(rows, numbers, speed):
         (f"; missed: {'; '.join(missed)}. " if missed else ". ")
     if gate:
         text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, "
-                 f"{gate['ms']:.3g} "
-                 f"ms a step of the "
-                 f"fluid and {gate['rate']:.3g} million particle steps a second. ")
+                 f"{gate['ms']:.3g} ms a step of the fluid and {gate['rate']:.3g} million particle "
+                 "steps a second. ")
     return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one."
                    if speed else
                    "The speed-up by threads was not measured.")

@@ -165,8 +165,7 @@ def report(rows):
     early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))
     drawn = "" if len(rows) == grid_size() else (
         f"The grid has {grid_size()} plates, {grid_size() // len(DENSITIES)} of each density. Here "
-        f"are "
-        f"{len(rows)} of them, drawn at random for each density:\n" + ", ".join(
+        f"are {len(rows)} of them, drawn at random for each density:\n" + ", ".join(
             f"{sum(row['density'] == d for row in rows)} of {d:g}" for d in DENSITIES) +
         " times that of water.\n")
     gained = [[f"{row['density']:g}", row["across"], row["sides"], row["integrator"], row["scheme"],

@@ -129,8 +129,7 @@ def summary(study):
     if price:
         (low, easy), (high, hard) = min(price), max(price)
         text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} "
-                 f"({hard}) times "
-                 "the CPU time")
+                 f"({hard}) times the CPU time")
         text += (f". It does not reduce the error of: {', '.join(none)}. " if none else ". ")
     if finest:
         (low, fast, best), (high, slow, worst) = min(finest), max(finest)
@@ -152,14 +151,12 @@ def circumstances(study):
     machines = "; ".join(map(machine_text, study.head["machines"])) or "unknown machine"
     versions = ", ".join(study.head["versions"]) or "unknown"
     lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a "
-             f"run: "
-             f"{study.threads()}.",
+             f"run: {study.threads()}.",
              f"* {len(points)} of {len(study.points)} points ran, in {len(timings)} runs."]
     if timings:
         loads = [t["load"] for t in timings]
         lines.append(f"* Load average before a run: median {np.median(loads):.1f}, "
-                     f"{min(loads):.1f} to "
-                     f"{max(loads):.1f}.")
+                     f"{min(loads):.1f} to {max(loads):.1f}.")
     for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
                                ("‡", study.beside, "was timed beside another run of the study"),
                                ("§", study.older, "is of an older program with the same effective "

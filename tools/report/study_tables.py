@@ -254,8 +254,7 @@ def speed_up(data):
                  (case, 1) in each]
         if gains:
             text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast "
-                     f"as one, "
-                     f"{np.exp(np.mean(np.log(gains))):.2f} times in the geometric mean.")
+                     f"as one, {np.exp(np.mean(np.log(gains))):.2f} times in the geometric mean.")
     return text
 
 
@@ -263,8 +262,7 @@ def forecast_table(data):
     off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
            for r in data["rows"] if "failed" not in r]
     text = (f"The seconds are right within 20 % in {sum(x <= 0.2 for x in off)} of "
-            f"{len(data['rows'])} runs."
-            f"{speed_up(data)}")
+            f"{len(data['rows'])} runs.{speed_up(data)}")
     return table(["case", "threads", "until (s)", "steps forecast / measured", "error (%)",
                   "seconds forecast / measured", "error (%)", "load before"],
                  [forecast_cells(row) for row in data["rows"]]) + "\n\n" + text

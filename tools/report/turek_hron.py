@@ -342,8 +342,7 @@ def headline(kept):
     for of_case in dict.fromkeys(t[0] for t in TARGETS):
         for best in (k for k in finest.values() if k["case"] == of_case):
             lines += [f"| {of_case.upper()} | {best['across']}{changed(best)} | {quantity} {part} "
-                      f"| "
-                      f"{judged(best, quantity, part, limit)} |"
+                      f"| {judged(best, quantity, part, limit)} |"
                       for case, quantity, part, limit in TARGETS if case == of_case]
     missing = [c.upper() for c in REFERENCE if c not in {k[0] for k in finest}]
     if missing:
@@ -355,10 +354,8 @@ def report():
     kept = json.loads(KEPT.read_text())
     text = ["# The benchmark of Turek and Hron", "",
             "Written by `tools/report/turek_hron.py report` from `docs/turek_hron.json`. The first "
-            "table holds the "
-            "finest run of each case, with the constants of the case and with others. Errors are "
-            "those "
-            "against the finest reference.", "",
+            "table holds the finest run of each case, with the constants of the case and with "
+            "others. Errors are those against the finest reference.", "",
             *headline(kept), "",
             (ROOT / "docs" / "turek_hron_notes.md").read_text().strip(), "",
             "## Every run", "",
@@ -367,9 +364,8 @@ def report():
             "|---|---|---|---|---|---|---|---|---|---|---|"]
     for run in kept:
         head = (f"| {run['case'].upper()} | {run['across']}{changed(run)} | {run['version']} | "
-                f"{run['time']:.4g} | {run['exit']} | "
-                f"{run['particles']['fluid']}, {run['particles']['solid']} | "
-                f"{cost_of(run)} |")
+                f"{run['time']:.4g} | {run['exit']} | {run['particles']['fluid']}, "
+                f"{run['particles']['solid']} | {cost_of(run)} |")
         for quantity, wanted in REFERENCE[run["case"]].items():
             found = run["series"].get(quantity)
             if not found:
