@@ -4,26 +4,21 @@
 test finds.
 
     tools/dev/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md
-    (hours)
+                                            (hours)
     tools/dev/mutants.py --files src/solid  faults of one folder or file only
     tools/dev/mutants.py --again            judges anew what was not found, for instance by new
-    tests
-    tools/dev/mutants.py --again --tests fluid/test_open,test_wall --files src/fluid
-                                        the same of some files by some tests only, however long they
-                                        take
+                                            tests
     tools/dev/mutants.py --report           writes docs/mutants.md from what is kept
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or
 inverts a condition. The objects that hold the changed line are compiled, and the tests that run it
-(by gcov,
-tools/dev/coverage.py) are linked and run, the shortest first, until one finds it or their time is
-used up. Faults that none finds are judged again with the build of `make test-sanitize`, which sees
-what is read behind an array, or not freed. A fault whose object code is that of the program is
-equivalent. So are those that tests/mutants/equivalent.txt explains. Results are kept in
+(by gcov, tools/dev/coverage.py) are linked and run, the shortest first, until one finds it or their
+time is used up. Faults that none finds are judged again with the build of `make test-sanitize`,
+which sees what is read behind an array, or not freed. A fault whose object code is that of the
+program is equivalent. So are those that tests/mutants/equivalent.txt explains. Results are kept in
 tests/mutants/results.json; a run that was interrupted goes on from there. How a fault was judged
 first is kept beside its present verdict: tests are written for those of each sample that were not
-found, so only a fresh sample measures the tests. The coverage is that which tools/dev/coverage.py
-kept last.
+found, so only a fresh sample measures the tests.
 """
 import argparse
 import json
@@ -32,11 +27,10 @@ import random
 import re
 import shutil
 import subprocess
-import sys
 import threading
-import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from pathlib import Path
 
 import coverage
@@ -45,9 +39,7 @@ from coverage import ROOT, all_tests, run_test
 SANITIZER = "AddressSanitizer"
 WORK = ROOT / "build" / "mutants"
 KEPT = ROOT / "tests" / "mutants" / "results.json"
-EXPLAINED = ROOT / "tests" / "mutants" / "equivalent.txt"
 SKIPPED = 77
-LONGEST = 3  # seconds of the processor: tests that take longer are not run with faults
 LOCK = threading.Lock()
 # kind: (pattern, replacement); each match on a line of code is a candidate.
 RULES = [
@@ -140,14 +132,14 @@ class Program:
 class Tests:
     """The tests: how long they take without faults, and which lines they run."""
 
-    def __init__(self, program, jobs):
-        self.seconds = self.baseline(program, jobs)
-        self.kept = coverage.collect([t for t, s in self.seconds.items() if s <= LONGEST], jobs)
-        self.taken = {name: one["files"] for name, one in self.kept.items()}
+    def __init__(self, program, jobs, longest):
+        self.seconds = self.baseline(program, jobs, longest)
+        kept = coverage.collect([t for t, s in self.seconds.items() if s <= longest], jobs)
+        self.taken = {name: one["files"] for name, one in kept.items()}
         self.uses = {file: {str(o.relative_to(program.build).with_suffix(".c")) for o in objects}
                      for file, objects in program.uses.items()}
 
-    def baseline(self, program, jobs):
+    def baseline(self, program, jobs, longest):
         """{test: seconds of the processor}, of those that pass on the build without faults in
         time."""
         kept, seconds = WORK / "baseline.json", {}
@@ -158,7 +150,7 @@ class Tests:
         def measure(test):
             name = f"{test} {coverage.digest_of([ROOT / test])}"
             if name not in seconds:
-                status, used = run_test(test, program.build, program.build / "sphfsi", 2 * LONGEST)
+                status, used = run_test(test, program.build, program.build / "sphfsi", int(2 * longest))
                 with LOCK:
                     seconds[name] = used if status == 0 else None
                     kept.write_text(json.dumps({"key": key, "seconds": seconds}))
@@ -183,17 +175,6 @@ class Tests:
                 any(files.get(file, {"lines": {}})["lines"].values())
                 for file in self.uses[fault["file"]])]
         return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
-
-
-class Named:
-    """Tests named by parts of their paths, whatever lines they run."""
-
-    def __init__(self, parts):
-        names = [test for test in all_tests() if any(part in test for part in parts.split(","))]
-        self.seconds = dict.fromkeys(names, LONGEST)
-
-    def covering(self, fault):
-        return list(self.seconds)
 
 
 def build(program, fault, folder):
@@ -298,12 +279,17 @@ def key(fault):
     return fault["file"], fault["before"], fault["after"]
 
 
+def groups(name):
+    """Groups of lines of a text in tests/mutants, with a blank line between."""
+    path = KEPT.with_name(name)
+    text = path.read_text().strip() if path.exists() else ""
+    return [[line.strip() for line in group.split("\n")] for group in text.split("\n\n") if group]
+
+
 def explained():
-    """{fault: reason}: groups of four lines, file, before, after and reason, with a blank line
-    between."""
-    groups = EXPLAINED.read_text().strip().split("\n\n") if EXPLAINED.exists() else []
-    rows = [[line.strip() for line in group.split("\n")] for group in groups]
-    return {(file, before, after): " ".join(reason) for file, before, after, *reason in rows}
+    """{fault: reason}: groups of file, line before, line after and reason."""
+    return {(file, before, after): " ".join(reason)
+            for file, before, after, *reason in groups("equivalent.txt")}
 
 
 def standing(fault):
@@ -319,8 +305,8 @@ def standing(fault):
 
 
 def table(rows, *heads):
-    return ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads),
-            *("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows), ""]
+    return "\n".join(["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads),
+                      *("| " + " | ".join(map(str, row)) + " |" for row in rows)])
 
 
 def listed(results):
@@ -341,126 +327,107 @@ def counted(results, name="verdict"):
 
 
 def samples(results):
-    """A line for each sample: how its faults were judged first, and what the present tests find of
+    """A row for each sample: how its faults were judged first, and what the present tests find of
     them."""
-    rows = []
     for seed in sorted({r["seed"] for r in results}):
-        own = [r for r in results if r["seed"] == seed and not (
-            r["verdict"] == "equivalent" and r["first"].startswith("not "))]
-        found, real, share = counted(own, "first")
-        rows.append((seed, found if seed > 1 else "", real if seed > 1 else "", share if seed > 1
-                     else "",
-                     *counted([r for r in results if r["seed"] == seed])))
-    return ["## By sample", "",
-            "Tests are written for the faults of each sample that were not found. Only faults "
-            "drawn anew, and judged before that, measure the tests. Faults that were later "
-            "explained as equivalent do not count. Of the first sample the first verdicts were not "
-            "kept.", "",
-            *table(rows, "seed", "found at first", "of", "share", "found now", "of", "share")]
+        own = [r for r in results if r["seed"] == seed]
+        first = counted([r for r in own if not (
+            r["verdict"] == "equivalent" and r["first"].startswith("not "))], "first")
+        yield seed, *(first if seed > 1 else ("", "", "")), *counted(own)
 
 
-def report(results, seconds):
+def by_folder(results, folders):
+    for folder, (lines, all_lines, branches, all_branches) in folders.items():
+        c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
+        yield (folder, c["found"], c["not found"], c["not run"], c["equivalent"],
+               f"{100 * lines / all_lines:.2f} %",
+               f"{100 * branches / max(1, all_branches):.2f} %")
+
+
+def report(results, seconds, longest):
     """docs/mutants.md"""
     reasons, cover = explained(), json.loads(coverage.SUMMARY.read_text())
-    fresh = max((r["seed"] for r in results), default=1)
+    seed = max((r["seed"] for r in results), default=1)
     results = [{**r, **(standing(r) or {"verdict": "line deleted"})} for r in results]
     for r in results:
         if r["verdict"] in ("not found", "not run") and key(r) in reasons:
             r.update(verdict="equivalent", by=reasons[key(r)])
     results.sort(key=lambda r: (r["file"], r["line"]))
-    count = Counter(r["verdict"] for r in results)
-    found, real, share = counted(results)
-    by_samples = samples(results)
+    count, (found, real, share) = Counter(r["verdict"] for r in results), counted(results)
     own = [r for r in results if r["verdict"] == "equivalent" and r["by"] != "same object code"]
-    last = [r for r in results if r["seed"] == fresh and r not in own]
-    at_first = counted(last, "first")
-    sanitized = sum(r["verdict"] == "found" and r["by"].startswith(SANITIZER) for r in results)
+    fresh = counted([r for r in results if r["seed"] == seed and r not in own], "first")
     lines, all_lines, branches, all_branches = cover["all"]
-    text = [
-        "# What the tests find", "",
-        f"Of {real} small faults put into the sources, the tests find {found}: {share}. This "
-        f"includes tests written for faults that had not been found. Of {at_first[1]} faults drawn "
-        f"anew last, before that, they found {at_first[2]}. {cover['tests']} of {cover['of']} "
-        f"tests run {100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
-        f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version "
-        f"{cover['version']}).",
-        "",
-        f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
-        f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} "
-        f"give the same object code, {len(own)} are explained below. {count['does not compile']} "
-        f"do not compile. {count['line deleted']} stood on lines that have since been changed or "
-        f"deleted. {sanitized} are found with the build of `make test-sanitize` only. The tests "
-        f"that run its line, the shortest first, have {seconds:.0f} s of the processor to find a "
-        f"fault. Tests of more than {LONGEST} s were run with faults only if named by hand. So the "
-        "share is a lower bound, and faults that are equivalent for a reason nobody has written "
-        "down count as not found.", "",
-        "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit "
-        "by one, drops a term or a statement, or inverts a condition. A branch is one outcome of a "
-        "jump in the unoptimised build (gcov); copies of an inlined line count "
-        "once.", "", *by_samples,
-        "## By folder", ""]
-    rows = []
-    for folder, share in cover["folders"].items():
-        c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
-        rows.append((folder, c["found"], c["not found"], c["not run"], c["equivalent"],
-                     f"{100 * share[0] / share[1]:.2f} %",
-                     f"{100 * share[2] / max(1, share[3]):.2f} %"))
-    text += table(rows, "folder", "found", "not found", "on no line that tests run", "equivalent",
-                  "lines",
-                  "branches")
-    text += ["## By kind of fault", ""]
-    rows = [(kind, sum(r["kind"] == kind and r["verdict"] == "found" for r in results),
-             sum(r["kind"] == kind and r["verdict"].startswith("not") for r in results))
-            for kind in sorted({r["kind"] for r in results})]
-    text += table(rows, "kind", "found", "not found")
-    text += ["## Not found", "",
-             *table(listed(r for r in results if r["verdict"].startswith("not ")),
-                                       "where", "kind", "before", "after", "tests that were run")]
-    text += ["## Equivalent", "", *table(listed(own), "where", "kind", "before", "after", "why"),
-             *left_over(cover["missing"])]
-    (ROOT / "docs/mutants.md").write_text("\n".join(text).rstrip() + "\n")
-    print("\n".join(text[:6]))
+    kinds = Counter((r["kind"], r["verdict"].split()[0]) for r in results)
+    why = {(file, line): rest[-1] for file, *rest in groups("uncovered.txt") for line in rest[:-1]}
+    where = ("where", "kind", "before", "after")
+    text = Path(__file__).with_suffix(".md").read_text().format(
+        real=real, found=found, share=share, fresh=fresh[1], fresh_share=fresh[2],
+        tests=cover["tests"], all_tests=cover["of"], lines=100 * lines / all_lines,
+        all_lines=all_lines, branches=100 * branches / all_branches, all_branches=all_branches,
+        version=cover["version"], files=len({r["file"] for r in results}),
+        equivalent=count["equivalent"], same=count["equivalent"] - len(own), explained=len(own),
+        broken=count["does not compile"], deleted=count["line deleted"],
+        sanitized=sum(r["verdict"] == "found" and r["by"].startswith(SANITIZER) for r in results),
+        seconds=seconds, longest=longest,
+        samples=table(samples(results), "seed", "found at first", "of", "share", "found now", "of",
+                      "share"),
+        folders=table(by_folder(results, cover["folders"]), "folder", "found", "not found",
+                      "on no line that tests run", "equivalent", "lines", "branches"),
+        kinds=table([(kind, kinds[kind, "found"], kinds[kind, "not"])
+                     for kind in sorted({r["kind"] for r in results})],
+                    "kind", "found", "not found"),
+        missed=table(listed(r for r in results if r["verdict"].startswith("not ")), *where,
+                     "tests that were run"),
+        own=table(listed(own), *where, "why"),
+        left=table([(f"{file}:{line}", "`" + text.replace("|", "\\|") + "`",
+                     why.get((file, text), "")) for file, line, text in cover["missing"]],
+                   "where", "line", "why"))
+    (ROOT / "docs/mutants.md").write_text(text.rstrip() + "\n")
+    print("\n".join(text.split("\n")[:6]))
 
 
-def left_over(missing):
-    """The lines that no test runs, with the reason that tests/mutants/uncovered.txt gives for their
-    text."""
-    path = ROOT / "tests" / "mutants" / "uncovered.txt"
-    groups = path.read_text().strip().split("\n\n") if path.exists() else []
-    reasons = {}
-    for file, *rest in ([line.strip() for line in group.split("\n")] for group in groups):
-        reasons |= {(file, line): rest[-1] for line in rest[:-1]}
-    rows = [(f"{file}:{line}", "`" + text.replace("|", "\\|") + "`", reasons.get((file, text), ""))
-            for file, line, text in missing]
-    return ["## Lines that no test runs", "", *table(rows, "where", "line", "why")]
+def judge_all(faults, program, tests, results, args, slower=1):
+    """Judges faults, several at a time, and keeps each verdict at once. `slower`: by the build with
+    the sanitizers, of which only what it finds counts."""
+    def one(fault):
+        verdict, by = judge(program, tests, fault, slower * args.seconds, slower)
+        if slower > 1 and verdict != "found":
+            return
+        with LOCK:
+            known = [r for r in results if key(r) == key(fault)]
+            first = known[0]["first"] if args.again and known else verdict
+            results[:] = [r for r in results if r not in known]
+            results.append({**fault, "verdict": verdict, "first": first,
+                            "by": f"{SANITIZER}, {by}" if slower > 1 else by,
+                            "seed": fault.get("seed", args.seed)})
+            KEPT.write_text(json.dumps(results, indent=1) + "\n")
+            print(f"{len(results)} {fault['file']}:{fault['line']} {fault['kind']}: {verdict} {by}",
+                  flush=True)
+    with ThreadPoolExecutor(args.jobs) as pool:
+        list(pool.map(one, faults))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], epilog=__doc__,
+    parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=440)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--files", default="src", help="folder or file of src/")
-    parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long, and write "
-                                                                   "the report")
-    parser.add_argument("--seconds", type=float, default=8, help="of the processor, for one "
-                                                                 "fault's tests")
+    parser.add_argument("--seconds", type=float, default=8,
+                        help="of the processor, for one fault's tests (%(default)g)")
+    parser.add_argument("--longest", type=float, default=3, help="seconds of the processor: tests "
+                        "that take longer are not run with faults (%(default)g)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
-    parser.add_argument("--tests", help="judge by these only, parts of their paths with commas; "
-                                        "what they do not find keeps its verdict")
     parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
     args = parser.parse_args()
     results = json.loads(KEPT.read_text()) if KEPT.exists() else []
     if args.report:
-        report(results, args.seconds)
-        return 0
+        report(results, args.seconds, args.longest)
+        return
     WORK.mkdir(parents=True, exist_ok=True)
-    KEPT.parent.mkdir(exist_ok=True)
     program = Program("mutant")
-    tests = Named(args.tests) if args.tests else Tests(program, args.jobs)
-    seconds = float("inf") if args.tests else args.seconds
-    under = ROOT / args.files
+    tests, under = Tests(program, args.jobs, args.longest), ROOT / args.files
     if args.again:
         reasons = explained()
         faults = [now for r in results if r["verdict"].startswith("not ") and key(r) not in reasons
@@ -470,37 +437,14 @@ def main():
             sorted(p for p in under.rglob("*") if p.suffix in (".c", ".h"))
         done = {key(r) for r in results}
         faults = [f for f in draw(paths, args.count, args.seed) if key(f) not in done]
-    start = time.time()
-
-    def one(fault, program, slower):
-        if time.time() - start > 60 * args.minutes:
-            return
-        verdict, by = judge(program, tests, fault, slower * seconds, slower)
-        if args.tests and verdict.startswith("not ") or slower > 1 and verdict != "found":
-            return
-        if slower > 1:
-            by = f"{SANITIZER}, {by}"
-        with LOCK:
-            known = [r for r in results if key(r) == key(fault)]
-            first = known[0]["first"] if args.again else verdict
-            results[:] = [r for r in results if r not in known]
-            results.append({**fault, "verdict": verdict, "by": by, "first": first,
-                            "seed": fault.get("seed", args.seed)})
-            KEPT.write_text(json.dumps(results, indent=1) + "\n")
-            where = f"{fault['file']}:{fault['line']}"
-            print(f"{len(results)} {where} {fault['kind']}: {verdict} {by}", flush=True)
-
-    with ThreadPoolExecutor(args.jobs) as pool:
-        list(pool.map(lambda fault: one(fault, program, 1), faults))
+    judge_all(faults, program, tests, results, args)
     drawn = {key(fault) for fault in faults}
     missed = [r for r in results if key(r) in drawn and r["verdict"].startswith("not ")]
     if missed:
-        sanitized = Program("sanitize")
-        with ThreadPoolExecutor(args.jobs) as pool:
-            list(pool.map(lambda fault: one(fault, sanitized, 4), missed))
-    report(results, args.seconds)
-    return 0
+        args.again = True
+        judge_all(missed, Program("sanitize"), tests, results, args, slower=4)
+    report(results, args.seconds, args.longest)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
