@@ -163,7 +163,8 @@ def test_older(bench):
     """A key that came later, or held what is no longer known, stands at its default in what is
     kept: the result is used. With another value it is of another case."""
     whole = bench.archive.read_bytes()
-    for key, line, used in (("suction", None, True), ("sides", "kernel = stamped", True), ("suction", "suction = on", False),
+    for key, line, used in (("suction", None, True), ("sides", "kernel = stamped", True),
+                            ("suction", "suction = on", False),
                             ("sides", "interface = auto", True),
                             ("sides", "interface = impedance", True),
                             ("sides", "interface = held", False)):

@@ -6,8 +6,7 @@
     tools/dev/coverage.py --filter fluid   those whose path contains this
     tools/dev/coverage.py --missing        lists the lines and branches that no test took
 
-A test is run again only if it has changed, or if a source has; one that takes more than --longest
-seconds is left out then. Branches of a line are merged over the functions that the compiler made of
+A test is run again only if it has changed, or if a source has. Branches of a line are merged over the functions that the compiler made of
 it (a law is compiled for float and for double), and over the copies of an inlined function (a law
 is inlined for each set of effects, and each copy has one outcome only). Three kinds of branches do
 not count. On a line without a decision of its own they belong to functions that were put into it,
@@ -27,7 +26,9 @@ import sys
 import tempfile
 import threading
 import time
+from collections import defaultdict
 from concurrent.futures import ThreadPoolExecutor
+from itertools import zip_longest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,10 +45,9 @@ LEFT_OUT = ("tests/tools/", "test_wheel", "test_install", "test_setup", "test_au
 
 def all_tests(part=""):
     """The tests that run the program, as paths below ROOT."""
-    found = sorted(path for kind in ("c", "sh", "py")
+    found = sorted(str(path.relative_to(ROOT)) for kind in ("c", "sh", "py")
                    for path in ROOT.glob(f"tests/*/test_*.{kind}"))
-    names = [str(path.relative_to(ROOT)) for path in found]
-    return [name for name in names if part in name and not any(word in name for word in LEFT_OUT)]
+    return [name for name in found if part in name and not any(word in name for word in LEFT_OUT)]
 
 
 def command(test, build):
@@ -70,8 +70,8 @@ def run_test(test, build, program, seconds, **more):
     env = {**ENV, "SPHFSI": str(program), "SPHFSI_LIBRARY": library, "BUILD": str(build), **more}
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(command(test, build), cwd=ROOT, env=env,
-                                   stdin=subprocess.DEVNULL,
-                                   stdout=output, stderr=output, preexec_fn=lambda: limit(seconds))
+                                   stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=output, preexec_fn=lambda: limit(seconds))
         alarm = threading.Timer(30 + 10 * seconds, os.killpg, (process.pid, 9))
         alarm.start()
         _, status, used = os.wait4(process.pid, 0)
@@ -102,7 +102,7 @@ def gcov(folder):
     for k in range(0, len(data), 20):
         subprocess.run(["gcov", "-b", "--json-format", "--preserve-paths",
                         *map(str, data[k:k + 20])],
-                       cwd=out, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+                       cwd=out, capture_output=True, check=True)
     result = {}
     for path in out.glob("*.gz"):
         for file in json.loads(gzip.decompress(path.read_bytes()))["files"]:
@@ -110,12 +110,10 @@ def gcov(folder):
             name = str(Path(name).relative_to(ROOT)) if name.startswith(str(ROOT)) else name
             if not name.startswith("src/") or name.endswith(".def"):
                 continue
-            merge(result, {name: {
-                "lines": {row["line_number"]: row["count"] > 0 for row in file["lines"]},
-                "branches": {}}})
             for row in file["lines"]:
-                taken = [branch["count"] > 0 for branch in row["branches"]]
-                merge(result, {name: {"lines": {}, "branches": {row["line_number"]: taken}}})
+                line, taken = row["line_number"], [b["count"] > 0 for b in row["branches"]]
+                merge(result, {name: {"lines": {line: row["count"] > 0},
+                                      "branches": {line: taken}}})
     return result
 
 
@@ -126,10 +124,7 @@ def merge(total, more):
             own["lines"][int(line)] = own["lines"].get(int(line), False) or taken
         for line, taken in file["branches"].items():
             before = own["branches"].get(int(line), [])
-            if len(before) < len(taken):
-                before, taken = taken, before
-            own["branches"][int(line)] = [a or (k < len(taken) and taken[k]) for k,
-                                          a in enumerate(before)]
+            own["branches"][int(line)] = [any(pair) for pair in zip_longest(before, taken)]
 
 
 def kept(test):
@@ -148,20 +143,17 @@ def cover(test, key):
     print(f"{test}: {seconds:.0f} s, exit status {status}", flush=True)
 
 
-def collect(names, jobs=2, longest=600):
+def collect(names, jobs=2):
     """{test: its exit status and what it took}; tests whose outcome is kept are not run again."""
     base = digest_of(sources())
     keys = {name: base + digest_of([ROOT / name]) for name in names}
-    old = {name: json.loads(kept(name).read_text()) for name in names if kept(name).exists()}
-    stale = [name for name in names if name not in old or old[name]["key"] != keys[name]]
-    late = {name for name in stale if name in old and old[name].get("seconds", 0) > longest}
-    names, stale = ([name for name in some if name not in late] for some in (names, stale))
+    stale = [name for name in names if not kept(name).exists() or
+             json.loads(kept(name).read_text())["key"] != keys[name]]
     if stale:
         goals = [f"build/coverage/{name.removesuffix('.c')}" for name in stale
                  if name.endswith(".c")]
         subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=coverage", "all", *goals],
-                       cwd=ROOT,
-                       check=True)
+                       cwd=ROOT, check=True)
         KEPT.mkdir(exist_ok=True)
         with ThreadPoolExecutor(jobs) as pool:
             list(pool.map(lambda name: cover(name, keys[name]), stale))
@@ -194,20 +186,23 @@ def total_of(tests):
     return total
 
 
-def keep_summary(tests):
+def text_of(name, line):
+    return (ROOT / name).read_text().split("\n")[line - 1].strip()
+
+
+def keep_summary(tests, total):
     """Keeps in SUMMARY what tools/dev/mutants.py reports."""
-    total, folders = total_of(tests), {}
+    folders = defaultdict(dict)
     for name, file in total.items():
-        folders.setdefault(name.split("/")[1], {})[name] = file
-    lines = [(name, line, (ROOT / name).read_text().split("\n")[line - 1].strip())
-             for name, line, what in missing(total) if what == "line"]
+        folders[name.split("/")[1]][name] = file
     version = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True,
                              text=True)
     SUMMARY.write_text(json.dumps({
         "version": version.stdout.strip(), "tests": len(tests), "of": len(all_tests()),
         "all": shares(total),
         "folders": {name: shares(files) for name, files in sorted(folders.items())},
-        "missing": lines}, indent=1) + "\n")
+        "missing": [(name, line, text_of(name, line)) for name, line, what in missing(total)
+                    if what == "line"]}, indent=1) + "\n")
 
 
 def shares(total):
@@ -230,27 +225,22 @@ def missing(total):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], epilog=__doc__,
+    parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--filter", default="", help="part of the paths of the tests to run")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--longest", type=float, default=600, help="leave out tests that took "
-                                                                   "longer than so many seconds")
     parser.add_argument("--missing", action="store_true", help="list what no test took")
     args = parser.parse_args()
-    tests = collect(all_tests(args.filter), args.jobs, args.longest)
+    tests = collect(all_tests(args.filter), args.jobs)
     total = total_of(tests)
     if not args.filter:
-        keep_summary(tests)
-    if args.missing:
-        for name, line, what in missing(total):
-            text = (ROOT / name).read_text().split("\n")[line - 1].strip()
-            print(f"{name}:{line}: {what}: {text}")
+        keep_summary(tests, total)
+    for name, line, what in missing(total) if args.missing else ():
+        print(f"{name}:{line}: {what}: {text_of(name, line)}")
     lines, all_lines, branches, all_branches = shares(total)
     print(f"{100 * lines / all_lines:.2f} % of {all_lines} lines, "
           f"{100 * branches / all_branches:.2f} % of {all_branches} branches")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

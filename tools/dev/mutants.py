@@ -22,7 +22,6 @@ found, so only a fresh sample measures the tests.
 """
 import argparse
 import json
-import os
 import random
 import re
 import shutil
@@ -30,7 +29,6 @@ import subprocess
 import threading
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from pathlib import Path
 
 import coverage
@@ -150,7 +148,8 @@ class Tests:
         def measure(test):
             name = f"{test} {coverage.digest_of([ROOT / test])}"
             if name not in seconds:
-                status, used = run_test(test, program.build, program.build / "sphfsi", int(2 * longest))
+                status, used = run_test(test, program.build, program.build / "sphfsi",
+                                        int(2 * longest))
                 with LOCK:
                     seconds[name] = used if status == 0 else None
                     kept.write_text(json.dumps({"key": key, "seconds": seconds}))

@@ -15,7 +15,7 @@ from pathlib import Path
 from resource import RLIMIT_CPU, setrlimit
 from signal import SIGXCPU
 
-from common import PROGRAM, ROOT, BadFile, ask, load, program_version, settings
+from common import PROGRAM, ROOT, ask, load, program_version, settings
 
 # Sources that no run comes by: they look ahead, list, or hold what reports have measured.
 ASIDE = re.compile(r"(evidence|presets|citations|template|embedded|explain|forecast|"

@@ -128,7 +128,7 @@ def run_suite(scenes, form, top, minutes):
 
 def integrators(top):
     """Rows (multiple of the solid's limit, result of the plate with each integrator)."""
-    rows = []
+    rows, bound = [], None
     for factor in FACTORS:
         cells = []
         for integrator in ("symplectic", "verlet", "leapfrog"):

@@ -65,7 +65,7 @@ def trouble(study):
             knob, _, value = setting.partition("=")
             values = study["knob"].get(knob, {}).get("values", {})
             if scene not in SCENES or setting != "base" and value not in values:
-                yield f"[preset] {preset}: {scene} = {setting}: no such kind of scene, knob or value"
+                yield f"[preset] {preset}: {scene} = {setting}: no such scene, knob or value"
 
 
 # --- points ---

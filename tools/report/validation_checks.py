@@ -216,8 +216,9 @@ def impact_figure(report, sensors, curve):
                   xlim=(2, 4.5), ylim=(-0.5, 4.5))
     axes[0].set_ylabel(r"$p/(\rho g H)$")
     axes[2].legend(fontsize=7)
-    return report.save(figure, "impact", "Pressures at the far wall, mean over 5 ms; the dashed line "
-                                         "is the measured peak, at 80 mm that of the later wave")
+    return report.save(figure, "impact", "Pressures at the far wall, mean over 5 ms; the dashed "
+                                         "line is the measured peak, at 80 mm that of the later "
+                                         "wave")
 
 
 def impact_sensors():

@@ -179,8 +179,8 @@ class Kept:
         """Keeps the result of a run that has ended; returns the file."""
         run = Run(job.folder)
         check_ended(run)
-        files = {name: read_text(job.folder / name) for name in ("summary.json", "case.cfg", *TABLES)
-                 if (job.folder / name).is_file()}
+        files = {name: read_text(job.folder / name)
+                 for name in ("summary.json", "case.cfg", *TABLES) if (job.folder / name).is_file()}
         # Where it was run says nothing about the result.
         files["summary.json"] = re.sub(
             r'(?m)^(\s*"(?:case|restarted_from|forked_from)": ").*/', r"\1", files["summary.json"])
