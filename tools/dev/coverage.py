@@ -6,12 +6,12 @@
     tools/dev/coverage.py --filter fluid   those whose path contains this
     tools/dev/coverage.py --missing        lists the lines and branches that no test took
 
-A test is run again only if it has changed, or if a source has. Branches of a line are merged over the functions that the compiler made of
-it (a law is compiled for float and for double), and over the copies of an inlined function (a law
-is inlined for each set of effects, and each copy has one outcome only). Three kinds of branches do
-not count. On a line without a decision of its own they belong to functions that were put into it,
-and count where these are written. A failed ASSERT is what no input reaches. And TRY hands on an
-error, which counts where it arises.
+A test is run again only if it has changed, or if a source has. Branches of a line are merged over
+the functions that the compiler made of it (a law is compiled for float and for double), and over
+the copies of an inlined function (a law is inlined for each set of effects, and each copy has one
+outcome only). Three kinds of branches do not count. On a line without a decision of its own they
+belong to functions that were put into it, and count where these are written. A failed ASSERT is
+what no input reaches. And TRY hands on an error, which counts where it arises.
 """
 import argparse
 import gzip
