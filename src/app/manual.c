@@ -56,7 +56,6 @@ static void default_of(const struct param *param, char *text, size_t size)
         break;
     }
     case PARAM_VECTOR:
-    case PARAM_TIME_VECTOR:
         snprintf(text, size, "%g, %g", param->vector_default[0], param->vector_default[1]);
         break;
     case PARAM_TEXT: snprintf(text, size, "%s", param->text_default); break;
@@ -98,19 +97,18 @@ static void param_type_text(const struct param *param, char *text, size_t size)
         [PARAM_CHOICE] = "choice",
         [PARAM_TEXT] = "text",
         [PARAM_VECTOR] = "two numbers",
-        [PARAM_TIME_VECTOR] = "two numbers or expressions in t",
-        [PARAM_FIELD_EXPR] = "expression in x, y",
+        [PARAM_EXPR] = "expression",
         [PARAM_SHAPES] = "shape, may be repeated",
         [PARAM_NUMBERS] = "numbers",
-        [PARAM_TIME_EXPR] = "expression in t",
-        [PARAM_FLOW_EXPR] = "expression in x, y, t",
     };
-    if (param->type == PARAM_FIELD_EXPR && param->count == 2)
-        snprintf(text, size, "two expressions in x, y");
-    else if (param->type == PARAM_FLOW_EXPR && param->count == 2)
-        snprintf(text, size, "two expressions in x, y, t");
+    static const char *const scopes[] = {"", " in x, y", " in t", " in x, y, t"};
+    const char *const name = names[param->type];
+    if (param->expr_offset)
+        snprintf(text, size, "%s or expressions%s", name, scopes[param->scope]);
     else
-        snprintf(text, size, "%s", names[param->type]);
+        snprintf(text, size, "%s%s%s%s",
+                 param->type == PARAM_EXPR && param->count == 2 ? "two " : "", name,
+                 param->type == PARAM_EXPR && param->count == 2 ? "s" : "", scopes[param->scope]);
 }
 
 /* "> 0, <= 1000", the names of a choice joined by "or", or nothing. */

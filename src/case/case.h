@@ -48,9 +48,7 @@ struct case_section {
     int id; /* enum section_id or SECTION_constants */
     const char *name;
     int line;
-    int index;       /* its number among the sections of its kind */
-    bool incomplete; /* a line of it is invalid, or the section of its `like` is unknown */
-    bool invalid;    /* so is one of its keys or values */
+    int index; /* its number among the sections of its kind */
 };
 
 struct constant {
@@ -68,42 +66,42 @@ struct reader {
     struct scene *scene;
     struct diag *diag;
     struct arena temp; /* valid until the scene is read */
-    const char *path;  /* as in messages */
     int n_entries, n_sections, n_constants;
     struct entry *entries;
     struct case_section *sections; /* the first one is the top of the file */
-    struct constant
-        *constants;       /* constants, and the numbers at the top, which can be used as names */
-    const char *misnamed; /* a constant that has the name of a unit or a function */
-    int depth;            /* of constants that depend on constants */
-    bool cause_named;     /* the message names the invalid constant */
-    bool in_lost_section; /* after a section header that is invalid */
-    bool lost;            /* invalid lines or sections are skipped */
-    bool checked;         /* all checks have been made */
-    int n_problems;       /* those beyond the array are only counted */
+    struct constant *constants;    /* and the numbers at the top, which can be used as names */
+    int depth;                     /* of constants that depend on constants */
+    bool cause_named;              /* the message names the invalid constant */
+    bool in_lost_section;          /* after a section header that is invalid */
+    bool lost;                     /* invalid lines, sections or keys are skipped */
+    int n_problems;                /* those beyond the array are only counted */
     struct problem problems[CASE_MAX_PROBLEMS];
 };
 
 /* --- case/messages.c: problems are stored, so that the reader can continue and report all of them
  * --- */
 
-/* Stores "FILE:LINE: ..." or "--set ...: ..."; returns ERR_INPUT. */
-enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
-/* A name that no section of a kind has, nor of `also`, if that is another kind. */
-enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
-                         enum section_id kind, enum section_id also);
-enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
-    SPHFSI_PRINTF(3, 4);
-/* Stores "FILE:LINE: key = value: ...". */
-enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
-    SPHFSI_PRINTF(3, 4);
+/* Where a problem is: a line, an entry, or a section, there the line of `key` if it is not NULL.
+ * The message begins with FILE:LINE or --set, then [section] or, with `value`, key = value. */
+struct place {
+    int line;
+    const struct entry *entry;
+    const void *section;
+    const char *key, *value;
+};
+/* Stores a problem; returns ERR_INPUT. */
+enum err problem(struct reader *r, struct place at, const char *format, ...) SPHFSI_PRINTF(3, 4);
+#define bad_line(r, n, ...) problem(r, (struct place){.line = (n)}, __VA_ARGS__)
+#define bad_entry(r, e, ...) problem(r, (struct place){.entry = (e)}, __VA_ARGS__)
+#define bad_value(r, e, ...) \
+    problem(r, (struct place){.entry = (e), .value = (e)->value}, __VA_ARGS__)
+#define bad_section(r, s, k, ...) \
+    problem(r, (struct place){.section = (s), .key = (k)}, __VA_ARGS__)
+#define bad_key(r, s, k, v, ...) \
+    problem(r, (struct place){.section = (s), .key = (k), .value = (v)}, __VA_ARGS__)
 
 /* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
-/* Whether all lines, keys and values of a section are valid, or it is not given. */
-bool case_sound(const struct reader *r, enum section_id id, int index);
-/* The same for all sections of a kind. */
-bool case_all_sound(const struct reader *r, enum section_id id);
 /* The problems stored so far, sorted by line, as the failure in the diag. */
 void case_report(struct reader *r);
 
@@ -111,15 +109,9 @@ void case_report(struct reader *r);
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
 enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
 
-/* case/numbers.c: pieces of a value, constants, numbers. */
-struct slice slice_of(const char *text);
-/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
- * remains. */
-bool slice_next(struct slice *rest, char separator, struct slice *piece);
-int slice_count(struct slice text, char separator);
-/* Hint for a message on the count of numbers if a comma stands between digits; otherwise "". */
-const char *case_comma_hint(const char *value);
-/* Finds the names of all constants and of the numbers at the top; then evaluates all of them. */
+/* case/numbers.c: constants, numbers. */
+/* Finds the names of all constants and of the numbers at the top; ERR_INPUT if one is invalid. Then
+ * evaluates all of them. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
@@ -132,7 +124,8 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
 enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
                         const char *unit) SPHFSI_CHECKED;
 
-/* case/shapes.c: adds a shape to a list. */
+/* case/shapes.c: adds a shape to a list; words by enum shape_kind. */
+extern const char *const shape_words[];
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
     SPHFSI_CHECKED;
 
@@ -140,23 +133,20 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
 enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
                     void *section) SPHFSI_CHECKED;
 
-/* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case
- * wins. */
+/* case/presets.c: what `scheme` and `accuracy` choose stands in for the defaults, so that a key of
+ * the case wins; and defaults that depend on other values. */
 void case_apply_presets(struct reader *r);
+void case_apply_defaults(struct scene *scene);
 
+/* case/check.c: names of other sections; then conditions on a valid scene, each section by its
+ * own function. */
+enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
+enum err case_check(struct reader *r) SPHFSI_CHECKED;
+enum err case_check_motion(struct reader *r, const void *section) SPHFSI_CHECKED;
+enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
+enum err case_check_probe(struct reader *r, const void *section) SPHFSI_CHECKED;
 /* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
-/* case/check.c: checks that involve several values. Those whose values depend on a problem already
- * stored are left out. */
-enum err case_check(struct reader *r) SPHFSI_CHECKED;
-/* case/check_motion.c */
-enum err case_check_motion(struct reader *r, const struct scene_motion *m) SPHFSI_CHECKED;
-/* case/open.c */
-enum err case_check_open(struct reader *r) SPHFSI_CHECKED;
-/* case/check_output.c */
-enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
-/* case/check_probes.c */
-enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
 /* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place
  * of the key, or with the table's name and line. The caller closes `csv`, also after a failure. */

@@ -2,301 +2,224 @@
  * Conditions on a scene beyond the range of each value: names that must exist, values that must
  * agree. */
 #include "case/case.h"
-
-#include "case/effects.h"
 #include "case/expr.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+/* --- names of other sections --- */
+
+/* Keys whose text names one, two or several sections of one kind or another. */
+static const struct naming {
+    enum section_id section;
+    const char *key;
+    enum section_id kind, also;
+    enum { ONE, TWO, SEVERAL } number;
+} naming[] = {
+    {SECTION_wall, "motion", SECTION_motion, SECTION_motion, ONE},
+    {SECTION_solid, "clamp_motion", SECTION_motion, SECTION_motion, ONE},
+    {SECTION_solid, "joined", SECTION_solid, SECTION_solid, ONE},
+    {SECTION_contact, "between", SECTION_solid, SECTION_wall, TWO},
+    {SECTION_load, "body", SECTION_solid, SECTION_solid, ONE},
+    {SECTION_probe, "body", SECTION_solid, SECTION_wall, SEVERAL},
+    {SECTION_probe, "on", SECTION_solid, SECTION_wall, ONE},
+};
+
+static enum err check_name(struct reader *r, const struct naming *row, const void *section,
+                           const char *name)
+{
+    struct nearest near = {0};
+    const enum section_id kinds[] = {row->kind, row->also};
+    for (int n = 0; n < 2; n++)
+        for (int k = 0; k < section_count(r->scene, kinds[n]); k++) {
+            const struct scene_section_common *const other = section_at(r->scene, kinds[n], k);
+            if (strcmp(other->name, name) == 0) return ERR_OK;
+            nearest_offer(&near, name, other->name);
+        }
+    const bool two = row->also != row->kind;
+    return bad_key(r, section, row->key, name, "there is no [%s%s%s] of that name%s",
+                   section_table[row->kind].word, two ? "] or [" : "",
+                   two ? section_table[row->also].word : "", nearest_hint(&near));
+}
+
+static enum err check_naming(struct reader *r, const struct naming *row, const void *section)
+{
+    char name[SCENE_TEXT], pair[2][SCENE_TEXT];
+    const char *const text = (const char *)section + param_find(row->section, row->key)->offset;
+    if (!*text) return ERR_OK;
+    if (row->number == ONE) return check_name(r, row, section, text);
+    if (row->number == TWO && !scene_pair(text, pair))
+        return bad_key(r, section, row->key, text, "two names are expected, separated by a comma");
+    for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, row, section, name));
+    return ERR_OK;
+}
+
+enum err case_check_names(struct reader *r)
+{
+    /* What is measured of a body but for forces. */
+    static const struct naming solid = {SECTION_probe, "body", SECTION_solid, SECTION_solid, ONE};
+    for (size_t n = 0; n < COUNT_OF(naming); n++)
+        for (int k = 0; k < section_count(r->scene, naming[n].section); k++) {
+            const void *const section = section_at(r->scene, naming[n].section, k);
+            const bool one = naming[n].section == SECTION_probe && naming[n].number == SEVERAL &&
+                             r->scene->probe[k].quantity != PROBE_FORCE;
+            TRY(case_go_on(r, check_naming(r, one ? &solid : &naming[n], section)));
+        }
+    return ERR_OK;
+}
+
 /* --- fluid --- */
 
 /* c0 as given, or by Eq. 3. */
-static enum err sound_speed(struct reader *r, const struct scene_fluid *f, double *c0)
+static double sound_speed(const struct scene *scene, const struct scene_fluid *f)
 {
-    const double least = 10 * max2(f->max_speed, sqrt(f->max_pressure / f->density));
-    const int line = f->common.line;
-    *c0 = f->sound_speed > 0 ? f->sound_speed : r->scene->numerics.sound_factor / 10 * least;
-    if (*c0 == 0)
-        return bad_line(r, line,
-                        "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "
-                        "for Eq. 3",
-                        f->common.name);
-    if (*c0 > 1e7)
-        return bad_line(r, line,
-                        "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above the limit of "
-                        "1e7; reduce `max_speed` or `max_pressure`",
-                        f->common.name, *c0);
-    if (f->pressure.e[0] && !isnan(f->surface))
-        return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; leave one out",
-                        f->common.name);
-    return ERR_OK;
+    const double largest = max2(f->max_speed, sqrt(f->max_pressure / f->density));
+    return f->sound_speed > 0 ? f->sound_speed : scene->numerics.sound_factor * largest;
 }
 
-/* All fluid has the same properties. */
-static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
-                       double its)
+/* Two sections that must have the same value of a key; sound_speed: that of Eq. 3 if it is not
+ * given. */
+static enum err same_value(struct reader *r, const void *mine, const void *its, const char *key,
+                           const char *all)
 {
-    const struct param *const param = param_find(SECTION_fluid, key);
-    char mine_text[SCENE_NAME], its_text[SCENE_NAME];
-    if (param->type == PARAM_CHOICE) {
-        param_choice_name(param, (int)mine, mine_text);
-        param_choice_name(param, (int)its, its_text);
-    } else {
-        snprintf(mine_text, sizeof mine_text, "%g", mine);
-        snprintf(its_text, sizeof its_text, "%g", its);
+    const struct scene_section_common *const common = its;
+    const void *const section[] = {mine, its};
+    const struct param *const param = param_find((enum section_id)common->section, key);
+    double value[2];
+    char title[TITLE_TEXT], text[2][SCENE_NAME];
+    for (int k = 0; k < 2; k++) {
+        value[k] = param_number(param, section[k]);
+        if (strcmp(key, "sound_speed") == 0) value[k] = sound_speed(r->scene, section[k]);
+        snprintf(text[k], SCENE_NAME, "%g", value[k]);
+        if (param->type == PARAM_CHOICE) param_choice_name(param, (int)value[k], text[k]);
     }
-    return bad_line(
-        r, f->common.line,
-        "[fluid %s] and [fluid %s] differ in `%s`: %s and %s; all fluid must have the same value",
-        f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
+    if (!(fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))) return ERR_OK;
+    section_title(common, title);
+    return bad_section(r, mine, NULL,
+                       "and %s differ in `%s`: %s and %s; all %s must have the same value", title,
+                       key, text[0], text[1], all);
 }
 
-/* Compares a fluid with the first one: in all numbers but those of its place and of Eq. 3. */
-static enum err check_fluid(struct reader *r, const struct scene_fluid *f, double c0)
+/* All fluid has the same numbers, but those of its place and of Eq. 3. */
+static enum err check_fluid(struct reader *r, const void *section)
 {
     static const char own[] = " max_speed max_pressure particle_mass surface ";
-    const struct scene *const scene = r->scene;
+    const struct scene_fluid *const f = section;
+    struct scene *const scene = r->scene;
+    const double c0 = sound_speed(scene, f);
+    if (c0 == 0)
+        return bad_section(r, f, NULL,
+                           "needs `sound_speed`, or `max_speed` and `max_pressure` for Eq. 3");
+    if (c0 > 1e7)
+        return bad_section(r, f, NULL,
+                           "Eq. 3 gives a speed of sound of %g m/s, above the limit of 1e7; reduce "
+                           "`max_speed` or `max_pressure`",
+                           c0);
+    if (f->pressure.e[0] && !isnan(f->surface))
+        return bad_section(r, f, NULL, "has both `surface` and `pressure`; leave one out");
+    if (f == scene->fluid) {
+        scene->c0 = c0;
+        scene->rho0 = f->density;
+    }
     for (int k = 0; k < PARAM_COUNT; k++) {
         const struct param *const param = &param_table[k];
         const bool number = param->type == PARAM_REAL || param->type == PARAM_CHOICE;
-        char word[SCENE_NAME];
+        char word[SCENE_NAME + 2];
         snprintf(word, sizeof word, " %s ", param->key);
-        if (param->section != SECTION_fluid || !number || strstr(own, word)) continue;
-        double value[2] = {c0, scene->c0}; /* of sound_speed: that of Eq. 3 if it is not given */
-        for (int n = 0; n < 2 && strcmp(param->key, "sound_speed") != 0; n++) {
-            const char *const at = (const char *)(n ? &scene->fluid[0] : f) + param->offset;
-            value[n] = param->type == PARAM_REAL ? *(const double *)(const void *)at
-                                                 : *(const int *)(const void *)at;
-        }
-        if (fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))
-            TRY(case_go_on(r, differ(r, f, param->key, value[0], value[1])));
+        if (param->section == SECTION_fluid && number && !strstr(own, word))
+            TRY(case_go_on(r, same_value(r, f, scene->fluid, param->key, "fluid")));
     }
     return ERR_OK;
 }
 
-static enum err check_fluids(struct reader *r)
-{
-    struct scene *scene = r->scene;
-    double c0;
-    if (scene->n_fluid == 0) return ERR_OK;
-    TRY(sound_speed(r, &scene->fluid[0], &scene->c0));
-    scene->rho0 = scene->fluid[0].density;
-    for (int k = 1; k < scene->n_fluid; k++) {
-        const enum err err = sound_speed(r, &scene->fluid[k], &c0);
-        TRY(case_go_on(r, err ? err : check_fluid(r, &scene->fluid[k], c0)));
-    }
-    return ERR_OK;
-}
+/* --- solids, contact, loads --- */
 
-/* --- references between sections --- */
-
-/* The sections that name a motion. */
-static enum err check_moved(struct reader *r)
+static enum err check_solid(struct reader *r, const void *section)
 {
-    const struct scene *scene = r->scene;
-    for (int k = 0; k < scene->n_wall; k++)
-        if (case_sound(r, SECTION_wall, k) && *scene->wall[k].motion &&
-            scene_find_motion(scene, scene->wall[k].motion) < 0)
-            TRY(case_go_on(r, case_no_section(r, scene_line(r->scene, SECTION_wall, k, "motion"),
-                                              "motion", scene->wall[k].motion, SECTION_motion,
-                                              SECTION_motion)));
-    for (int k = 0; k < scene->n_solid; k++) {
-        const struct scene_solid *b = &scene->solid[k];
-        if (!*b->clamp_motion || !case_sound(r, SECTION_solid, k)) continue;
-        if (scene_find_motion(scene, b->clamp_motion) < 0)
-            TRY(case_go_on(r,
-                           case_no_section(r,
-                                           scene_line(r->scene, SECTION_solid, k, "clamp_motion"),
-                                           "clamp_motion", b->clamp_motion, SECTION_motion,
-                                           SECTION_motion)));
-        else if (b->clamp.n == 0)
-            TRY(case_go_on(r, bad_line(r, b->common.line,
-                                       "[solid %s] has a `clamp_motion` but no `clamp`",
-                                       b->common.name)));
-    }
-    return ERR_OK;
-}
-
-/* Keys with one common value for a pair across a bond. */
-static enum err check_joint(struct reader *r, const struct scene_solid *a,
-                            const struct scene_solid *b)
-{
-    const struct {
-        const char *key;
-        double mine, its;
-    } same[] = {
-        {"dp", a->dp, b->dp},
-        {"hourglass", a->hourglass, b->hourglass},
-        {"hourglass_form", a->hourglass_form, b->hourglass_form},
-        {"viscosity_form", a->viscosity_form, b->viscosity_form},
-    };
-    for (size_t k = 0; k < COUNT_OF(same); k++)
-        if (same[k].mine != same[k].its)
-            return bad_line(r, a->common.line,
-                            "[solid %s] is joined to [solid %s] and differs in `%s`; joined "
-                            "bodies need the same value",
-                            a->common.name, b->common.name, same[k].key);
-    return ERR_OK;
-}
-
-/* A cell holds a limited number of particles. */
-static enum err check_spacing(struct reader *r, int solid)
-{
-    const struct scene *scene = r->scene;
-    const double ratio = scene->top.dp / scene_solid_dp(scene, solid);
-    if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || scene->n_fluid == 0)) return ERR_OK;
-    return bad_line(
-        r, scene->solid[solid].common.line,
-        "[solid %s] dp = %g m must be between a third of the dp at the top, %g m, and that dp%s",
-        scene->solid[solid].common.name, scene->solid[solid].dp, scene->top.dp,
-        scene->n_fluid ? "" : "; without fluid it may be finer");
-}
-
-static enum err check_joined(struct reader *r, int solid)
-{
-    const struct scene *scene = r->scene;
-    const struct scene_solid *const a = &scene->solid[solid];
-    TRY(check_spacing(r, solid));
+    /* Keys with one common value for a pair across a bond. */
+    static const char *const same[] = {"dp", "hourglass", "hourglass_form", "viscosity_form"};
+    const struct scene *const scene = r->scene;
+    const struct scene_solid *const a = section;
+    if (*a->clamp_motion && a->clamp.n == 0)
+        return bad_section(r, a, NULL, "has a `clamp_motion` but no `clamp`");
+    /* A cell holds a limited number of particles. */
+    const double ratio = a->dp > 0 ? scene->top.dp / a->dp : 1;
+    if (ratio < 1 - 1e-9 || (ratio > 3 + 1e-9 && scene->n_fluid > 0))
+        return bad_section(r, a, NULL,
+                           "dp = %g m must be between a third of the dp at the top, %g m, and that "
+                           "dp%s",
+                           a->dp, scene->top.dp,
+                           scene->n_fluid ? "" : "; without fluid it may be finer");
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(scene, a->joined);
-    if (other < 0)
-        return case_no_section(r, scene_line(r->scene, SECTION_solid, solid, "joined"), "joined",
-                               a->joined, SECTION_solid, SECTION_solid);
-    if (other == solid)
-        return bad_line(r, a->common.line,
-                        "[solid %s] joined = %s: a body cannot be joined to itself; name another",
-                        a->common.name, a->joined);
-    return check_joint(r, a, &scene->solid[other]);
+    if (other < 0) return ERR_OK; /* told by case_check_names */
+    const struct scene_solid *const b = &scene->solid[other];
+    if (a == b)
+        return bad_section(r, a, NULL,
+                           "joined = %s: a body cannot be joined to itself; name another",
+                           a->joined);
+    for (size_t k = 0; k < COUNT_OF(same); k++) TRY(same_value(r, a, b, same[k], "joined bodies"));
+    return ERR_OK;
 }
 
-/* A larger gap contains fluid particles of its own. */
-static enum err check_gap(struct reader *r, const struct scene_contact *c)
+/* Two bodies, one of them a solid; a larger gap contains fluid particles of its own. */
+static enum err check_contact(struct reader *r, const void *section)
 {
-    const double most = 4;
-    double dp = r->scene->top.dp;
-    for (int k = 0; k < r->scene->n_solid; k++) dp = min2(dp, scene_solid_dp(r->scene, k));
-    if (c->gap <= most * dp * (1 + 1e-9)) return ERR_OK;
-    return bad_line(
-        r, c->common.line,
-        "[contact %s] gap = %g m is more than %g particle spacings of %g m; use at most %g m",
-        c->common.name, c->gap, most, dp, most * dp);
-}
-
-/* Two bodies, one of them a solid. */
-static enum err check_contact(struct reader *r, const struct scene_contact *c)
-{
-    const struct scene *scene = r->scene;
+    const struct scene *const scene = r->scene;
+    const struct scene_contact *const c = section;
+    const double max_gap = 4;
+    double dp = scene->top.dp;
     char name[2][SCENE_TEXT];
-    if (scene->n_solid == 0)
-        return bad_line(r, c->common.line, "[contact %s] needs a [solid]", c->common.name);
-    if (case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_solid)) TRY(check_gap(r, c));
-    if (!*c->between) return ERR_OK;
-    const int line = scene_line(r->scene, SECTION_contact, (int)(c - scene->contact), "between");
-    if (!scene_pair(c->between, name))
-        return bad_line(r, line, "between = %.100s: two names are expected, separated by a comma",
-                        c->between);
-    bool solid = false;
-    for (int j = 0; j < 2; j++) {
-        solid |= scene_find_solid(scene, name[j]) >= 0;
-        if (scene_find_solid(scene, name[j]) < 0 && scene_find_wall(scene, name[j]) < 0)
-            return case_no_section(r, line, "between", name[j], SECTION_solid, SECTION_wall);
-    }
-    if (!solid)
-        return bad_line(
-            r, line,
-            "between = %.100s: one of the two must be a [solid], because walls do not interact",
-            c->between);
+    if (scene->n_solid == 0) return bad_section(r, c, NULL, "needs a [solid]");
+    for (int k = 0; k < scene->n_solid; k++) dp = min2(dp, scene_solid_dp(scene, k));
+    if (c->gap > max_gap * dp * (1 + 1e-9))
+        return bad_section(r, c, NULL,
+                           "gap = %g m is more than %g particle spacings of %g m; use at most %g m",
+                           c->gap, max_gap, dp, max_gap * dp);
+    if (scene_pair(c->between, name) && scene_find_solid(scene, name[0]) < 0 &&
+        scene_find_solid(scene, name[1]) < 0 && scene_find_wall(scene, name[0]) >= 0 &&
+        scene_find_wall(scene, name[1]) >= 0)
+        return bad_key(r, c, "between", c->between,
+                       "one of the two must be a [solid], because walls do not interact");
     return ERR_OK;
 }
 
-static enum err check_load(struct reader *r, const struct scene_load *l)
+static enum err check_load(struct reader *r, const void *section)
 {
-    const int line = l->common.line;
-    if (!*l->body)
-        return bad_line(r, line, "[load %s] needs `body`, the solid it acts on", l->common.name);
-    if (scene_find_solid(r->scene, l->body) < 0)
-        return case_no_section(r,
-                               scene_line(r->scene, SECTION_load, (int)(l - r->scene->load),
-                                          "body"),
-                               "body", l->body, SECTION_solid, SECTION_solid);
-    if (l->shape.n == 0)
-        return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
-                        l->common.name);
+    const struct scene_load *const l = section;
+    if (!*l->body) return bad_section(r, l, NULL, "needs `body`, the solid it acts on");
+    if (l->shape.n == 0) return bad_section(r, l, NULL, "needs a `shape`, the region it acts on");
     if (!l->force.e[0] == !l->traction.e[0])
-        return bad_line(r, line, "[load %s] needs either `force` or `traction`, and has %s",
-                        l->common.name, l->force.e[0] ? "both" : "neither");
+        return bad_section(r, l, NULL, "needs either `force` or `traction`, and has %s",
+                           l->force.e[0] ? "both" : "neither");
     return ERR_OK;
 }
 
-/* A reference is for a column: <probe>_<quantity>_<unit>. */
-static enum err check_reference(struct reader *r, const struct scene_reference *ref)
-{
-    const struct scene *scene = r->scene;
-    const int line = ref->common.line;
-    const bool formula = ref->formula.e[0] != NULL;
-    const int column =
-        scene_line(r->scene, SECTION_reference, (int)(ref - scene->reference), "probe");
-    if (!*ref->probe || (!*ref->file && !formula))
-        return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
-                        *ref->probe ? "file` or `formula" : "probe");
-    if (*ref->file && formula)
-        return bad_line(r, line, "[reference %s] has both `file` and `formula`; leave one out",
-                        ref->common.name);
-    if (!(ref->from < ref->until))
-        return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
-                        ref->common.name, ref->from, ref->until);
-    for (int p = 0; p < scene->n_probe; p++) {
-        const char *name = scene->probe[p].common.name;
-        const size_t length = strlen(name);
-        if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
-    }
-    return bad_line(r, column,
-                    "[reference %s] probe = %.80s: no probe has such a column; a column is "
-                    "PROBE_QUANTITY_UNIT, such as M1_dx_m",
-                    ref->common.name, ref->probe);
-}
+/* --- unnamed sections and references --- */
 
 /* An expression must have a value at the start and at a thousand times until the end. */
-static enum err check_gravity(struct reader *r)
+static enum err check_top(struct reader *r, const void *section)
 {
     enum { TIMES = 1000 };
-    const struct scene_top *const top = &r->scene->top;
-    const int line = scene_line(r->scene, SECTION_top, 0, "gravity");
+    const struct scene_top *const top = section;
     for (int c = 0; c < 2; c++)
         for (int n = 0; top->gravity_in_time.e[c] && n <= TIMES; n++) {
             const double t = top->end_time * n / TIMES;
-            if (isfinite(scene_expr_at(top->gravity_in_time.e[c], t, 0))) continue;
-            const char *const text[] = {c ? "..., " : "", c ? "" : ", ..."};
-            return bad_line(r, line,
-                            "gravity = %s%.200s%s: component %d is not finite at t = %g s; it must "
-                            "be finite at all times up to end_time",
-                            text[0], expr_source(top->gravity_in_time.e[c]), text[1], c + 1, t);
+            const struct expr *const e = top->gravity_in_time.e[c];
+            if (!isfinite(scene_expr_at(e, t, 0)))
+                return bad_line(r, scene_line(r->scene, SECTION_top, 0, "gravity"),
+                                "gravity = %s%.200s%s: component %d is not finite at t = %g s; it "
+                                "must be finite at all times up to end_time",
+                                c ? "..., " : "", expr_source(e), c ? "" : ", ...", c + 1, t);
         }
-    return ERR_OK;
-}
-
-/* A [relax] section is enough to seek rest. Motions are at rest before t = 0. */
-static enum err check_relax(struct reader *r)
-{
-    struct scene *const scene = r->scene;
-    struct scene_relax *const x = &scene->relax;
-    if (x->common.line > 0 && !scene_given(scene, SECTION_relax, 0, "tolerance"))
-        x->tolerance = scene->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
-    for (int k = 0; x->tolerance > 0 && k < scene->n_motion; k++)
-        if (scene->motion[k].start < 0)
-            return bad_line(r, scene->motion[k].common.line,
-                            "[motion %s] start = %g s: with [relax] no motion may begin before "
-                            "t = 0",
-                            scene->motion[k].common.name, scene->motion[k].start);
     return ERR_OK;
 }
 
 /* 0 stands for h_over_dp, which has the same bounds. */
-static enum err check_solid_h(struct reader *r)
+static enum err check_numerics(struct reader *r, const void *section)
 {
-    const double value = r->scene->numerics.solid_h_over_dp;
+    const double value = ((const struct scene_numerics *)section)->solid_h_over_dp;
     if (value == 0 || value >= 1.1) return ERR_OK;
     return bad_line(r, scene_line(r->scene, SECTION_numerics, 0, "solid_h_over_dp"),
                     "solid_h_over_dp = %g is too small, so particles would have too few "
@@ -304,50 +227,91 @@ static enum err check_solid_h(struct reader *r)
                     value);
 }
 
-/* What sections say of each other, for each that is valid itself. */
-static enum err check_sections(struct reader *r)
+static enum err check_output(struct reader *r, const void *section)
+{
+    static const char *const names[] = {
+#define POINTDATA(NAME, name, item, width, choice) #name,
+#include "case/pointdata.def"
+#undef POINTDATA
+    };
+    const char *const fields = ((const struct scene_output *)section)->snapshot_fields;
+    const size_t count = COUNT_OF(names);
+    char word[SCENE_TEXT], known[300] = "";
+    for (int n = 0; strcmp(fields, "all") != 0 && scene_word(fields, n, word); n++) {
+        struct nearest near = {0};
+        size_t k = 0;
+        while (k < count && strcmp(names[k], word) != 0) nearest_offer(&near, word, names[k++]);
+        if (k < count) continue;
+        for (k = 0; k < count; k++) strcat(strcat(known, " "), names[k]);
+        return bad_section(r, section, NULL,
+                           "snapshot_fields: there is no field `%.63s`%s Allowed: all, or any of%s",
+                           word, near.name ? nearest_hint(&near) : ".", known);
+    }
+    return ERR_OK;
+}
+
+/* Motions are at rest before t = 0. */
+static enum err check_relax(struct reader *r, const void *section)
 {
     const struct scene *const scene = r->scene;
-    const bool top = case_sound(r, SECTION_top, 0);
-    for (int k = 0; k < scene->n_solid; k++)
-        if (top && case_all_sound(r, SECTION_solid)) TRY(case_go_on(r, check_joined(r, k)));
-    TRY(check_moved(r));
-    for (int k = 0; k < scene->n_motion; k++)
-        if (top && case_sound(r, SECTION_motion, k))
-            TRY(case_go_on(r, case_check_motion(r, &scene->motion[k])));
-    if (top && case_all_sound(r, SECTION_inflow) && case_all_sound(r, SECTION_outflow) &&
-        case_all_sound(r, SECTION_fluid))
-        TRY(case_go_on(r, case_check_open(r)));
-    TRY(case_check_probes(r));
-    if (case_sound(r, SECTION_output, 0)) TRY(case_go_on(r, case_check_output(r)));
-    for (int k = 0; k < scene->n_contact; k++)
-        if (case_sound(r, SECTION_contact, k))
-            TRY(case_go_on(r, check_contact(r, &scene->contact[k])));
-    for (int k = 0; k < scene->n_load; k++)
-        if (case_sound(r, SECTION_load, k)) TRY(case_go_on(r, check_load(r, &scene->load[k])));
-    for (int k = 0; k < scene->n_reference; k++)
-        if (case_sound(r, SECTION_reference, k))
-            TRY(case_go_on(r, check_reference(r, &scene->reference[k])));
+    const bool sought = ((const struct scene_relax *)section)->tolerance > 0;
+    for (int k = 0; sought && k < scene->n_motion; k++)
+        if (scene->motion[k].start < 0)
+            return bad_section(r, &scene->motion[k], NULL,
+                               "start = %g s: with [relax] no motion may begin before t = 0",
+                               scene->motion[k].start);
     return ERR_OK;
+}
+
+/* A reference is for a column: <probe>_<quantity>_<unit>. */
+static enum err check_reference(struct reader *r, const void *section)
+{
+    const struct scene_reference *const ref = section;
+    const bool formula = ref->formula.e[0] != NULL;
+    if (!*ref->probe || (!*ref->file && !formula))
+        return bad_section(r, ref, NULL, "needs `%s`", *ref->probe ? "file` or `formula" : "probe");
+    if (*ref->file && formula)
+        return bad_section(r, ref, NULL, "has both `file` and `formula`; leave one out");
+    if (!(ref->from < ref->until))
+        return bad_section(r, ref, NULL, "from = %g s must come before until = %g s", ref->from,
+                           ref->until);
+    for (int p = 0; p < r->scene->n_probe; p++) {
+        const char *const name = r->scene->probe[p].common.name;
+        const size_t length = strlen(name);
+        if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
+    }
+    return bad_section(r, ref, "probe",
+                       "probe = %.80s: no probe has such a column; a column is "
+                       "PROBE_QUANTITY_UNIT, such as M1_dx_m",
+                       ref->probe);
 }
 
 enum err case_check(struct reader *r)
 {
-    struct scene *const scene = r->scene;
-    const bool valid = r->n_problems == 0, numerics = case_sound(r, SECTION_numerics, 0);
-    if (scene->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
-        scene->numerics.cfl =
-            scene->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
-    if (valid && scene->n_fluid == 0 && scene->n_solid == 0)
+    static const struct {
+        enum section_id section;
+        enum err (*check)(struct reader *r, const void *section);
+    } checks[] = {
+        {SECTION_top, check_top},
+        {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},
+        {SECTION_relax, check_relax},
+        {SECTION_fluid, check_fluid},
+        {SECTION_solid, check_solid},
+        {SECTION_motion, case_check_motion},
+        {SECTION_inflow, case_check_open},
+        {SECTION_outflow, case_check_open},
+        {SECTION_probe, case_check_probe},
+        {SECTION_contact, check_contact},
+        {SECTION_load, check_load},
+        {SECTION_reference, check_reference},
+    };
+    if (r->scene->n_fluid == 0 && r->scene->n_solid == 0)
         return bad_line(r, 1,
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");
-    if (case_sound(r, SECTION_numerics, 0)) TRY(case_go_on(r, check_solid_h(r)));
-    if (case_sound(r, SECTION_top, 0)) TRY(case_go_on(r, check_gravity(r)));
-    if (case_sound(r, SECTION_relax, 0) && case_all_sound(r, SECTION_motion))
-        TRY(case_go_on(r, check_relax(r)));
-    if (numerics && case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_fluid))
-        TRY(case_go_on(r, check_fluids(r)));
-    TRY(check_sections(r));
-    return valid ? case_check_effects(r) : ERR_OK;
+    for (size_t n = 0; n < COUNT_OF(checks); n++)
+        for (int k = 0; k < section_count(r->scene, checks[n].section); k++)
+            TRY(case_go_on(r, checks[n].check(r, section_at(r->scene, checks[n].section, k))));
+    return case_check_effects(r);
 }

@@ -5,8 +5,6 @@
 
 #include <stdio.h>
 
-enum { NAME_TEXT = 2 * SCENE_NAME };
-
 /* What goes together and what does not: the one calls for the other, which the case must name, or
  * not both. */
 static const struct rule {
@@ -29,7 +27,7 @@ static const struct rule {
 };
 
 /* A key that means nothing without its effect: refused where the effect is off and the key has a
- * value other than its default. */
+ * value other than its default, unless the scheme gave it. */
 static const struct owned {
     enum section_id section;
     const char *key;
@@ -47,21 +45,8 @@ static const struct owned {
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
 static int line_of(const struct scene *scene, const struct effect_caller *by)
 {
-    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
-    const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
-    return given ? given->line : section->line > 0 ? section->line : 1;
-}
-
-/* "[fluid water] shifting", "integrator". */
-static void name_of(const struct scene *scene, const struct effect_caller *by, char name[NAME_TEXT])
-{
-    const struct section_info *const info = &section_table[by->section];
-    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
-    if (by->section == SECTION_top)
-        snprintf(name, NAME_TEXT, "`%s`", by->key);
-    else
-        snprintf(name, NAME_TEXT, "[%s%s%s]%s%s", info->word, info->named ? " " : "", section->name,
-                 *by->key ? " " : "", by->key);
+    const int line = scene_line(scene, by->section, by->index, by->key);
+    return line == LINE_NONE ? 1 : line;
 }
 
 static enum err check_rule(struct reader *r, const struct rule *rule)
@@ -70,46 +55,39 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
     struct effect_caller by, other;
     if (!effect_called(scene, rule->effect, &by)) return ERR_OK;
     if (effect_called(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
-    char text[NAME_TEXT], its[NAME_TEXT];
-    name_of(scene, &by, text);
-    const char *const name = effect_table[rule->effect].name;
+    const struct effect_info *const effect = &effect_table[rule->effect],
+                                    *const its = &effect_table[rule->other];
+    char text[TITLE_TEXT], its_text[TITLE_TEXT];
+    effect_caller_name(scene, &by, text);
     if (rule->verb == NEEDS)
         return bad_line(r, line_of(scene, &by), "%s enables the effect %s, which needs %s (%s): %s",
-                        text, name, effect_table[rule->other].name, effect_table[rule->other].key,
-                        rule->reason);
-    name_of(scene, &other, its);
+                        text, effect->name, its->name, its->key, rule->reason);
     return bad_line(r, line_of(scene, &by),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
-                    text, name, effect_table[rule->other].name, its, line_of(scene, &other),
-                    rule->reason);
-}
-
-/* Whether a section has the value that the scheme gives a key. */
-static bool set_by_scheme(const struct scene *scene, const struct param *param, const void *section)
-{
-    double value;
-    const void *const at = (const char *)section + param->offset;
-    if (!scene_scheme_sets(scene, param->section, param->key, &value)) return false;
-    return param->type == PARAM_CHOICE ? *(const int *)at == (int)value
-                                       : param->type == PARAM_REAL && *(const double *)at == value;
+                    text, effect->name, its->name, effect_caller_name(scene, &other, its_text),
+                    line_of(scene, &other), rule->reason);
 }
 
 static enum err check_owned(struct reader *r, const struct owned *row)
 {
     const struct scene *const scene = r->scene;
     const struct param *const param = param_find(row->section, row->key);
+    const struct effect_info *const effect = &effect_table[row->effect];
     struct effect_caller by;
     if (effect_called(scene, row->effect, &by)) return ERR_OK;
     for (int k = 0; k < section_count(scene, row->section); k++) {
         const void *const section = section_at(scene, row->section, k);
-        if (param_is_default(param, section) || set_by_scheme(scene, param, section)) continue;
-        char text[NAME_TEXT];
+        char text[TITLE_TEXT];
+        double value;
+        if (param_is_default(param, section) ||
+            (scene_scheme_sets(scene, row->section, row->key, &value) &&
+             param_number(param, section) == value))
+            continue;
         by = (struct effect_caller){row->section, k, row->key};
-        name_of(scene, &by, text);
+        effect_caller_name(scene, &by, text);
         TRY(case_go_on(r, bad_line(r, line_of(scene, &by),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
-                                   text, effect_table[row->effect].name,
-                                   effect_table[row->effect].name, effect_table[row->effect].key)));
+                                   text, effect->name, effect->name, effect->key)));
     }
     return ERR_OK;
 }

@@ -29,10 +29,9 @@ static bool has_set(const struct scene *scene, struct effect_caller *by, enum se
 {
     const struct param *const param = param_find(id, key);
     for (int k = 0; k < section_count(scene, id); k++) {
-        const void *const value = (const char *)section_at(scene, id, k) + param->offset;
-        const double set = param->type == PARAM_REAL   ? *(const double *)value
-                           : param->type == PARAM_TEXT ? *(const char *)value
-                                                       : *(const int *)value;
+        const char *const section = section_at(scene, id, k);
+        const double set =
+            param->type == PARAM_TEXT ? section[param->offset] : param_number(param, section);
         if (choice < 0 ? set > 0 : set == choice) return called_by(by, id, param->key, k);
     }
     return false;
@@ -117,20 +116,28 @@ effect_set effects_of_scene(const struct scene *scene)
     return fx;
 }
 
-void effect_caller_text(const struct scene *scene, const struct effect_caller *by,
-                        char text[EFFECT_CALLER_TEXT])
+char *effect_caller_name(const struct scene *scene, const struct effect_caller *by,
+                         char name[TITLE_TEXT])
 {
-    const struct section_info *const info = &section_table[by->section];
-    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
+    char title[TITLE_TEXT] = "";
+    if (by->section != SECTION_top) section_title(section_at(scene, by->section, by->index), title);
+    snprintf(name, TITLE_TEXT, "%.90s%s%.60s", title, *title && *by->key ? " " : "", by->key);
+    return name;
+}
+
+char *effect_caller_text(const struct scene *scene, const struct effect_caller *by,
+                         char text[EFFECT_CALLER_TEXT])
+{
     const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
-    char where[32], name[2 * SCENE_NAME] = "";
-    snprintf(where, sizeof where, "line %d", given ? given->line : section->line);
-    if (given && given->line == 0) strcpy(where, "--set");
-    if (!given && !info->named) strcpy(where, "default");
-    if (by->section != SECTION_top)
-        snprintf(name, sizeof name, "[%s%s%s]%s", info->word, info->named ? " " : "", section->name,
-                 *by->key ? " " : "");
-    snprintf(text, EFFECT_CALLER_TEXT, "%s: %s%s", where, name, by->key);
+    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
+    char line[32], name[TITLE_TEXT];
+    snprintf(line, sizeof line, "line %d", given ? given->line : section->line);
+    snprintf(text, EFFECT_CALLER_TEXT, "%s: %s",
+             given && given->line == 0                   ? "--set"
+             : given || section_table[by->section].named ? line
+                                                         : "default",
+             effect_caller_name(scene, by, name));
+    return text;
 }
 
 unsigned effects_groups(effect_set effects, enum kind kind)

@@ -27,7 +27,7 @@ enum dim_kind {
 
 struct dim {
     enum dim_kind kind;
-    double m, kg, s;
+    double power[3]; /* of kg, m, s */
 };
 
 struct quantity {
@@ -43,7 +43,7 @@ struct slice {
 
 enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 
-/* None; x and y; t; x, y and t. */
+/* Coordinates that can be used: none; x and y; t; all of them. */
 enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH };
 
 /* Resolves names: `find` returns true and the quantity, or false. Then it has written the reason,
@@ -65,6 +65,11 @@ bool expr_value(struct slice text, const struct expr_names *names, struct quanti
 enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
+
+/* Value of an expression at a point; of one in t at x = t. */
+double scene_expr_at(const struct expr *e, double x, double y);
+/* Value of an expression in x, y and t. */
+double scene_expr_at_time(const struct expr *e, double x, double y, double t);
 
 /* The value of an expression in t with its exact first two derivatives. At a kink or step of min,
  * max, abs and round they are one-sided. */
@@ -97,30 +102,44 @@ bool expr_is_number(const struct expr *e);
 /* The text it was compiled from. */
 const char *expr_source(const struct expr *e);
 
-/* Whether a dimension fits a unit of case/params.def ("SI": any). */
-bool dim_fits(const struct dim *dim, const char *unit);
-
-/* Names a dimension: "a pressure (Pa)". */
-enum { DIM_TEXT = 96 };
-void dim_text(const struct dim *dim, char text[DIM_TEXT]);
-void unit_dim_text(const char *unit, char text[DIM_TEXT]);
-
-/* The first character of a text that resembles an ASCII one, with its replacement: "a no-break
- * space; write a blank". NULL: there is none. */
-const char *strange_character(const char *text);
-
 /* The existing meaning of a name that cannot be redefined, or NULL. */
 const char *expr_reserved(const char *name);
 
 /* --- case/units.c --- */
+
 /* Reads a unit ("kg/m^3") from the front of the text and applies it to q; false: no unit there, or
  * a wrong one, then `why` is written. */
 bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
 bool unit_known(const char *name);
 /* The unit with the same letters but different capitals, or NULL. */
-const char *unit_nearest(const char *name, size_t length);
+const char *unit_nearest(struct slice name);
+/* Dimension of a unit of case/params.def. */
+struct dim unit_dim(const char *unit);
 
-/* The identifier at the front of the text: its length; 0: none. */
-size_t identifier_length(struct slice text);
+bool dim_same(const struct dim *a, const struct dim *b);
+/* Whether a dimension fits a unit of case/params.def ("SI": any). */
+bool dim_fits(const struct dim *dim, const char *unit);
+/* Names a dimension: "a pressure (Pa)". */
+enum { DIM_TEXT = 96 };
+void dim_text(const struct dim *dim, char text[DIM_TEXT]);
+
+/* --- case/text.c --- */
+
+struct slice slice_of(const char *text);
+/* Without its first n characters; without blanks at both ends. */
+struct slice slice_after(struct slice s, size_t n);
+struct slice slice_trimmed(struct slice s);
+/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
+ * remains. */
+bool slice_next(struct slice *rest, char separator, struct slice *piece);
+int slice_count(struct slice text, char separator);
+/* The identifier at the front, which may be empty; the length of the number there. */
+struct slice slice_identifier(struct slice s);
+size_t number_length(struct slice s);
+/* Hint for a message on the count of numbers if a comma stands between digits; otherwise "". */
+const char *comma_hint(const char *value);
+/* The first character that resembles an ASCII one, with its replacement: "a no-break space; write a
+ * blank". NULL: there is none. */
+const char *strange_character(const char *text);
 
 #endif

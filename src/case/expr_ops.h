@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
- * The stack program of a compiled expression (case/expr.c), for the code that runs it. */
+ * The stack program of a compiled expression, which case/expr.c makes and case/expr_run.c runs. */
 #ifndef SPHFSI_CASE_EXPR_OPS_H
 #define SPHFSI_CASE_EXPR_OPS_H
 
 #include "base/base.h"
 
 enum op_code {
-    OP_NUMBER,
+    OP_NUMBER, /* no operand */
     OP_X,
     OP_Y,
     OP_T,
-    OP_ADD,
+    OP_ADD, /* two operands */
     OP_SUB,
     OP_MUL,
     OP_DIV,
     OP_POW,
     OP_MIN,
-    OP_MAX, /* with two operands: from OP_ADD on */
-    OP_NEG,
+    OP_MAX,
+    OP_NEG, /* one */
     OP_SQRT,
     OP_SIN,
     OP_COS,
@@ -45,6 +45,9 @@ struct expr {
 /* Largest number of operands on the stack; the compiler has counted. */
 enum { MAX_STACK = 64 };
 
-SPHFSI_INLINE bool is_binary(enum op_code code) { return code >= OP_ADD && code <= OP_MAX; }
+SPHFSI_INLINE int operands(enum op_code code) { return code < OP_ADD ? 0 : code < OP_NEG ? 2 : 1; }
+
+/* The result of an operation; `b` of two operands only. */
+double expr_operate(enum op_code code, double a, double b);
 
 #endif

@@ -26,8 +26,8 @@ static bool is_name(const char *text)
 
 static bool is_identifier(const char *text)
 {
-    const struct slice slice = {text, strlen(text)};
-    return slice.length && identifier_length(slice) == slice.length;
+    const size_t length = slice_identifier(slice_of(text)).length;
+    return length > 0 && !text[length];
 }
 
 /* Removes the comment from a value; text between quotes is unchanged, without its quotes. */
@@ -53,62 +53,42 @@ static const char *cut_value(char *value, const char **why)
     return value;
 }
 
-static int find_section_id(const char *word)
-{
-    if (strcmp(word, "constants") == 0) return SECTION_constants;
-    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
-        if (strcmp(section_table[id].word, word) == 0) return id;
-    return -1;
-}
-
 static const char *section_word(int id)
 {
     return id == SECTION_constants ? "constants" : section_table[id].word;
 }
 
-/* The section that is meant by another usual word for it, or NULL. */
-static const char *meant_section(const char *word)
+static bool section_named(int id) { return id != SECTION_constants && section_table[id].named; }
+
+static int find_section_id(const char *word)
 {
-    static const char *const names[][2] = {
-        {"water", "fluid"},          {"liquid", "fluid"},        {"body", "solid"},
-        {"structure", "solid"},      {"beam", "solid"},          {"plate", "solid"},
-        {"boundary", "wall"},        {"tank", "wall"},           {"rigid", "wall"},
-        {"force", "load"},           {"gauge", "probe"},         {"sensor", "probe"},
-        {"parameters", "constants"}, {"variables", "constants"}, {"solver", "numerics"},
-        {"inlet", "inflow"},         {"outlet", "outflow"},
-    };
-    for (size_t k = 0; k < COUNT_OF(names); k++)
-        if (strcasecmp(names[k][0], word) == 0) return names[k][1];
-    return NULL;
+    for (int id = SECTION_top + 1; id <= SECTION_constants; id++)
+        if (strcmp(section_word(id), word) == 0) return id;
+    return -1;
 }
 
 static enum err unknown_section(struct reader *r, int line, const char *word)
 {
     struct nearest near = {0};
-    const char *const meant = meant_section(word);
-    if (meant) {
-        int id = 0;
-        while (strcmp(section_word(id), meant) != 0) id++;
-        const bool named = id != SECTION_constants && section_table[id].named;
-        return bad_line(r, line, "unknown section [%.60s]; did you mean [%s%s]?", word, meant,
-                        named ? " NAME" : "");
+    char known[400] = "constants";
+    for (int id = SECTION_top + 1; id <= SECTION_constants; id++) {
+        const char *const name = section_word(id);
+        const size_t used = strlen(known);
+        if (has_usual_name(name, word))
+            return bad_line(r, line, "unknown section [%.60s]; did you mean [%s%s]?", word, name,
+                            section_named(id) ? " NAME" : "");
+        nearest_offer(&near, word, name);
+        if (id < SECTION_constants)
+            snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
     }
-    nearest_offer(&near, word, "constants");
-    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
-        nearest_offer(&near, word, section_table[id].word);
     if (near.name)
         return bad_line(r, line, "unknown section [%.60s]; did you mean [%s]?", word, near.name);
-    char known[400] = "constants";
-    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++) {
-        const size_t used = strlen(known);
-        snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
-    }
     return bad_line(r, line, "unknown section [%.60s]; known: %s", word, known);
 }
 
 static enum err add_section(struct reader *r, int line, int id, const char *name)
 {
-    const bool named = id != SECTION_constants && section_table[id].named;
+    const bool named = section_named(id);
     const char *const word = section_word(id);
     if (named && !*name) return bad_line(r, line, "[%s] needs a name: [%s NAME]", word, word);
     if (!named && *name) return bad_line(r, line, "[%s] takes no name", word);
@@ -127,7 +107,7 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     if (index == SCENE_MAX_SECTIONS)
         return bad_line(r, line, "more than %d [%s] sections are given; merge some of them",
                         SCENE_MAX_SECTIONS, word);
-    r->sections[r->n_sections++] = (struct case_section){id, name, line, index, false, false};
+    r->sections[r->n_sections++] = (struct case_section){id, name, line, index};
     return ERR_OK;
 }
 
@@ -205,13 +185,13 @@ enum err case_split(struct reader *r, const char *text)
     if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
     memcpy(copy, text, bytes);
     if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
-    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0, false, false};
+    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
     int line = 1;
     for (char *next; copy; copy = next, line++) {
         next = strchr(copy, '\n');
         if (next) *next++ = '\0';
         const enum err err = read_line(r, line, copy);
-        if (err) r->lost = r->sections[r->n_sections - 1].incomplete = true;
+        if (err) r->lost = true;
         TRY(case_go_on(r, err));
     }
     return ERR_OK;
@@ -223,20 +203,11 @@ enum err case_split(struct reader *r, const char *text)
 static bool takes_key(const struct reader *r, int section, const char *key, struct nearest *near)
 {
     const int id = r->sections[section].id;
-    if (id == SECTION_constants) {
-        for (int k = 0; k < r->n_entries; k++) {
-            if (r->entries[k].section != section) continue;
-            if (strcmp(r->entries[k].key, key) == 0) return true;
-            nearest_offer(near, key, r->entries[k].key);
-        }
-        return false;
-    }
-    for (int k = 0; k < PARAM_COUNT; k++) {
-        if ((int)param_table[k].section != id) continue;
-        if (strcmp(param_table[k].key, key) == 0) return true;
-        nearest_offer(near, key, param_table[k].key);
-    }
-    return false;
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if ((int)param_table[k].section == id) nearest_offer(near, key, param_table[k].key);
+    for (int k = 0; k < r->n_entries && id == SECTION_constants; k++)
+        if (r->entries[k].section == section) nearest_offer(near, key, r->entries[k].key);
+    return near->name && near->distance == 0;
 }
 
 /* Whether "solid gate", "gate", "numerics" or "" (top and constants) names a section. */
@@ -256,65 +227,63 @@ static bool means_section(const struct case_section *s, const char *prefix)
 static enum err add_missing(struct reader *r, const char *prefix)
 {
     const int id = *prefix ? find_section_id(prefix) : -1;
-    if (id < 0 || id == SECTION_constants || section_table[id].named) return ERR_OK;
+    if (id < 0 || id == SECTION_constants || section_named(id)) return ERR_OK;
     for (int k = 0; k < r->n_sections; k++)
         if (r->sections[k].id == id) return ERR_OK;
     return add_section(r, 0, id, "");
 }
 
-/* A key of --set that no section meant by the prefix has: what it may be, or where it belongs. */
-static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix)
+/* A key of --set that no section meant by the prefix has: what it may be, or where it belongs.
+ * `id`: of one of these sections. */
+static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix, int id,
+                               struct nearest *near)
 {
-    char meant[PARAM_MEANT];
-    for (int k = 0; k < r->n_sections; k++) {
-        const struct case_section *const s = &r->sections[k];
-        if (means_section(s, prefix) && s->id != SECTION_constants &&
-            param_meant((enum section_id)s->id, e->key, meant))
-            return bad_entry(r, e, "unknown key `%.60s`; did you mean %s?", e->key, meant);
-    }
-    struct nearest none = {0};
+    char hint[PARAM_HINT];
+    if (near->name) return bad_entry(r, e, "unknown key `%.60s`%s", e->key, nearest_hint(near));
     for (int k = 0; k < r->n_sections && !*prefix; k++) {
         const struct case_section *const s = &r->sections[k];
-        if (s->id != SECTION_top && s->id != SECTION_constants && takes_key(r, k, e->key, &none))
+        struct nearest key = {0};
+        if (takes_key(r, k, e->key, &key))
             return bad_entry(r, e, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
                              *s->name ? s->name : section_word(s->id), e->key);
     }
-    return bad_entry(r, e, "unknown %s `%.60s`", *prefix ? "key" : "key or constant", e->key);
+    return bad_entry(r, e, "unknown %s `%.60s`%s", *prefix ? "key" : "key or constant", e->key,
+                     param_hint(id, e->key, hint));
 }
 
+/* Of the sections that the prefix of --set means, the only one that has the key. */
 static enum err find_target(struct reader *r, const struct entry *e, const char *prefix,
                             int *target)
 {
+    struct nearest near_key = {0}, near_section = {0};
+    int meant = -1;
     TRY(add_missing(r, prefix));
-    int meant = 0;
-    struct nearest near = {0}, near_section = {0};
     *target = -1;
     for (int k = 0; k < r->n_sections; k++) {
-        const struct case_section *s = &r->sections[k];
-        if (*prefix && s->id != SECTION_top)
-            nearest_offer(&near_section, prefix, *s->name ? s->name : section_word(s->id));
+        const struct case_section *const s = &r->sections[k];
+        const char *const name = *s->name ? s->name : section_word(s->id);
+        struct nearest near = {0};
+        if (*prefix && s->id != SECTION_top) nearest_offer(&near_section, prefix, name);
         if (!means_section(s, prefix)) continue;
-        meant++;
-        if (!takes_key(r, k, e->key, &near)) continue;
-        if (*target >= 0) {
-            const struct case_section *const first = &r->sections[*target], *const named =
-                                                                                *first->name ? first
-                                                                                             : s;
-            return bad_entry(r, e,
-                             "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
-                             section_word(first->id), first->name, section_word(s->id), s->name,
-                             e->key, section_word(named->id), named->name, e->key);
+        if (meant < 0) meant = s->id;
+        if (takes_key(r, k, e->key, &near)) {
+            const struct case_section *const first = *target < 0 ? NULL : &r->sections[*target];
+            if (first)
+                return bad_entry(
+                    r, e, "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
+                    section_word(first->id), first->name, section_word(s->id), s->name, e->key,
+                    section_word(*first->name ? first->id : s->id),
+                    *first->name ? first->name : s->name, e->key);
+            *target = k;
         }
-        *target = k;
+        if (near.name) nearest_offer(&near_key, e->key, near.name);
     }
     if (*target >= 0) return ERR_OK;
-    if (!meant && near_section.name)
-        return bad_entry(r, e, "there is no section `%.60s`; did you mean `%s`?", prefix,
-                         near_section.name);
-    if (!meant) return bad_entry(r, e, "the case has no section `%.60s`", prefix);
-    if (near.name)
-        return bad_entry(r, e, "unknown key `%.60s`; did you mean `%s`?", e->key, near.name);
-    return unknown_in_set(r, e, prefix);
+    if (meant >= 0) return unknown_in_set(r, e, prefix, meant, &near_key);
+    return bad_entry(r, e,
+                     near_section.name ? "there is no section `%.60s`%s"
+                                       : "the case has no section `%.60s`%s",
+                     prefix, nearest_hint(&near_section));
 }
 
 /* Replaces the file's entry for the key (all entries of a list of shapes). */

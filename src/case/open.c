@@ -76,40 +76,31 @@ double scene_open_flow(const struct scene_open *o, double time)
 static enum err check_given(struct reader *r, const struct scene_open *o)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
-    const char *const word = o->word, *const name = o->common->name;
-    const int line = o->common->line;
     const double *const g = r->scene->top.gravity;
-    static const char *const ends[] = {"from", "to"};
-    bool both = o->length > 0;
-    for (int k = 0; k < 2; k++)
-        both &= scene_given(r->scene, (enum section_id)o->section, o->index, ends[k]) != NULL;
-    if (!both)
-        return bad_line(r, line,
-                        "[%s %s] needs `from` and `to`, the two ends of the line through which the "
-                        "fluid passes",
-                        word, name);
+    const enum section_id id = (enum section_id)o->section;
+    if (!(o->length > 0) || !scene_given(r->scene, id, o->index, "from") ||
+        !scene_given(r->scene, id, o->index, "to"))
+        return bad_section(r, o->common, NULL,
+                           "needs `from` and `to`, the two ends of the line through which the "
+                           "fluid passes");
     if (given > 1)
-        return bad_line(r, line,
-                        "[%s %s] has more than one of `speed`, `velocity` and `pressure`; keep one",
-                        word, name);
+        return bad_section(r, o->common, NULL,
+                           "has more than one of `speed`, `velocity` and `pressure`; keep one");
     if (given == 0 && isnan(o->level))
-        return bad_line(r, line, "[%s %s] needs `speed`, `velocity`, `pressure` or `level`", word,
-                        name);
+        return bad_section(r, o->common, NULL, "needs `speed`, `velocity`, `pressure` or `level`");
     if (o->pressure && !isnan(o->level))
-        return bad_line(r, line,
-                        "[%s %s] has both `pressure` and `level`, but `level` already sets the "
-                        "pressure; remove one of them",
-                        word, name);
+        return bad_section(r, o->common, NULL,
+                           "has both `pressure` and `level`, but `level` already sets the "
+                           "pressure; remove one of them");
     if (!isnan(o->level) && !(g[1] < 0 && g[0] == 0))
-        return bad_line(
-            r, line,
-            "[%s %s] level = %g m needs gravity that points down, but gravity is %g, %g m/s^2",
-            word, name, o->level, g[0], g[1]);
+        return bad_section(r, o->common, NULL,
+                           "level = %g m needs gravity that points down, but gravity is %g, %g "
+                           "m/s^2",
+                           o->level, g[0], g[1]);
     if (o->kind == OPEN_VELOCITY && o->absorb > 0)
-        return bad_line(r, line,
-                        "[%s %s] `absorb` needs `pressure` or `level` without a velocity; a given "
-                        "velocity holds exactly, so leave `absorb` out",
-                        word, name);
+        return bad_section(r, o->common, NULL,
+                           "`absorb` needs `pressure` or `level` without a velocity; a given "
+                           "velocity holds exactly, so leave `absorb` out");
     return ERR_OK;
 }
 
@@ -138,8 +129,7 @@ static void warn_of_sound(struct reader *r, const struct scene_open *o, double l
  * time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
-    const char *const word = o->word, *const name = o->common->name;
-    double most = -HUGE_VAL, least = HUGE_VAL, largest = 0;
+    double forth = -HUGE_VAL, back = -HUGE_VAL, largest = 0; /* along `sense`, against it, m/s */
     for (int n = 0; n < LINE_TIMES; n++) {
         const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
         for (int k = 0; k < LINE_POINTS; k++) {
@@ -148,47 +138,41 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
             if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
             if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
             if (!isfinite(v[0] + v[1]))
-                return bad_line(
-                    r, o->common->line,
-                    "[%s %s] %s is not finite at (%g, %g) m and t = %g s; change the expression",
-                    word, name,
+                return bad_section(
+                    r, o->common, NULL,
+                    "%s is not finite at (%g, %g) m and t = %g s; change the expression",
                     o->pressure ? "pressure"
                     : o->speed  ? "speed"
                                 : "velocity",
                     x[0], x[1], time);
-            const double in = v[0] * o->inward[0] + v[1] * o->inward[1];
-            most = max2(most, in);
-            least = min2(least, in);
+            const double along = o->sense * (v[0] * o->inward[0] + v[1] * o->inward[1]);
+            forth = max2(forth, along);
+            back = max2(back, -along);
             largest = max2(largest, elementary_hypot(v[0], v[1]));
         }
     }
     warn_of_sound(r, o, largest);
     if (o->kind == OPEN_PRESSURE) return ERR_OK;
-    if (largest > 0 && max2(most, -least) < 1e-9 * largest)
-        return bad_line(r, o->common->line,
-                        "[%s %s] its velocity is along the line everywhere and at all times, so no "
-                        "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
-                        word, name, o->inward[0], o->inward[1]);
-    if (o->inflow && most <= 0 && least < 0)
-        return bad_line(r, o->common->line,
-                        "[inflow %s] its velocity points out of the fluid everywhere and at all "
-                        "times, by up to %g m/s: change its sign or `side`, or call it [outflow]",
-                        name, -least);
-    if (!o->inflow && least >= 0 && most > 0)
-        return bad_line(r, o->common->line,
-                        "[outflow %s] its velocity points into the fluid everywhere and at all "
-                        "times, by up to %g m/s: change its sign or `side`, or call it [inflow]",
-                        name, most);
+    if (largest > 0 && max2(forth, back) < 1e-9 * largest)
+        return bad_section(r, o->common, NULL,
+                           "its velocity is along the line everywhere and at all times, so no "
+                           "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
+                           o->inward[0], o->inward[1]);
+    if (forth <= 0 && back > 0)
+        return bad_section(r, o->common, NULL,
+                           "its velocity points %s the fluid everywhere and at all times, by up "
+                           "to %g m/s: change its sign or `side`, or call it [%s]",
+                           o->inflow ? "out of" : "into", back, o->inflow ? "outflow" : "inflow");
     return ERR_OK;
 }
 
-enum err case_check_open(struct reader *r)
+enum err case_check_open(struct reader *r, const void *section)
 {
-    const struct scene *const scene = r->scene;
-    for (int k = 0; k < scene_open_count(scene) && scene->n_fluid > 0; k++) {
-        const struct scene_open o = scene_open_at(scene, k);
-        TRY(check_given(r, &o));
-        TRY(check_profile(r, &o));
-    }
-    return ERR_OK;
+    const struct scene_section_common *const common = section;
+    if (r->scene->n_fluid == 0) return ERR_OK;
+    const bool inflow = common->section == SECTION_inflow;
+    const struct scene_open o =
+        scene_open_at(r->scene, common->index + (inflow ? 0 : r->scene->n_inflow));
+    TRY(check_given(r, &o));
+    return check_profile(r, &o);
 }

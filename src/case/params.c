@@ -33,11 +33,30 @@ const struct param param_table[PARAM_COUNT] = {
 #include "case/params.def"
 };
 
+/* --- sections --- */
+
 int section_count(const struct scene *scene, enum section_id id)
 {
     const struct section_info *info = &section_table[id];
     if (!info->named) return 1;
     return *(const int *)(const void *)((const char *)scene + info->count_offset);
+}
+
+void *section_at(const struct scene *scene, enum section_id id, int index)
+{
+    const struct section_info *info = &section_table[id];
+    char *const place = (char *)(uintptr_t)scene + info->offset;
+    if (!info->named) return place;
+    char *array;
+    memcpy(&array, place, sizeof array);
+    return array + (size_t)index * info->size;
+}
+
+char *section_title(const struct scene_section_common *section, char title[TITLE_TEXT])
+{
+    const struct section_info *const info = &section_table[section->section];
+    snprintf(title, TITLE_TEXT, "[%s%s%s]", info->word, info->named ? " " : "", section->name);
+    return title;
 }
 
 const struct scene_given *scene_given(const struct scene *scene, enum section_id section, int index,
@@ -58,109 +77,71 @@ int scene_line(const struct scene *scene, enum section_id section, int index, co
     return common->line > 0 ? common->line : LINE_NONE;
 }
 
-void *section_at(const struct scene *scene, enum section_id id, int index)
-{
-    const struct section_info *info = &section_table[id];
-    char *const place = (char *)(uintptr_t)scene + info->offset;
-    if (!info->named) return place;
-    char *array;
-    memcpy(&array, place, sizeof array);
-    return array + (size_t)index * info->size;
-}
+/* --- values --- */
 
 const struct param *param_find(enum section_id section, const char *key)
 {
-    for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *param = &param_table[k];
-        if (param->section == section && strcmp(param->key, key) == 0) return param;
-    }
-    return NULL;
-}
-
-/* Whether `word` is one of the words of a key, which are separated by _. */
-static bool has_word(const char *key, const char *word)
-{
-    const size_t length = strlen(word);
-    for (const char *at = key; at; at = strchr(at, '_')) {
-        at += *at == '_';
-        if (strncmp(at, word, length) == 0 && (at[length] == '_' || !at[length])) return true;
-    }
-    return false;
-}
-
-/* Whether `word` is the usual textbook name of a key. */
-static bool is_called(const char *key, const char *word)
-{
-    static const struct {
-        const char *key, *names;
-    } usual[] = {
-        {"young", "e modulus youngs_modulus young_modulus elastic_modulus"},
-        {"poisson", "nu poisson_ratio"},
-        {"density", "rho rho0"},
-        {"sound_speed", "c0 speed_of_sound"},
-        {"dp", "spacing particle_spacing dx resolution"},
-        {"fixed_step", "dt time_step timestep"},
-        {"end_time", "duration t_end tmax"},
-        {"gravity", "g"},
-        {"artificial_viscosity", "alpha"},
-        {"density_diffusion", "delta"},
-        {"laminar_viscosity", "mu"},
-        {"snapshot_interval", "snapshots"},
-        {"clamp", "fixed fix"},
-        {"law", "material model"},
-        {"surface", "water_level height"},
-        {"shape", "geometry region"},
-        {"motion", "movement"},
-        {"point", "position location"},
-        {"kind", "type"},
-        {"quantity", "variable"},
-        {"cfl", "courant"},
-    };
-    for (size_t k = 0; k < COUNT_OF(usual); k++) {
-        if (strcmp(usual[k].key, key) != 0) continue;
-        const size_t length = strlen(word);
-        for (const char *at = usual[k].names; *at; at += strspn(at, " ")) {
-            const size_t n = strcspn(at, " ");
-            if (n == length && strncasecmp(at, word, n) == 0) return true;
-            at += n;
-        }
-    }
-    return false;
-}
-
-bool param_may_be(const struct param *param, const char *word)
-{
-    return has_word(param->key, word) || is_called(param->key, word);
-}
-
-bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT])
-{
-    text[0] = '\0';
-    if (strlen(word) > SCENE_NAME) return false;
-    for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const param = &param_table[k];
-        if (param->section != section || !param_may_be(param, word)) continue;
-        const size_t used = strlen(text);
-        snprintf(text + used, PARAM_MEANT - used, "%s`%s`", used ? " or " : "", param->key);
-    }
-    return text[0] != '\0';
-}
-
-const struct param *param_called(const char *word)
-{
     for (int k = 0; k < PARAM_COUNT; k++)
-        if (is_called(param_table[k].key, word)) return &param_table[k];
+        if (param_table[k].section == section && strcmp(param_table[k].key, key) == 0)
+            return &param_table[k];
     return NULL;
 }
 
-void param_choice_name(const struct param *param, int value, char name[SCENE_NAME])
+bool param_choice_name(const struct param *param, int value, char name[SCENE_NAME])
 {
     const char *start = param->choices;
-    for (int k = 0; k < value; k++) start = strchr(start, '|') + 1;
-    const size_t length = strcspn(start, "|");
-    memcpy(name, start, length);
-    name[length] = '\0';
+    for (int k = 0; start && k < value; k++) start = strchr(start + (k > 0), '|');
+    if (!start) return false;
+    start += value > 0;
+    snprintf(name, SCENE_NAME, "%.*s", (int)strcspn(start, "|"), start);
+    return true;
 }
+
+double param_number(const struct param *param, const void *section)
+{
+    const void *const value = (const char *)section + param->offset;
+    return param->type == PARAM_REAL ? *(const double *)value : *(const int *)value;
+}
+
+void param_set_number(const struct param *param, void *section, double number)
+{
+    void *const value = (char *)section + param->offset;
+    if (param->type == PARAM_REAL)
+        *(double *)value = number;
+    else
+        *(int *)value = (int)number;
+}
+
+const struct expr *param_in_time(const struct param *param, const void *section, int component)
+{
+    const char *const at = (const char *)section + param->expr_offset;
+    return param->expr_offset ? ((const struct scene_expr *)(const void *)at)->e[component] : NULL;
+}
+
+bool param_is_default(const struct param *param, const void *section)
+{
+    const void *const value = (const char *)section + param->offset;
+    switch (param->type) {
+    case PARAM_REAL:
+    case PARAM_INTEGER:
+    case PARAM_CHOICE: {
+        const double number = param_number(param, section);
+        return number == param->number.value || isnan(number);
+    }
+    case PARAM_VECTOR: {
+        const double *const v = value, *const standard = param->vector_default;
+        return !param_in_time(param, section, 0) && !param_in_time(param, section, 1) &&
+               v[0] == standard[0] && v[1] == standard[1];
+    }
+    case PARAM_TEXT: return strcmp(value, param->text_default) == 0;
+    case PARAM_EXPR: return !((const struct scene_expr *)value)->e[0];
+    case PARAM_SHAPES: return ((const struct shape_list *)value)->n == 0;
+    case PARAM_NUMBERS: break;
+    }
+    return ((const struct number_list *)value)->n == 0;
+}
+
+/* --- hints for misspelt words --- */
 
 /* Edit distance: insertions, deletions and replacements that turn one word into the other. */
 static int edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
@@ -188,39 +169,98 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
     const int tolerance = word_length < 3 ? 1 : word_length < 5 ? 2 : word_length < 8 ? 3 : 4;
     if (distance > tolerance || (size_t)distance >= length) return;
     if (best->name && best->distance <= distance) return;
-    *best = (struct nearest){candidate, distance};
+    best->name = candidate;
+    best->distance = distance;
 }
 
-const struct expr *param_in_time(const struct param *param, const void *section, int component)
+const char *nearest_hint(struct nearest *near)
 {
-    if (param->type != PARAM_TIME_VECTOR) return NULL;
-    const struct scene_expr *const in_time =
-        (const void *)((const char *)section + param->expr_offset);
-    return in_time->e[component];
+    near->hint[0] = '\0';
+    if (near->name) snprintf(near->hint, sizeof near->hint, "; did you mean `%s`?", near->name);
+    return near->hint;
 }
 
-bool param_is_default(const struct param *param, const void *section)
+/* Whether a list of words has a word, or several in a row, in any case of its letters. */
+static bool lists(const char *words, const char *separators, const char *word)
 {
-    const char *const value = (const char *)section + param->offset;
-    double number[2];
-    int choice;
-    switch (param->type) {
-    case PARAM_REAL:
-        memcpy(number, value, sizeof *number);
-        return number[0] == param->number.value || isnan(number[0]);
-    case PARAM_VECTOR:
-    case PARAM_TIME_VECTOR:
-        memcpy(number, value, sizeof number);
-        return !param_in_time(param, section, 0) && !param_in_time(param, section, 1) &&
-               number[0] == param->vector_default[0] && number[1] == param->vector_default[1];
-    case PARAM_INTEGER:
-    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == param->number.value;
-    case PARAM_TEXT: return strcmp(value, param->text_default) == 0;
-    case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
-    case PARAM_SHAPES: return ((const struct shape_list *)(const void *)value)->n == 0;
-    case PARAM_NUMBERS: break;
+    const size_t length = strlen(word);
+    for (; *words; words += strcspn(words, separators), words += strspn(words, separators))
+        if (strncasecmp(words, word, length) == 0 &&
+            (!words[length] || strchr(separators, words[length])))
+            return true;
+    return false;
+}
+
+bool has_usual_name(const char *key, const char *word)
+{
+    static const struct {
+        const char *key, *names;
+    } usual[] = {
+        {"young", "e modulus youngs_modulus young_modulus elastic_modulus"},
+        {"poisson", "nu poisson_ratio"},
+        {"density", "rho rho0"},
+        {"sound_speed", "c0 speed_of_sound"},
+        {"dp", "spacing particle_spacing dx resolution"},
+        {"fixed_step", "dt time_step timestep"},
+        {"end_time", "duration t_end tmax"},
+        {"gravity", "g"},
+        {"artificial_viscosity", "alpha"},
+        {"density_diffusion", "delta"},
+        {"laminar_viscosity", "mu"},
+        {"snapshot_interval", "snapshots"},
+        {"clamp", "fixed fix"},
+        {"law", "material model"},
+        {"surface", "water_level height"},
+        {"shape", "geometry region"},
+        {"motion", "movement"},
+        {"point", "position location"},
+        {"kind", "type"},
+        {"quantity", "variable"},
+        {"cfl", "courant"},
+        /* sections */
+        {"fluid", "water liquid"},
+        {"solid", "body structure beam plate"},
+        {"wall", "boundary tank rigid"},
+        {"load", "force"},
+        {"probe", "gauge sensor"},
+        {"constants", "parameters variables"},
+        {"numerics", "solver"},
+        {"inflow", "inlet"},
+        {"outflow", "outlet"},
+    };
+    for (size_t k = 0; k < COUNT_OF(usual); k++)
+        if (strcmp(usual[k].key, key) == 0) return lists(usual[k].names, " ", word);
+    return false;
+}
+
+const char *param_hint(enum section_id section, const char *word, char hint[PARAM_HINT])
+{
+    const struct param *named = NULL, *elsewhere = NULL;
+    struct nearest near = {0};
+    size_t used = 0;
+    for (int k = 0; k < PARAM_COUNT && used + SCENE_NAME < PARAM_HINT; k++) {
+        const struct param *const param = &param_table[k];
+        const bool usual = has_usual_name(param->key, word);
+        if (usual && !named) named = param;
+        if (strcmp(param->key, word) == 0 && !elsewhere) elsewhere = param;
+        if (param->section != section) continue;
+        nearest_offer(&near, word, param->key);
+        if (usual || lists(param->key, "_", word))
+            used += (size_t)snprintf(hint + used, PARAM_HINT - used, "%s`%s`",
+                                     used ? " or " : "; did you mean ", param->key);
     }
-    return ((const struct number_list *)(const void *)value)->n == 0;
+    const struct param *const other = named ? named : elsewhere;
+    const bool top = other && other->section == SECTION_top;
+    if (used)
+        strcat(hint, "?");
+    else if (!other)
+        snprintf(hint, PARAM_HINT, "%s", nearest_hint(&near));
+    else if (named)
+        snprintf(hint, PARAM_HINT, "; did you mean `%s` %s%s%s?", other->key,
+                 top ? "at the top" : "in [", top ? "" : section_table[other->section].word,
+                 top ? "" : "]");
+    else
+        snprintf(hint, PARAM_HINT, "; it belongs %s%s%s", top ? "at the top of the file" : "in [",
+                 top ? "" : section_table[other->section].word, top ? "" : "]");
+    return hint;
 }

@@ -34,10 +34,8 @@ enum param_type {
     PARAM_CHOICE,
     PARAM_TEXT,
     PARAM_VECTOR,
-    PARAM_TIME_VECTOR,
-    PARAM_FIELD_EXPR,
-    PARAM_TIME_EXPR,
-    PARAM_FLOW_EXPR,
+    PARAM_TIME_VECTOR = PARAM_VECTOR,
+    PARAM_EXPR,
     PARAM_SHAPES,
     PARAM_NUMBERS
 };
@@ -62,9 +60,10 @@ struct param {
     struct param_default number; /* of a REAL, INTEGER, CHOICE (index) */
     double vector_default[2];
     struct param_bound low, high; /* of a REAL, INTEGER */
-    int count;                    /* expressions of an expression or a TIME_VECTOR */
-    size_t offset;                /* offset in the section's struct */
-    size_t expr_offset;           /* of the expressions of a TIME_VECTOR */
+    enum expr_scope scope;        /* of an EXPR or a TIME_VECTOR */
+    int count;                    /* of their expressions */
+    size_t offset;                /* in the section's struct */
+    size_t expr_offset;           /* of the expressions of a TIME_VECTOR; else 0 */
 };
 /* The number of all keys. */
 enum {
@@ -74,24 +73,23 @@ enum {
 };
 extern const struct param param_table[PARAM_COUNT];
 
-/* Number of sections of a kind in the scene; the index-th struct of them. */
+/* Number of sections of a kind in the scene; the index-th struct of them, which begins with its
+ * struct scene_section_common. */
 int section_count(const struct scene *scene, enum section_id id);
 void *section_at(const struct scene *scene, enum section_id id, int index);
+/* "[fluid water]" or "[output]"; returns `title`. */
+enum { TITLE_TEXT = 2 * SCENE_NAME + 32 };
+char *section_title(const struct scene_section_common *section, char title[TITLE_TEXT]);
 
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
 
-/* The keys of a section that a word may mean, as "`a` or `b`": keys with it among their words, as
- * viscosity in artificial_viscosity, or with that textbook name; false: none. */
-enum { PARAM_MEANT = 200 };
-bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT]);
-/* The first parameter of any section that other programs call by this word, or NULL. */
-const struct param *param_called(const char *word);
-/* Whether `word` is a part of a key or its usual name. */
-bool param_may_be(const struct param *param, const char *word);
-
 /* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
 const struct expr *param_in_time(const struct param *param, const void *section, int component);
+
+/* The value of a REAL, INTEGER or CHOICE. */
+double param_number(const struct param *param, const void *section);
+void param_set_number(const struct param *param, void *section, double number);
 
 /* Whether a section has the default value of a key. */
 bool param_is_default(const struct param *param, const void *section);
@@ -104,15 +102,27 @@ bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id secti
 bool scene_scheme_sets(const struct scene *scene, enum section_id section, const char *key,
                        double *value);
 
-/* The name of a CHOICE's value, copied into `name`. */
-void param_choice_name(const struct param *param, int value, char name[SCENE_NAME]);
+/* The name of a CHOICE's value, copied into `name`; false: it has fewer values. */
+bool param_choice_name(const struct param *param, int value, char name[SCENE_NAME]);
 
 /* The candidate nearest to a misspelt word, or NULL if none is near. To be called for each
  * candidate with the same `best`, which starts as {0}. */
 struct nearest {
     const char *name;
     int distance;
+    char hint[SCENE_NAME + 24];
 };
 void nearest_offer(struct nearest *best, const char *word, const char *candidate);
+/* "; did you mean `name`?" or "". */
+const char *nearest_hint(struct nearest *near);
+
+/* Whether other programs or textbooks call a key or a section by this word. */
+bool has_usual_name(const char *key, const char *word);
+
+/* What an unknown key of a section may mean, for the end of a message: the keys of which the word
+ * is a part, as viscosity of artificial_viscosity, or a usual name; the section it belongs to; or
+ * the nearest. Returns `hint`, which may be "". */
+enum { PARAM_HINT = 300 };
+const char *param_hint(enum section_id section, const char *word, char hint[PARAM_HINT]);
 
 #endif

@@ -77,37 +77,40 @@ static int top_choice(const struct reader *r, const char *key)
 {
     const struct param *const param = param_find(SECTION_top, key);
     int found = (int)param->number.value;
+    char name[SCENE_NAME];
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = &r->entries[k];
-        char name[SCENE_NAME];
-        if (r->sections[e->section].id != SECTION_top || strcmp(e->key, key) != 0) continue;
-        int last = 0;
-        for (const char *at = param->choices; (at = strchr(at, '|')) != NULL; at++) last++;
-        for (int c = 0; c <= last; c++) {
-            param_choice_name(param, c, name);
+        const bool its = r->sections[e->section].id == SECTION_top && strcmp(e->key, key) == 0;
+        for (int c = 0; its && param_choice_name(param, c, name); c++)
             if (strcmp(e->value, name) == 0) found = c;
-        }
     }
     return found;
 }
 
-/* A wrong word is found where the key is read. */
 void case_apply_presets(struct reader *r)
 {
     const int accuracy = top_choice(r, "accuracy"), integrator = top_choice(r, "integrator"),
               scheme = top_choice(r, "scheme");
     for (size_t k = 0; k < COUNT_OF(presets); k++) {
         const struct preset *const row = &presets[k];
-        if (!preset_is_for(row, kind_of_scene(r->scene))) continue;
-        if (row->choice != (row->of_scheme ? scheme : accuracy)) continue;
-        if (row->integrator != ANY && row->integrator != integrator) continue;
-        const struct param *const param = param_find(row->section, row->key);
-        for (int i = 0; i < section_count(r->scene, row->section); i++) {
-            char *const place = (char *)section_at(r->scene, row->section, i) + param->offset;
-            if (param->type == PARAM_REAL)
-                memcpy(place, &row->value, sizeof row->value);
-            else
-                *(int *)(void *)place = (int)row->value;
-        }
+        if (!preset_is_for(row, kind_of_scene(r->scene)) ||
+            row->choice != (row->of_scheme ? scheme : accuracy) ||
+            (row->integrator != ANY && row->integrator != integrator))
+            continue;
+        for (int i = 0; i < section_count(r->scene, row->section); i++)
+            param_set_number(param_find(row->section, row->key),
+                             section_at(r->scene, row->section, i), row->value);
     }
+}
+
+/* Defaults that depend on the case. `cfl`: the largest step at which the integrator is accurate;
+ * leapfrog is stable at twice the step of the paper's (docs/performance.md). */
+void case_apply_defaults(struct scene *scene)
+{
+    static const double cfl[] = {
+        [INTEGRATOR_SYMPLECTIC] = 0.2, [INTEGRATOR_VERLET] = 0.2, [INTEGRATOR_LEAPFROG] = 0.4};
+    struct scene_relax *const relax = &scene->relax;
+    if (scene->numerics.cfl == 0) scene->numerics.cfl = cfl[scene->top.integrator];
+    if (relax->common.line > 0 && !scene_given(scene, SECTION_relax, 0, "tolerance"))
+        relax->tolerance = scene->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
 }

@@ -12,178 +12,146 @@
 
 /* --- sections --- */
 
-static void set_defaults(void *section, enum section_id id)
+static void set_defaults(void *section, enum section_id id, int index)
 {
+    struct scene_section_common *const common = section;
+    common->section = (int)id;
+    common->index = index;
     for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *param = &param_table[k];
-        if (param->section != id) continue;
+        const struct param *const param = &param_table[k];
         char *const place = (char *)section + param->offset;
+        if (param->section != id) continue;
         switch (param->type) {
-        case PARAM_REAL: memcpy(place, &param->number.value, sizeof(double)); break;
-        case PARAM_VECTOR:
-        case PARAM_TIME_VECTOR: memcpy(place, param->vector_default, 2 * sizeof(double)); break;
+        case PARAM_REAL:
         case PARAM_INTEGER:
-        case PARAM_CHOICE: *(int *)(void *)place = (int)param->number.value; break;
+        case PARAM_CHOICE: param_set_number(param, section, param->number.value); break;
+        case PARAM_VECTOR: memcpy(place, param->vector_default, 2 * sizeof(double)); break;
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", param->text_default); break;
-        case PARAM_FIELD_EXPR:
-        case PARAM_TIME_EXPR:
-        case PARAM_FLOW_EXPR:
+        case PARAM_EXPR:
         case PARAM_SHAPES:
         case PARAM_NUMBERS: break; /* absent */
         }
     }
 }
 
+static void *section_of(const struct reader *r, const struct case_section *s)
+{
+    return section_at(r->scene, (enum section_id)s->id, s->index);
+}
+
 static enum err allocate_sections(struct reader *r)
 {
-    struct scene *scene = r->scene;
-    int count[SECTION_COUNT] = {0};
-    for (int k = 0; k < r->n_sections; k++)
-        if (r->sections[k].id < SECTION_COUNT) count[r->sections[k].id]++;
+    struct scene *const scene = r->scene;
+    int count[SECTION_COUNT + 1] = {0};
+    for (int k = 0; k < r->n_sections; k++) count[r->sections[k].id]++;
     for (int id = 0; id < SECTION_COUNT; id++) {
-        const struct section_info *info = &section_table[id];
+        const struct section_info *const info = &section_table[id];
         if (info->named) {
-            void *array =
+            void *const array =
                 arena_alloc(&scene->arena, (size_t)count[id], info->size, "sections", r->diag);
             if (!array) return ERR_MEMORY;
             memcpy((char *)scene + info->offset, &array, sizeof array);
             memcpy((char *)scene + info->count_offset, &count[id], sizeof count[id]);
         }
         for (int k = 0; k < section_count(scene, (enum section_id)id); k++)
-            set_defaults(section_at(scene, (enum section_id)id, k), (enum section_id)id);
+            set_defaults(section_at(scene, (enum section_id)id, k), (enum section_id)id, k);
     }
-    set_defaults(&scene->contact_default, SECTION_contact);
+    set_defaults(&scene->contact_default, SECTION_contact, 0);
     for (int k = 0; k < r->n_sections; k++) {
-        const struct case_section *from = &r->sections[k];
-        if (from->id == SECTION_constants) continue;
-        struct scene_section_common *common =
-            section_at(scene, (enum section_id)from->id, from->index);
-        snprintf(common->name, sizeof common->name, "%s", from->name);
-        common->line = from->line;
+        if (r->sections[k].id == SECTION_constants) continue;
+        struct scene_section_common *const common = section_of(r, &r->sections[k]);
+        snprintf(common->name, sizeof common->name, "%s", r->sections[k].name);
+        common->line = r->sections[k].line;
     }
     return ERR_OK;
 }
 
+/* --- `like` --- */
+
+static const struct entry *find_entry(const struct reader *r, int section, const char *key)
+{
+    for (int k = 0; k < r->n_entries; k++)
+        if (r->entries[k].section == section && strcmp(r->entries[k].key, key) == 0)
+            return &r->entries[k];
+    return NULL;
+}
+
 /* `like = NAME`: the values of an earlier section of the kind become the defaults. Its regions do
  * not, since two bodies cannot be in the same place. */
-static enum err inherit(struct reader *r, int section)
+static enum err inherit(struct reader *r, const struct entry *e, const struct param *like,
+                        struct scene_section_common *to)
 {
-    struct case_section *to = &r->sections[section];
-    const struct param *like = param_find((enum section_id)to->id, "like");
-    const struct entry *e = NULL;
-    for (int k = 0; like && k < r->n_entries; k++)
-        if (r->entries[k].section == section && strcmp(r->entries[k].key, "like") == 0)
-            e = &r->entries[k];
-    if (!e) return ERR_OK;
-    char *const target = section_at(r->scene, (enum section_id)to->id, to->index);
+    char *const target = (void *)to;
+    const char *const name = target + like->offset;
     TRY(case_value(r, e, like, target));
     struct nearest near = {0};
     for (int k = 0; k < to->index; k++) {
-        const char *source = section_at(r->scene, (enum section_id)to->id, k);
-        const struct scene_section_common *common = (const void *)source;
-        nearest_offer(&near, target + like->offset, common->name);
-        if (strcmp(common->name, target + like->offset) != 0) continue;
-        const size_t head = sizeof(struct scene_section_common);
-        memcpy(target + head, source + head, section_table[to->id].size - head);
+        const struct scene_section_common *const from = section_at(r->scene, like->section, k);
+        nearest_offer(&near, name, from->name);
+        if (strcmp(from->name, name) != 0) continue;
+        memcpy(to + 1, from + 1, section_table[like->section].size - sizeof *to);
         memset(target + like->offset, 0, SCENE_TEXT);
-        for (int n = 0; n < section; n++) /* what that section lacks is told of it alone */
-            to->incomplete |= r->sections[n].id == to->id && r->sections[n].index == k &&
-                              (r->sections[n].incomplete || r->sections[n].invalid);
         for (int p = 0; p < PARAM_COUNT; p++)
-            if ((int)param_table[p].section == to->id && param_table[p].type == PARAM_SHAPES)
+            if (param_table[p].section == like->section && param_table[p].type == PARAM_SHAPES)
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
         return ERR_OK;
     }
     if (r->lost) return ERR_INPUT; /* it may be defined in an invalid line */
-    if (near.name)
-        return bad_value(r, e, "there is no earlier [%s] of that name; did you mean `%s`?",
-                         section_table[to->id].word, near.name);
-    return bad_value(r, e, "there is no earlier [%s] of that name", section_table[to->id].word);
-}
-
-static enum err unknown_key(struct reader *r, const struct entry *e, int id)
-{
-    struct nearest near = {0};
-    for (int k = 0; k < PARAM_COUNT; k++)
-        if ((int)param_table[k].section == id) nearest_offer(&near, e->key, param_table[k].key);
-    const char *word = id == SECTION_top ? "at the top of the file" : section_table[id].word;
-    char place[80];
-    snprintf(place, sizeof place, id == SECTION_top ? "%s" : "in [%s]", word);
-    char meant[PARAM_MEANT];
-    if (param_meant((enum section_id)id, e->key, meant))
-        return bad_entry(r, e, "unknown key `%s` %s; did you mean %s?", e->key, place, meant);
-    const struct param *const called = param_called(e->key);
-    if (called)
-        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s` %s%s%s?", e->key, place,
-                         called->key, called->section == SECTION_top ? "at the top" : "in [",
-                         called->section == SECTION_top ? "" : section_table[called->section].word,
-                         called->section == SECTION_top ? "" : "]");
-    for (int k = 0; k < PARAM_COUNT; k++)
-        if (strcmp(param_table[k].key, e->key) == 0) {
-            const bool top = param_table[k].section == SECTION_top;
-            return bad_entry(r, e, "unknown key `%s` %s; it belongs %s%s%s", e->key, place,
-                             top ? "at the top of the file" : "in [",
-                             top ? "" : section_table[param_table[k].section].word, top ? "" : "]");
-        }
-    if (near.name)
-        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
-    return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
+    return bad_value(r, e, "there is no earlier [%s] of that name%s",
+                     section_table[like->section].word, nearest_hint(&near));
 }
 
 /* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
-static void drop_rivals(struct reader *r, int section)
+static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
 {
-    const struct case_section *cs = &r->sections[section];
-    if (cs->id != SECTION_fluid) return;
-    struct scene_fluid *f = &r->scene->fluid[cs->index];
-    for (int k = 0; k < r->n_entries; k++) {
-        if (r->entries[k].section != section) continue;
-        if (strcmp(r->entries[k].key, "surface") == 0) f->pressure.e[0] = NULL;
-        if (strcmp(r->entries[k].key, "pressure") == 0) f->surface = (double)NAN;
-    }
+    if (find_entry(r, section, "surface")) f->pressure.e[0] = NULL;
+    if (find_entry(r, section, "pressure")) f->surface = (double)NAN;
 }
 
 /* `like` copies no regions: a copy of a clamped body that has neither a clamp of its own nor a bond
  * moves freely. */
-static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
+static void warn_of_lost_clamp(struct reader *r, const struct scene_solid *copy, const char *like)
 {
-    const struct case_section *cs = &r->sections[section];
-    if (cs->id != SECTION_solid || !like) return;
-    const struct scene_solid *const copy = &r->scene->solid[cs->index];
-    if (copy->joined[0]) return;
-    for (int k = 0; k < cs->index; k++) {
-        const struct scene_solid *const from = &r->scene->solid[k];
-        if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
-            warn_at(r->diag, r->scene, cs->line,
+    for (const struct scene_solid *from = r->scene->solid; from < copy; from++)
+        if (strcmp(from->common.name, like) == 0 && from->clamp.n > 0 && copy->clamp.n == 0 &&
+            !copy->joined[0])
+            warn_at(r->diag, r->scene, copy->common.line,
                     "[solid %s] is like [solid %s] but has no `clamp`, because `like` does "
                     "not copy regions, so it moves freely; give it a `clamp`",
-                    copy->common.name, from->common.name);
-    }
+                    copy->common.name, like);
+}
+
+/* --- keys --- */
+
+static enum err unknown_key(struct reader *r, const struct entry *e, int id)
+{
+    char hint[PARAM_HINT], title[TITLE_TEXT];
+    snprintf(title, sizeof title, "in [%s]", section_table[id].word);
+    r->lost = true;
+    return bad_entry(r, e, "unknown key `%s` %s%s", e->key,
+                     id == SECTION_top ? "at the top of the file" : title,
+                     param_hint((enum section_id)id, e->key, hint));
 }
 
 static enum err read_section(struct reader *r, int section)
 {
-    const struct case_section *cs = &r->sections[section];
-    if (cs->id == SECTION_constants) return ERR_OK;
-    const enum err inherited_well = inherit(r, section);
-    TRY(case_go_on(r, inherited_well));
-    if (inherited_well) r->sections[section].incomplete = r->sections[section].invalid = true;
-    drop_rivals(r, section);
-    const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
-    void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
-    const struct entry *given[PARAM_COUNT] = {NULL};
+    const enum section_id id = (enum section_id)r->sections[section].id;
+    const struct entry *given[PARAM_COUNT] = {NULL}, *const as = find_entry(r, section, "like");
+    const struct param *const like = id < SECTION_COUNT ? param_find(id, "like") : NULL;
+    if (r->sections[section].id == SECTION_constants) return ERR_OK;
+    void *const target = section_of(r, &r->sections[section]);
+    if (like && as) TRY(case_go_on(r, inherit(r, as, like, target)));
+    if (id == SECTION_fluid) drop_rivals(r, section, target);
     for (int k = 0; k < r->n_entries; k++) {
-        const struct entry *e = &r->entries[k];
+        const struct entry *const e = &r->entries[k];
         if (e->section != section) continue;
-        const struct param *param = param_find((enum section_id)cs->id, e->key);
+        const struct param *const param = param_find(id, e->key);
         if (!param) {
-            r->sections[section].incomplete = r->sections[section].invalid = true;
-            TRY(case_go_on(r, unknown_key(r, e, cs->id)));
+            TRY(case_go_on(r, unknown_key(r, e, (int)id)));
             continue;
         }
-        const struct entry **before = &given[param - param_table];
+        const struct entry **const before = &given[param - param_table];
         if (*before && param->type != PARAM_SHAPES) {
-            r->sections[section].invalid = true;
             TRY(case_go_on(r,
                            bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
                                      e->key, (*before)->line)));
@@ -191,47 +159,32 @@ static enum err read_section(struct reader *r, int section)
         }
         *before = e;
         r->scene->given[r->scene->n_given++] =
-            (struct scene_given){cs->id, cs->index, param->key, e->line};
-        if (inherited && strcmp(e->key, "like") == 0) continue;
-        const enum err read = case_value(r, e, param, target);
-        if (read) r->sections[section].invalid = true;
-        TRY(case_go_on(r, read));
+            (struct scene_given){(int)id, r->sections[section].index, param->key, e->line};
+        if (param != like) TRY(case_go_on(r, case_value(r, e, param, target)));
     }
-    const struct param *const like = param_find((enum section_id)cs->id, "like");
-    if (like) warn_of_lost_clamp(r, section, given[like - param_table]);
+    if (id == SECTION_solid && as) warn_of_lost_clamp(r, target, as->value);
     return ERR_OK;
 }
 
-static enum err lacks(struct reader *r, const struct case_section *cs, const struct param *param)
-{
-    char unit[40] = "";
-    if (strcmp(param->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", param->unit);
-    if (cs->id == SECTION_top)
-        return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", param->key,
-                        param->meaning, unit);
-    return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word, cs->name,
-                    param->key, param->meaning, unit);
-}
-
-/* Required values that were not given are still NaN. */
+/* Required values that were not given are still NaN. What a section is like may have an invalid
+ * one. */
 static enum err check_needed(struct reader *r)
 {
-    for (int k = 0; k < r->n_sections; k++) {
-        const struct case_section *cs = &r->sections[k];
-        if (cs->id == SECTION_constants) continue;
-        const char *section = section_at(r->scene, (enum section_id)cs->id, cs->index);
-        for (int j = 0; j < PARAM_COUNT; j++) {
-            const struct param *param = &param_table[j];
-            if ((int)param->section != cs->id || !param->number.needed) continue;
-            double value;
-            memcpy(&value, section + param->offset, sizeof value);
-            /* A key with an invalid value, or an unknown name that may mean it, is not missing. */
-            if (!isnan(value) || cs->incomplete ||
-                scene_given(r->scene, (enum section_id)cs->id, cs->index, param->key))
-                continue;
-            r->sections[k].invalid = true;
-            TRY(case_go_on(r, lacks(r, cs, param)));
-        }
+    for (int k = 0; k < r->n_sections * PARAM_COUNT; k++) {
+        const struct case_section *const s = &r->sections[k / PARAM_COUNT];
+        const struct param *const param = &param_table[k % PARAM_COUNT];
+        if ((int)param->section != s->id || !param->number.needed) continue;
+        if (!isnan(param_number(param, section_of(r, s))) ||
+            scene_given(r->scene, param->section, s->index, param->key) ||
+            (r->n_problems > 0 && scene_given(r->scene, param->section, s->index, "like")))
+            continue;
+        const bool top = param->section == SECTION_top, pure = strcmp(param->unit, "1") == 0;
+        char title[TITLE_TEXT];
+        section_title(section_of(r, s), title);
+        TRY(case_go_on(r, bad_line(r, s->line, "%s%s`%s`%s: %s%s%s%s", top ? "" : title,
+                                   top ? "" : " lacks ", param->key,
+                                   top ? " is missing at the top of the file" : "", param->meaning,
+                                   pure ? "" : " (", pure ? "" : param->unit, pure ? "" : ")")));
     }
     return ERR_OK;
 }
@@ -245,22 +198,27 @@ static enum err load_tables(struct reader *r)
     return gravity ? gravity : motion;
 }
 
+/* Problems of lines and values are reported together with names that are not found; what else
+ * concerns several values is looked at when all of them are valid. */
 static enum err read_all(struct reader *r, const char *text, int n_sets, const char *const *sets)
 {
+    struct scene *const scene = r->scene;
     TRY(case_split(r, text));
     TRY(case_apply_sets(r, n_sets, sets));
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
     case_apply_presets(r);
     TRY(case_all_constants(r));
-    r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
-                                  sizeof *r->scene->given, "case file", r->diag);
-    if (!r->scene->given) return ERR_MEMORY;
+    scene->given = arena_alloc(&scene->arena, (size_t)r->n_entries + 1, sizeof *scene->given,
+                               "case file", r->diag);
+    if (!scene->given) return ERR_MEMORY;
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
+    if (r->lost) return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
     TRY(check_needed(r));
-    /* A name that is not found may be in an invalid line. */
-    if (r->lost) return ERR_INPUT;
-    TRY(case_check(r));
+    const bool valid = r->n_problems == 0;
+    case_apply_defaults(scene);
+    TRY(case_check_names(r));
+    if (valid) TRY(case_check(r));
     return r->n_problems > 0 ? ERR_INPUT : load_tables(r);
 }
 

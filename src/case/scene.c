@@ -166,16 +166,25 @@ enum probe_target scene_probe_target(const struct scene_probe *probe)
     return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
 }
 
+bool scene_word(const char *text, int k, char word[SCENE_TEXT])
+{
+    static const char blanks[] = " \t,";
+    text += strspn(text, blanks);
+    for (; k > 0; k--) {
+        text += strcspn(text, blanks);
+        text += strspn(text, blanks);
+    }
+    snprintf(word, SCENE_TEXT, "%.*s", (int)strcspn(text, blanks), text);
+    return *word;
+}
+
 bool scene_snapshot_has(const struct scene *scene, const char *field)
 {
-    const size_t length = strlen(field);
-    const char *word = scene->output.snapshot_fields;
-    if (strcmp(word, "all") == 0) return true;
-    for (size_t n; *(word += strspn(word, " \t,")); word += n) {
-        n = strcspn(word, " \t,");
-        if (n == length && strncmp(word, field, n) == 0) return true;
-    }
-    return false;
+    const char *const fields = scene->output.snapshot_fields;
+    char word[SCENE_TEXT];
+    bool has = strcmp(fields, "all") == 0;
+    for (int k = 0; !has && scene_word(fields, k, word); k++) has = strcmp(word, field) == 0;
+    return has;
 }
 
 /* --- places and files --- */

@@ -4,7 +4,7 @@
 #ifndef SPHFSI_CASE_SCENE_H
 #define SPHFSI_CASE_SCENE_H
 
-#include "base/base.h"
+#include "case/expr.h"
 
 /* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0,
  * and |rho/rho0 - 1|. */
@@ -34,17 +34,16 @@ struct number_list {
     double *value;
 };
 
-/* Up to two expressions in x and y, or in x, y and t, or one in t; see case/expr.h. NULL: not
- * given. */
-struct expr;
+/* Up to two expressions in x and y, or in x, y and t, or one in t. NULL: not given. */
 struct scene_expr {
     struct expr *e[2];
 };
 
-/* The name after the section's word, and the line of its header. */
+/* The name after the section's word, and the line of its header; enum section_id of case/params.h
+ * and its number among those of its kind. */
 struct scene_section_common {
     char name[SCENE_NAME];
-    int line;
+    int line, section, index;
 };
 
 /* One struct for each section of case/params.def, with a member for each of its keys. */
@@ -56,9 +55,7 @@ struct scene_section_common {
 #define MEMBER_TIME_VECTOR(key) \
     double key[2];              \
     struct scene_expr key##_in_time;
-#define MEMBER_FIELD_EXPR(key) struct scene_expr key;
-#define MEMBER_TIME_EXPR(key) struct scene_expr key;
-#define MEMBER_FLOW_EXPR(key) struct scene_expr key;
+#define MEMBER_EXPR(key) struct scene_expr key;
 #define MEMBER_SHAPES(key) struct shape_list key;
 #define MEMBER_NUMBERS(key) struct number_list key;
 #define PARAM(section, key, type, ...) MEMBER_##type(key)
@@ -188,12 +185,11 @@ struct scene_table {
     double *vx, *vy; /* of a motion: slopes at the rows, so that the velocity is continuous */
 };
 
-/* A named constant, evaluated. plain: it was written without a unit. */
+/* A named constant, evaluated. */
 struct scene_constant {
     char name[SCENE_NAME];
     double value;
-    bool plain;
-    double m, kg, s; /* powers of its unit */
+    struct dim dim;
 };
 
 /* A key given by the case, not a default. */
@@ -292,11 +288,6 @@ void scene_open_velocity(const struct scene_open *o, const double x[2], double t
 /* The flow that a given velocity brings into the fluid at a time, per depth, m^2/s. */
 double scene_open_flow(const struct scene_open *o, double time);
 
-/* Value of an expression at a point; of one in t at x = t (grammar: case/expr.h). */
-double scene_expr_at(const struct expr *e, double x, double y);
-/* Value of an expression in x, y and t. */
-double scene_expr_at_time(const struct expr *e, double x, double y, double t);
-
 /* Writes the effective case, with all values and defaults in SI units; parsing it again gives an
  * equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
@@ -326,11 +317,6 @@ struct motion_point {
 };
 struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
 
-/* Default C_CFL of Eq. 28: that of the paper, and that of leapfrog, which is stable at twice the
- * step (docs/performance.md). */
-#define CFL_PAPER 0.2
-#define CFL_LEAPFROG 0.4
-
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *scene, const char *name);
 int scene_find_solid(const struct scene *scene, const char *name);
@@ -341,6 +327,9 @@ double scene_solid_h(const struct scene *scene, int solid);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *scene, int solid);
 int scene_find_wall(const struct scene *scene, const char *name);
+
+/* Word k of a list with blanks or commas between them; false: there are fewer. */
+bool scene_word(const char *text, int k, char word[SCENE_TEXT]);
 
 /* Whether the snapshots of a scene have a field of case/pointdata.def. */
 bool scene_snapshot_has(const struct scene *scene, const char *field);

@@ -20,7 +20,7 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
     if (given != n)
         return bad_value(r, e, "%d numbers with commas between them are expected; `%.*s` has %d%s",
                          n, (int)(text.length < 40 ? text.length : 40), text.at, given,
-                         given > n ? case_comma_hint(e->value) : "");
+                         given > n ? comma_hint(e->value) : "");
     for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
         TRY(case_number(r, e, piece, "m", &value[k]));
         if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: at most 1e9 m is allowed");
@@ -31,18 +31,12 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
 static enum err read_box(struct reader *r, const struct entry *e, struct slice text,
                          struct shape *shape)
 {
-    double v[4] = {0};
-    TRY(read_point(r, e, text, 4, v));
-    if (!(v[0] < v[2]) || !(v[1] < v[3]))
-        return bad_value(r, e,
-                         "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g "
-                         "to %g m",
-                         v[0], v[2], v[1], v[3]);
-    shape->pt[0][0] = v[0];
-    shape->pt[0][1] = v[1];
-    shape->pt[1][0] = v[2];
-    shape->pt[1][1] = v[3];
-    return ERR_OK;
+    const double *const v = shape->pt[0];
+    TRY(read_point(r, e, text, 4, shape->pt[0]));
+    if (v[0] < v[2] && v[1] < v[3]) return ERR_OK;
+    return bad_value(r, e,
+                     "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g to %g m",
+                     v[0], v[2], v[1], v[3]);
 }
 
 static enum err read_circle(struct reader *r, const struct entry *e, struct slice text,
@@ -51,8 +45,7 @@ static enum err read_circle(struct reader *r, const struct entry *e, struct slic
     double v[3] = {0};
     TRY(read_point(r, e, text, 3, v));
     if (!(v[2] > 0)) return bad_value(r, e, "the radius of a circle must be above 0 m");
-    shape->pt[0][0] = v[0];
-    shape->pt[0][1] = v[1];
+    memcpy(shape->pt[0], v, sizeof shape->pt[0]);
     shape->size = v[2];
     return ERR_OK;
 }
@@ -62,9 +55,9 @@ static enum err read_points(struct reader *r, const struct entry *e, struct slic
 {
     struct slice piece;
     for (int k = 0; k < shape->n && slice_next(&text, ';', &piece); k++) {
+        const double *const p = shape->pt[k], *const before = shape->pt[k > 0 ? k - 1 : 0];
         TRY(read_point(r, e, piece, 2, shape->pt[k]));
-        if (k > 0 && shape->pt[k][0] == shape->pt[k - 1][0] &&
-            shape->pt[k][1] == shape->pt[k - 1][1])
+        if (k > 0 && p[0] == before[0] && p[1] == before[1])
             return bad_value(r, e, "points %d and %d are the same", k, k + 1);
     }
     return ERR_OK;
@@ -102,32 +95,35 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
 static enum err read_thickness(struct reader *r, const struct entry *e, struct slice *text,
                                double *thickness)
 {
-    const char word[] = "thickness";
+    static const char word[] = "thickness";
     const size_t length = sizeof word - 1;
-    const char *colon = memchr(text->at, ':', text->length);
-    if (!colon || text->length < length || memcmp(text->at, word, length) != 0)
+    struct slice number;
+    if (text->length < length || memcmp(text->at, word, length) != 0 ||
+        !slice_next(text, ':', &number) || !text->at)
         return bad_value(r, e, "write `polyline thickness T: X, Y; X, Y; ...`");
-    const struct slice number = {text->at + length, (size_t)(colon - text->at) - length};
-    TRY(case_number(r, e, number, "m", thickness));
+    TRY(case_number(r, e, slice_after(number, length), "m", thickness));
     if (*thickness == 0 || fabs(*thickness) > 1e9)
         return bad_value(r, e, "the thickness must not be 0 and at most 1e9 m");
-    const size_t used = (size_t)(colon + 1 - text->at);
-    *text = (struct slice){text->at + used, text->length - used};
     return ERR_OK;
 }
+
+const char *const shape_words[] = {[SHAPE_BOX] = "box",
+                                   [SHAPE_POLYGON] = "polygon",
+                                   [SHAPE_POLYLINE] = "polyline",
+                                   [SHAPE_CIRCLE] = "circle"};
 
 static enum err read_shape(struct reader *r, const struct entry *e, struct slice text,
                            struct shape *shape)
 {
-    const int needed[] = {
+    static const int needed[] = {
         [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
+    const int least = needed[shape->kind];
     const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
     if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, &shape->size));
-    shape->n = listed ? slice_count(text, ';') : needed[shape->kind];
-    shape->line = e->line;
-    if (shape->n < needed[shape->kind])
+    shape->n = listed ? slice_count(text, ';') : least;
+    if (shape->n < least)
         return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
-                         needed[shape->kind], shape->n == 1 ? "is" : "are", shape->n);
+                         least, shape->n == 1 ? "is" : "are", shape->n);
     if (shape->n > CASE_MAX_POINTS)
         return bad_value(r, e, "more than %d points are given; use fewer points or several shapes",
                          CASE_MAX_POINTS);
@@ -142,24 +138,20 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
 
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
 {
-    static const char *const words[] = {[SHAPE_BOX] = "box",
-                                        [SHAPE_POLYGON] = "polygon",
-                                        [SHAPE_POLYLINE] = "polyline",
-                                        [SHAPE_CIRCLE] = "circle"};
     const size_t length = strcspn(e->value, " \t");
-    int kind = -1;
-    for (int k = 0; k < (int)COUNT_OF(words); k++)
-        if (strlen(words[k]) == length && memcmp(words[k], e->value, length) == 0) kind = k;
-    if (kind < 0)
+    int kind = SHAPE_BOX;
+    while (kind <= SHAPE_CIRCLE && (strlen(shape_words[kind]) != length ||
+                                    memcmp(shape_words[kind], e->value, length) != 0))
+        kind++;
+    if (kind > SHAPE_CIRCLE)
         return bad_value(r, e,
                          "`%.*s` is not a shape; known: box X0, Y0, X1, Y1; circle X, Y, R; "
                          "polygon X, Y; ...; polyline thickness T: X, Y; ...",
                          (int)(length < 40 ? length : 40), e->value);
-    struct shape shape = {.kind = (enum shape_kind)kind};
-    const char *start = e->value + length + strspn(e->value + length, " \t");
-    TRY(read_shape(r, e, (struct slice){start, strlen(start)}, &shape));
+    struct shape shape = {.kind = (enum shape_kind)kind, .line = e->line};
+    TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), &shape));
     if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: double the memory */
-        struct shape *item =
+        struct shape *const item =
             arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);
         if (!item) return ERR_MEMORY;
         if (list->n) memcpy(item, list->item, (size_t)list->n * sizeof *item);

@@ -12,11 +12,12 @@ static enum err check_range(struct reader *r, const struct entry *e, const struc
     const bool low = param->low.open ? value > param->low.value : value >= param->low.value;
     const bool high = param->high.open ? value < param->high.value : value <= param->high.value;
     if (low && high) return ERR_OK;
-    const char *unit = param->unit && strcmp(param->unit, "1") != 0 ? param->unit : "";
-    return bad_value(r, e, "out of range: it must be %s %g%s%s and %s %g%s%s",
-                     param->low.open ? "above" : "at least", param->low.value, *unit ? " " : "",
-                     unit, param->high.open ? "below" : "at most", param->high.value,
-                     *unit ? " " : "", unit);
+    char unit[40] = "";
+    if (param->unit && strcmp(param->unit, "1") != 0)
+        snprintf(unit, sizeof unit, " %s", param->unit);
+    return bad_value(r, e, "out of range: it must be %s %g%s and %s %g%s",
+                     param->low.open ? "above" : "at least", param->low.value, unit,
+                     param->high.open ? "below" : "at most", param->high.value, unit);
 }
 
 static enum err read_integer(struct reader *r, const struct entry *e, const struct param *param,
@@ -30,21 +31,17 @@ static enum err read_integer(struct reader *r, const struct entry *e, const stru
     return ERR_OK;
 }
 
-enum { CHOICES_MOST = 32 };
-
 static enum err read_choice(struct reader *r, const struct entry *e, const struct param *param,
                             int *value)
 {
-    struct slice rest = slice_of(param->choices), name;
+    enum { MAX_CHOICES = 32 };
+    char names[MAX_CHOICES][SCENE_NAME];
     struct nearest near = {0};
-    char names[CHOICES_MOST][SCENE_NAME];
-    for (int k = 0; k < CHOICES_MOST && slice_next(&rest, '|', &name); k++) {
-        snprintf(names[k], SCENE_NAME, "%.*s", (int)name.length, name.at);
-        if (strcmp(names[k], e->value) == 0) {
-            *value = k;
-            return ERR_OK;
-        }
+    for (int k = 0; k < MAX_CHOICES && param_choice_name(param, k, names[k]); k++) {
         nearest_offer(&near, e->value, names[k]);
+        if (strcmp(names[k], e->value) != 0) continue;
+        *value = k;
+        return ERR_OK;
     }
     if (near.name)
         return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, param->choices);
@@ -92,7 +89,7 @@ static enum err check_pair(struct reader *r, const struct entry *e, const struct
 {
     if (n == 2) return ERR_OK;
     return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s", param->key,
-                     n == 1 ? "is" : "are", n, case_comma_hint(e->value));
+                     n == 1 ? "is" : "are", n, comma_hint(e->value));
 }
 
 static enum err read_vector(struct reader *r, const struct entry *e, const struct param *param,
@@ -128,15 +125,12 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
-    if (param->type == PARAM_TIME_VECTOR) TRY(check_pair(r, e, param, n));
+    if (param->expr_offset) TRY(check_pair(r, e, param, n));
     if (n != param->count)
         return bad_value(r, e, "%s expected, with commas between them; there %s %d",
                          param->count == 1 ? "one expression is" : "two expressions are",
                          n == 1 ? "is" : "are", n);
-    const enum expr_scope scope = param->type == PARAM_FIELD_EXPR  ? EXPR_IN_SPACE
-                                  : param->type == PARAM_FLOW_EXPR ? EXPR_IN_BOTH
-                                                                   : EXPR_IN_TIME;
-    const struct expr_names names = {r, case_name, scope};
+    const struct expr_names names = {r, case_name, param->scope};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         r->cause_named = false;
@@ -179,11 +173,10 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_INTEGER: return read_integer(r, e, param, place);
     case PARAM_CHOICE: return read_choice(r, e, param, place);
     case PARAM_TEXT: return read_text(r, e, place);
-    case PARAM_VECTOR: return read_vector(r, e, param, place);
-    case PARAM_TIME_VECTOR: return read_time_vector(r, e, param, section);
-    case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: return read_field(r, e, param, place);
+    case PARAM_VECTOR:
+        return param->expr_offset ? read_time_vector(r, e, param, section)
+                                  : read_vector(r, e, param, place);
+    case PARAM_EXPR: return read_field(r, e, param, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
     case PARAM_NUMBERS: break;
     }

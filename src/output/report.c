@@ -47,11 +47,8 @@ static void write_value(struct json *j, const struct param *param, const void *v
         json_text(j, param->key, name);
         break;
     case PARAM_TEXT: json_text(j, param->key, value); break;
-    case PARAM_VECTOR:
-    case PARAM_TIME_VECTOR: json_numbers(j, param->key, value, 2); break;
-    case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: write_expressions(j, param, value); break;
+    case PARAM_VECTOR: json_numbers(j, param->key, value, 2); break;
+    case PARAM_EXPR: write_expressions(j, param, value); break;
     case PARAM_SHAPES: write_shapes(j, param->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;

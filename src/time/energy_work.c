@@ -19,7 +19,7 @@ static bool keeps_account(const struct simulation *sim) { return sim->effects & 
 
 /* Power of all rates on a particle (T-46a); that of walls and structures; energy of position and
  * compression. */
-enum quantity { POWER, BODY_POWER, STATIC_ENERGY };
+enum energy_kind { POWER, BODY_POWER, STATIC_ENERGY };
 
 /* Eight particles abreast, over a fixed number of slices: the order of the sums is the same on
  * every machine and with any number of threads. */
@@ -32,8 +32,8 @@ SPHFSI_INLINE double compression_rate(double dens, double c0)
 }
 
 /* The quantity of `count` particles from i on. */
-static void find_values(const struct simulation *sim, enum quantity quantity, int64_t i, int count,
-                        double *value)
+static void find_values(const struct simulation *sim, enum energy_kind quantity, int64_t i,
+                        int count, double *value)
 {
     const struct particles particles = sim->kind[KIND_FLUID];
     const double c0 = sim->fluid.k.c0, mass = sim->fluid.k.mass;
@@ -60,7 +60,7 @@ static void find_values(const struct simulation *sim, enum quantity quantity, in
     for (int r = 0; r < count; r++) value[r] *= particles.m[i + r];
 }
 
-static void sum_slice(const struct simulation *sim, enum quantity quantity, int64_t from,
+static void sum_slice(const struct simulation *sim, enum energy_kind quantity, int64_t from,
                       int64_t end, double of[SCENE_MAX_SECTIONS])
 {
     const int32_t *const section = sim->kind[KIND_FLUID].body;
@@ -77,7 +77,7 @@ static void sum_slice(const struct simulation *sim, enum quantity quantity, int6
     for (int lane = 0; lane < ABREAST; lane++) of[0] += sum[lane];
 }
 
-static void sum_fluid(const struct simulation *sim, enum quantity quantity,
+static void sum_fluid(const struct simulation *sim, enum energy_kind quantity,
                       double of[SCENE_MAX_SECTIONS])
 {
     const int64_t n = sim->kind[KIND_FLUID].n;

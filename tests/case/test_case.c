@@ -269,20 +269,16 @@ static void same_value(const struct param *param, const char *mine, const char *
     if (strstr(param->key, "file")) return; /* the same file, seen from another folder */
     switch (param->type) {
     case PARAM_REAL: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(double), param->key); break;
-    case PARAM_TIME_VECTOR:
-        same_expressions((const void *)(mine + param->expr_offset),
-                         (const void *)(its + param->expr_offset));
-        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), param->key);
-        break;
     case PARAM_VECTOR:
+        if (param->expr_offset)
+            same_expressions((const void *)(mine + param->expr_offset),
+                             (const void *)(its + param->expr_offset));
         TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), param->key);
         break;
     case PARAM_INTEGER:
     case PARAM_CHOICE: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(int), param->key); break;
     case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, param->key); break;
-    case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR:
-    case PARAM_FLOW_EXPR: same_expressions(a, b); break;
+    case PARAM_EXPR: same_expressions(a, b); break;
     case PARAM_SHAPES: same_shapes(a, b); break;
     case PARAM_NUMBERS: {
         const struct number_list *p_list = a, *q_list = b;

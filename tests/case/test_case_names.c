@@ -23,8 +23,8 @@ static void refuses_all(const char *text, const char *want)
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
 
-/* Names and values in one run, and nothing that follows from a wrong value: [solid a] may have a
- * clamp, and its motion may be any. */
+/* Names and values in one run; what else concerns several values, such as the period of [motion m],
+ * when all are right. */
 static void test_names_are_checked_beside_wrong_values(void)
 {
     refuses_all(TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\nyoung = 1 Mpa\nclamp = bix 0\n"
@@ -37,7 +37,6 @@ static void test_names_are_checked_beside_wrong_values(void)
                 "bad.cfg:6: clamp = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
                 "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...\n"
                 "bad.cfg:9: motion = mm: there is no [motion] of that name\n"
-                "bad.cfg:10: [motion m] kind = sine needs `period`\n"
                 "bad.cfg:16: body = b: there is no [solid] of that name\n"
                 "bad.cfg:19: body = aa: there is no [solid] of that name\n"
                 "bad.cfg:21: between = v: there is no [solid] or [wall] of that name\n");

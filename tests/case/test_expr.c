@@ -15,9 +15,9 @@ static bool find(void *context, const char *name, struct quantity *q, char reaso
 {
     (void)context, (void)reason;
     if (strcmp(name, "L") == 0)
-        *q = (struct quantity){2, {DIM_KNOWN, 1, 0, 0}};
+        *q = (struct quantity){2, {DIM_KNOWN, {0, 1, 0}}};
     else if (strcmp(name, "n") == 0)
-        *q = (struct quantity){3, {DIM_PLAIN, 0, 0, 0}};
+        *q = (struct quantity){3, {DIM_PLAIN, {0, 0, 0}}};
     else
         return false;
     return true;
@@ -27,7 +27,7 @@ static const struct expr_names names = {NULL, find, true};
 
 static struct quantity value_of(const char *text)
 {
-    struct quantity q = {0, {DIM_PLAIN, 0, 0, 0}};
+    struct quantity q = {0, {DIM_PLAIN, {0, 0, 0}}};
     why[0] = '\0';
     const bool good = expr_value((struct slice){text, strlen(text)}, &names, &q, why);
     TEST_ASSERT_TRUE_MESSAGE(good, why);
