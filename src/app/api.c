@@ -225,7 +225,6 @@ static const struct {
 } file_field[] = {
 #include "case/pointdata.def"
 };
-#undef POINTDATA
 
 static bool has_file_field(const struct simulation *sim, enum kind kind, enum data what)
 {

@@ -5,6 +5,7 @@
 #include "app/embedded.h"
 #include "case/effects.h"
 #include "case/params.h"
+#include "output/probes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -187,6 +188,9 @@ static void say_key(const struct param *param, const struct sphfsi_options *o)
     range_of(param, range, sizeof range);
     manual_example(param, example, sizeof example);
     in_cell(param->meaning, meaning, sizeof meaning);
+    if (param->motion_kinds)
+        snprintf(meaning + strlen(meaning), sizeof meaning - strlen(meaning), " (kind = %s)",
+                 param->motion_kinds);
     session_say(o, "| `%s` | %s | %s | %s | %s | %s | %s%s%s%s%s |", param->key, type,
                 pure(param) ? "" : param->unit, fallback, range, meaning, example[0] ? "`" : "",
                 example[0] ? param->key : "", example[0] ? " = " : "", example,
@@ -235,7 +239,7 @@ static void say_quantities(const struct sphfsi_options *o)
     session_say(o, "|---|---|---|---|");
     for (int k = 0; k < PROBE_QUANTITIES; k++) {
         const struct quantity_info *const q = &quantity_table[k];
-        session_say(o, "| `%s` | %s | `%s` | %s |", q->name, needs[q->target], q->columns,
+        session_say(o, "| `%s` | %s | `%s` | %s |", q->name, needs[probe_targets[k]], q->columns,
                     q->meaning);
     }
 }

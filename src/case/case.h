@@ -6,7 +6,7 @@
  * numbers; a constant may use others, in any order, and the numbers at the top. Which keys there
  * are, their units, ranges and defaults: case/params.def. Values by type:
  *
- *   number       arithmetic with units, functions, constants: case/expr.h
+ *   number       arithmetic with units, functions, constants: expr/expr.h
  *   vector       two numbers with a comma between them
  *   numbers      numbers with commas between them
  *   choice       one of the names of case/params.def
@@ -21,7 +21,6 @@
 #ifndef SPHFSI_CASE_CASE_H
 #define SPHFSI_CASE_CASE_H
 
-#include "case/expr.h"
 #include "case/params.h"
 
 enum { SECTION_constants = SECTION_COUNT }; /* free names: no row of case/params.def */
@@ -39,8 +38,7 @@ struct entry {
     int section;     /* index into reader.sections */
     int line;        /* 0 if it came from --set */
     const char *set; /* the --set argument, or NULL */
-    const char *key;
-    const char *value;
+    const char *key, *value;
     const char *replaces; /* the file's value that --set replaces, or NULL */
 };
 
@@ -78,8 +76,7 @@ struct reader {
     struct problem problems[CASE_MAX_PROBLEMS];
 };
 
-/* --- case/messages.c: problems are stored, so that the reader can continue and report all of them
- * --- */
+/* --- case/messages.c: problems are stored, so that all of them are reported --- */
 
 /* Where a problem is: a line, an entry, or a section, there the line of `key` if it is not NULL.
  * The message begins with FILE:LINE or --set, then [section] or, with `value`, key = value. */
@@ -100,7 +97,7 @@ enum err problem(struct reader *r, struct place at, const char *format, ...) SPH
 #define bad_key(r, s, k, v, ...) \
     problem(r, (struct place){.section = (s), .key = (k), .value = (v)}, __VA_ARGS__)
 
-/* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
+/* Replaces the error of a stored problem by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
 /* The problems stored so far, sorted by line, as the failure in the diag. */
 void case_report(struct reader *r);
@@ -109,9 +106,8 @@ void case_report(struct reader *r);
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
 enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
 
-/* case/numbers.c: constants, numbers. */
-/* Finds the names of all constants and of the numbers at the top; ERR_INPUT if one is invalid. Then
- * evaluates all of them. */
+/* case/numbers.c. Finds the names of all constants and of the numbers at the top, ERR_INPUT if one
+ * is invalid; then evaluates all of them. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
@@ -124,28 +120,26 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
 enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
                         const char *unit) SPHFSI_CHECKED;
 
-/* case/shapes.c: adds a shape to a list; words by enum shape_kind. */
-extern const char *const shape_words[];
-enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
-    SPHFSI_CHECKED;
-
-/* case/values.c: an entry's text to its value in a section's struct. */
+/* case/values.c: an entry's text to its value in a section; case/shapes.c: adds a shape to a list;
+ * words by enum shape_kind. */
 enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
                     void *section) SPHFSI_CHECKED;
+enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+    SPHFSI_CHECKED;
+extern const char *const shape_words[];
 
 /* case/presets.c: what `scheme` and `accuracy` choose stands in for the defaults, so that a key of
  * the case wins; and defaults that depend on other values. */
 void case_apply_presets(struct reader *r);
 void case_apply_defaults(struct scene *scene);
 
-/* case/check.c: names of other sections; then conditions on a valid scene, each section by its
- * own function. */
+/* case/check.c: names of other sections; then conditions on a valid scene, on each section by a
+ * function of its own, and on effects (case/check_effects.c). */
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_motion(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_probe(struct reader *r, const void *section) SPHFSI_CHECKED;
-/* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 
 /* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place
@@ -153,7 +147,10 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d) SPHFSI_CHECKED;
-/* The content of a table, its columns, and whether it begins with zeros. */
+/* Columns for a number of rows. */
+enum err table_allocate(struct scene *scene, struct scene_table *table, int rows, struct diag *d)
+    SPHFSI_CHECKED;
+/* `what` it is of, with its columns; of a motion: its first row is zero. */
 struct table_kind {
     const char *what, *columns;
     bool from_rest;

@@ -2,7 +2,7 @@
  * Conditions on a scene beyond the range of each value: names that must exist, values that must
  * agree. */
 #include "case/case.h"
-#include "case/expr.h"
+#include "expr/expr.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,62 +10,43 @@
 
 /* --- names of other sections --- */
 
-/* Keys whose text names one, two or several sections of one kind or another. */
-static const struct naming {
-    enum section_id section;
-    const char *key;
-    enum section_id kind, also;
-    enum { ONE, TWO, SEVERAL } number;
-} naming[] = {
-    {SECTION_wall, "motion", SECTION_motion, SECTION_motion, ONE},
-    {SECTION_solid, "clamp_motion", SECTION_motion, SECTION_motion, ONE},
-    {SECTION_solid, "joined", SECTION_solid, SECTION_solid, ONE},
-    {SECTION_contact, "between", SECTION_solid, SECTION_wall, TWO},
-    {SECTION_load, "body", SECTION_solid, SECTION_solid, ONE},
-    {SECTION_probe, "body", SECTION_solid, SECTION_wall, SEVERAL},
-    {SECTION_probe, "on", SECTION_solid, SECTION_wall, ONE},
-};
-
-static enum err check_name(struct reader *r, const struct naming *row, const void *section,
-                           const char *name)
+static enum err check_name(struct reader *r, const struct param *param, const void *section,
+                           const char *name, enum section_id also)
 {
     struct nearest near = {0};
-    const enum section_id kinds[] = {row->kind, row->also};
+    const enum section_id kinds[] = {param->kind, also};
     for (int n = 0; n < 2; n++)
         for (int k = 0; k < section_count(r->scene, kinds[n]); k++) {
             const struct scene_section_common *const other = section_at(r->scene, kinds[n], k);
             if (strcmp(other->name, name) == 0) return ERR_OK;
             nearest_offer(&near, name, other->name);
         }
-    const bool two = row->also != row->kind;
-    return bad_key(r, section, row->key, name, "there is no [%s%s%s] of that name%s",
-                   section_table[row->kind].word, two ? "] or [" : "",
-                   two ? section_table[row->also].word : "", nearest_hint(&near));
+    const bool two = also != param->kind;
+    return bad_key(r, section, param->key, name, "there is no [%s%s%s] of that name%s",
+                   section_table[param->kind].word, two ? "] or [" : "",
+                   two ? section_table[also].word : "", nearest_hint(&near));
 }
 
-static enum err check_naming(struct reader *r, const struct naming *row, const void *section)
+/* What is measured of a body but for forces is that of one solid. */
+static enum err check_names(struct reader *r, const struct param *param, const void *section)
 {
-    char name[SCENE_TEXT], pair[2][SCENE_TEXT];
-    const char *const text = (const char *)section + param_find(row->section, row->key)->offset;
+    const char *const text = (const char *)section + param->offset;
+    const struct scene_probe *const probe = param->section == SECTION_probe ? section : NULL;
+    const bool one = param->list && probe && probe->quantity != PROBE_FORCE;
+    char name[SCENE_TEXT];
     if (!*text) return ERR_OK;
-    if (row->number == ONE) return check_name(r, row, section, text);
-    if (row->number == TWO && !scene_pair(text, pair))
-        return bad_key(r, section, row->key, text, "two names are expected, separated by a comma");
-    for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, row, section, name));
+    if (!param->list || one)
+        return check_name(r, param, section, text, one ? param->kind : param->also);
+    for (int k = 0; scene_listed(text, k, name); k++)
+        TRY(check_name(r, param, section, name, param->also));
     return ERR_OK;
 }
 
 enum err case_check_names(struct reader *r)
 {
-    /* What is measured of a body but for forces. */
-    static const struct naming solid = {SECTION_probe, "body", SECTION_solid, SECTION_solid, ONE};
-    for (size_t n = 0; n < COUNT_OF(naming); n++)
-        for (int k = 0; k < section_count(r->scene, naming[n].section); k++) {
-            const void *const section = section_at(r->scene, naming[n].section, k);
-            const bool one = naming[n].section == SECTION_probe && naming[n].number == SEVERAL &&
-                             r->scene->probe[k].quantity != PROBE_FORCE;
-            TRY(case_go_on(r, check_naming(r, one ? &solid : &naming[n], section)));
-        }
+    for (const struct param *param = param_table; param < param_table + PARAM_COUNT; param++)
+        for (int k = 0; param->kind && k < section_count(r->scene, param->section); k++)
+            TRY(case_go_on(r, check_names(r, param, section_at(r->scene, param->section, k))));
     return ERR_OK;
 }
 
@@ -177,7 +158,9 @@ static enum err check_contact(struct reader *r, const void *section)
         return bad_section(r, c, NULL,
                            "gap = %g m is more than %g particle spacings of %g m; use at most %g m",
                            c->gap, max_gap, dp, max_gap * dp);
-    if (scene_pair(c->between, name) && scene_find_solid(scene, name[0]) < 0 &&
+    if (*c->between && !scene_pair(c->between, name))
+        return bad_key(r, c, "between", c->between, "two names are expected, separated by a comma");
+    if (*c->between && scene_find_solid(scene, name[0]) < 0 &&
         scene_find_solid(scene, name[1]) < 0 && scene_find_wall(scene, name[0]) >= 0 &&
         scene_find_wall(scene, name[1]) >= 0)
         return bad_key(r, c, "between", c->between,
@@ -230,9 +213,8 @@ static enum err check_numerics(struct reader *r, const void *section)
 static enum err check_output(struct reader *r, const void *section)
 {
     static const char *const names[] = {
-#define POINTDATA(NAME, name, item, width, choice) #name,
+#define POINTDATA(NAME, name, ...) #name,
 #include "case/pointdata.def"
-#undef POINTDATA
     };
     const char *const fields = ((const struct scene_output *)section)->snapshot_fields;
     const size_t count = COUNT_OF(names);

@@ -6,37 +6,16 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Keys that apply to some kinds of motion only, by their names in case/params.def, and the key
- * or keys of which such a motion needs one. */
-static const struct {
-    const char *key, *kinds;
-} owned[] = {
-    {"velocity", "velocity"},
-    {"poly_x", "polynomial"},
-    {"poly_y", "polynomial"},
-    {"amplitude", "sine"},
-    {"period", "sine and rotation"},
-    {"phase", "sine and rotation"},
-    {"centre", "rotation and expression"},
-    {"angle", "rotation"},
-    {"angle_amplitude", "rotation"},
-    {"file", "table and rotation"},
-    {"x", "expression"},
-    {"y", "expression"},
-    {"turn", "expression"},
-};
-
 static enum err check_keys(struct reader *r, const struct scene_motion *m)
 {
     char kind[SCENE_NAME];
     param_choice_name(param_find(SECTION_motion, "kind"), m->kind, kind);
-    for (size_t k = 0; k < COUNT_OF(owned); k++)
-        if (!strstr(owned[k].kinds, kind) &&
-            !param_is_default(param_find(SECTION_motion, owned[k].key), m))
-            return bad_section(r, m, owned[k].key,
+    for (const struct param *p = param_table; p < param_table + PARAM_COUNT; p++)
+        if (p->motion_kinds && !strstr(p->motion_kinds, kind) && !param_is_default(p, m))
+            return bad_section(r, m, p->key,
                                "`%s` belongs to kind = %s, but this motion has kind = %s; leave it "
                                "out",
-                               owned[k].key, owned[k].kinds, kind);
+                               p->key, p->motion_kinds, kind);
     return ERR_OK;
 }
 

@@ -9,7 +9,6 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 #define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
     {#name, key, equation, meaning, groups, KIND_##kind},
 #include "case/effects.def"
-#undef EFFECT
 };
 
 /* --- conditions of effects --- */
@@ -90,21 +89,15 @@ bool effect_called(const struct scene *scene, enum effect effect, struct effect_
 #define HAS_GRAVITY has_gravity(scene, by)
 #define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(scene))
 #define LATER false
-    switch (effect) {
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
-    case EFFECT_##name:                                                 \
-        return when;
+#define EFFECT(name, when, ...) \
+    if (effect == EFFECT_##name) return when;
 #include "case/effects.def"
-#undef EFFECT
-    case EFFECT_COUNT: break;
-    }
     return false;
 }
 
 static const effect_set effect_bits[EFFECT_COUNT] = {
 #define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) FX_##name,
 #include "case/effects.def"
-#undef EFFECT
 };
 
 effect_set effects_of_scene(const struct scene *scene)

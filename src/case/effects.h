@@ -7,9 +7,8 @@
 #include "particles/particles.h"
 
 enum effect {
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) EFFECT_##name,
+#define EFFECT(name, ...) EFFECT_##name,
 #include "case/effects.def"
-#undef EFFECT
     EFFECT_COUNT
 };
 
@@ -22,47 +21,36 @@ _Static_assert(EFFECT_COUNT <= 64, "a set of effects has 64 bits");
  * and the compiler removes their code. Used to prove that an effect costs nothing while it is off
  * (tests/agree/test_absence.py). */
 enum {
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
-    OUT_##name = (uint64_t)1 << EFFECT_##name,
+#define EFFECT(name, ...) OUT_##name = (uint64_t)1 << EFFECT_##name,
 #include "case/effects.def"
-#undef EFFECT
 };
 #ifndef SPHFSI_WITHOUT
 #define SPHFSI_WITHOUT 0
 #endif
 
 enum {
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
-    FX_##name = (uint64_t)1 << EFFECT_##name & ~(uint64_t)(SPHFSI_WITHOUT),
+#define EFFECT(name, ...) FX_##name = (uint64_t)1 << EFFECT_##name & ~(uint64_t)(SPHFSI_WITHOUT),
 #include "case/effects.def"
-#undef EFFECT
 };
 
 /* PAIR_x: FX_x of an effect that has a law in the pair sums by the column `pairs`. PAIR_EFFECTS:
  * all of them; SURFACE_EFFECTS: those of walls and structures. */
-enum {
 #define PAIR_NONE(name)
 #define PAIR_WITH_FLUID(name) PAIR_##name = FX_##name,
 #define PAIR_WITH_SURFACE(name) PAIR_##name = FX_##name,
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) PAIR_##pairs(name)
+enum { PAIRS_NONE, PAIRS_WITH_FLUID, PAIRS_WITH_SURFACE };
+enum {
+#define EFFECT(name, when, key, equation, groups, kind, pairs, ...) PAIR_##pairs(name)
 #include "case/effects.def"
-#undef PAIR_NONE
-#undef PAIR_WITH_FLUID
-#undef PAIR_WITH_SURFACE
-#define PAIR_NONE(name)
-#define PAIR_WITH_FLUID(name)
-#define PAIR_WITH_SURFACE(name) | FX_##name
     SURFACE_EFFECTS = (uint64_t)0
+#define EFFECT(name, when, key, equation, groups, kind, pairs, ...) \
+    | (PAIRS_##pairs == PAIRS_WITH_SURFACE ? (uint64_t)FX_##name : 0)
 #include "case/effects.def"
     ,
-#undef PAIR_WITH_FLUID
-#define PAIR_WITH_FLUID(name) | FX_##name
     PAIR_EFFECTS = (uint64_t)0
+#define EFFECT(name, when, key, equation, groups, kind, pairs, ...) \
+    | (PAIRS_##pairs != PAIRS_NONE ? (uint64_t)FX_##name : 0)
 #include "case/effects.def"
-#undef PAIR_NONE
-#undef PAIR_WITH_FLUID
-#undef PAIR_WITH_SURFACE
-#undef EFFECT
 };
 
 /* The effects of a pair sum, a type of its own: FX_x cannot be tested in it, and PAIR_HAS(set, x)

@@ -4,8 +4,6 @@
 #include "case/case.h"
 #include "base/elementary.h"
 
-#include "case/expr.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,70 +20,51 @@ static void set_slopes(int n, const double *t, const double *d, double *v)
     }
 }
 
-/* --- the way of a velocity that depends on time --- */
+/* --- the path of a velocity that depends on time --- */
 
-enum { WAY_PIECES = 4096 };
-
-static double velocity_of(const struct scene_motion *m, int c, double t)
-{
-    const struct expr *const e = m->velocity_in_time.e[c];
-    return e ? expr_jet_at(e, t).value : m->velocity[c];
-}
+enum { PATH_PIECES = 4096 };
 
 /* Gauss-Legendre quadrature with three points, exact for polynomials of order 5. */
-static double way_between(const struct scene_motion *m, int c, double from, double to)
+static double integral(const struct expr *e, double from, double to)
 {
     const double half = 0.5 * (to - from), middle = 0.5 * (to + from), off = half * sqrt(0.6);
     return half *
-           (5 * velocity_of(m, c, middle - off) + 8 * velocity_of(m, c, middle) +
-            5 * velocity_of(m, c, middle + off)) /
+           (5 * expr_jet_at(e, middle - off).value + 8 * expr_jet_at(e, middle).value +
+            5 * expr_jet_at(e, middle + off).value) /
            9;
 }
 
-/* Rows of the way at equal times until the end of the case, so that it is a function of time
+/* Rows of the path at equal times until the end of the case, so that it is a function of time
  * alone. */
-static enum err load_way(struct scene *scene, const struct scene_motion *m,
-                         struct scene_table *table, struct diag *d)
+static enum err load_path(struct scene *scene, const struct scene_motion *m,
+                          struct scene_table *table, struct diag *d)
 {
     const double until_end = min2(scene->top.end_time, m->stop) - m->start;
     const double length = until_end > 0 ? until_end : scene->top.end_time;
-    const int n = WAY_PIECES + 1;
-    table->t = arena_alloc(&scene->arena, (size_t)n, sizeof *table->t, "motions", d);
-    table->x = arena_alloc(&scene->arena, (size_t)n, sizeof *table->x, "motions", d);
-    table->y = arena_alloc(&scene->arena, (size_t)n, sizeof *table->y, "motions", d);
-    if (!table->t || !table->x || !table->y) return ERR_MEMORY;
-    table->n = n;
-    for (int k = 1; k < n; k++) {
-        table->t[k] = length * k / WAY_PIECES;
-        table->x[k] = table->x[k - 1] + way_between(m, 0, table->t[k - 1], table->t[k]);
-        table->y[k] = table->y[k - 1] + way_between(m, 1, table->t[k - 1], table->t[k]);
+    TRY(table_allocate(scene, table, PATH_PIECES + 1, d));
+    table->n = PATH_PIECES + 1;
+    for (int k = 1; k < table->n; k++) {
+        table->t[k] = length * k / PATH_PIECES;
+        for (int c = 0; c < 2; c++) {
+            const struct expr *const e = m->velocity_in_time.e[c];
+            double *const path = c ? table->y : table->x;
+            if (e) path[k] = path[k - 1] + integral(e, table->t[k - 1], table->t[k]);
+        }
     }
     return ERR_OK;
 }
 
-static struct motion_state velocity_at(const struct scene_motion *motion,
-                                       const struct scene_table *table, double t)
+static struct expr_jet velocity_at(const struct scene_motion *motion,
+                                   const struct scene_table *table, int c, double t)
 {
-    struct motion_state m = {0};
-    for (int c = 0; c < 2; c++) {
-        m.v[c] = motion->velocity[c];
-        m.d[c] = motion->velocity[c] * t;
-    }
-    if (table->n == 0) return m;
+    const struct expr *const e = motion->velocity_in_time.e[c];
+    if (!e) return (struct expr_jet){motion->velocity[c] * t, motion->velocity[c], 0};
+    const struct expr_jet now = expr_jet_at(e, t);
     const int last = table->n - 1, row = (int)min2(last, floor(t / table->t[last] * last));
-    for (int c = 0; c < 2; c++) {
-        const struct expr *const e = motion->velocity_in_time.e[c];
-        if (!e) continue;
-        const struct expr_jet now = expr_jet_at(e, t);
-        m.v[c] = now.value;
-        m.a[c] = now.d1;
-        double from = table->t[row];
-        m.d[c] = (c ? table->y : table->x)[row];
-        for (; t - from > table->t[1]; from += table->t[1]) /* a run that goes on after the end */
-            m.d[c] += way_between(motion, c, from, from + table->t[1]);
-        m.d[c] += way_between(motion, c, from, t);
-    }
-    return m;
+    double from = table->t[row], d = (c ? table->y : table->x)[row];
+    for (; t - from > table->t[1]; from += table->t[1]) /* a run that goes on after the end */
+        d += integral(e, from, from + table->t[1]);
+    return (struct expr_jet){d + integral(e, from, t), now.value, now.d1};
 }
 
 enum err motion_load(struct scene *scene, struct diag *d)
@@ -96,12 +75,11 @@ enum err motion_load(struct scene *scene, struct diag *d)
     if (!scene->motion_data) return ERR_MEMORY;
     enum err bad = ERR_OK;
     for (int k = 0; k < scene->n_motion; k++) {
-        const struct scene_motion *m = &scene->motion[k];
+        const struct scene_motion *const m = &scene->motion[k];
         struct scene_table *const table = &scene->motion_data[k];
         const struct scene_expr *const v = &m->velocity_in_time;
-        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_way(scene, m, table, d));
-        const bool tabled = m->kind == MOTION_TABLE || (m->kind == MOTION_ROTATION && *m->file);
-        if (!tabled) continue;
+        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_path(scene, m, table, d));
+        if (!*m->file) continue; /* of a table or a rotation */
         char name[2 * SCENE_NAME];
         snprintf(name, sizeof name, "[motion %s] file", m->common.name);
         const enum err e = table_load(scene, table, &kind, m->file, m->common.line, name, d);
@@ -114,111 +92,91 @@ enum err motion_load(struct scene *scene, struct diag *d)
     return bad;
 }
 
-/* --- evaluation --- */
+/* --- evaluation: displacements or angles with their first two derivatives --- */
 
-/* c1 t + c2 t^2 + ... with its first two derivatives, by Horner's rule. */
-static void polynomial_at(const struct number_list *c, double t, double *d, double *v, double *a)
+/* c1 t + c2 t^2 + ... by Horner's rule. */
+static struct expr_jet polynomial_at(const struct number_list *c, double t)
 {
-    double p = 0, p1 = 0, p2 = 0;
+    struct expr_jet p = {0, 0, 0};
     for (int k = c->n; k >= 0; k--) {
-        p2 = p2 * t + 2 * p1;
-        p1 = p1 * t + p;
-        p = p * t + (k > 0 ? c->value[k - 1] : 0);
+        p.d2 = p.d2 * t + 2 * p.d1;
+        p.d1 = p.d1 * t + p.value;
+        p.value = p.value * t + (k > 0 ? c->value[k - 1] : 0);
     }
-    *d = p;
-    *v = p1;
-    *a = p2;
+    return p;
 }
 
-/* Cubic Hermite between row k and the next. */
-static void hermite_at(const double *t, const double *d, const double *v, int k, double time,
-                       double *value, double *slope, double *curvature)
+/* Cubic Hermite between two rows of a column; at rest before the first and after the last row. */
+static struct expr_jet table_at(const struct scene_table *table, int column, double time)
 {
-    const double h = t[k + 1] - t[k], u = (time - t[k]) / h;
-    const double jump = d[k + 1] - d[k];
+    const double *const t = table->t, *const d = column ? table->y : table->x,
+                        *const v = column ? table->vy : table->vx;
+    const int last = table->n - 1;
+    if (last < 0 || time <= t[0]) return (struct expr_jet){0, 0, 0};
+    if (time >= t[last]) return (struct expr_jet){d[last], 0, 0};
+    const int k = table_row(table, time);
+    const double h = t[k + 1] - t[k], u = (time - t[k]) / h, jump = d[k + 1] - d[k];
     const double b = 3 * jump - h * (2 * v[k] + v[k + 1]);
     const double c = h * (v[k] + v[k + 1]) - 2 * jump;
-    *value = d[k] + u * (h * v[k] + u * (b + u * c));
-    *slope = v[k] + u * (2 * b + 3 * u * c) / h;
-    *curvature = (2 * b + 6 * u * c) / (h * h);
+    return (struct expr_jet){d[k] + u * (h * v[k] + u * (b + u * c)),
+                             v[k] + u * (2 * b + 3 * u * c) / h, (2 * b + 6 * u * c) / (h * h)};
 }
 
-static struct motion_state table_at(const struct scene_table *table, double t)
+/* A (sin(w t + phase) - sin(phase)). */
+static struct expr_jet sine_at(const struct scene_motion *motion, double amplitude, double t)
 {
-    struct motion_state m = {0};
-    const int n = table->n;
-    if (n == 0 || t <= table->t[0]) return m;
-    if (t >= table->t[n - 1]) {
-        m.d[0] = table->x[n - 1];
-        m.d[1] = table->y[n - 1];
-        return m;
-    }
-    const int low = table_row(table, t);
-    hermite_at(table->t, table->x, table->vx, low, t, &m.d[0], &m.v[0], &m.a[0]);
-    hermite_at(table->t, table->y, table->vy, low, t, &m.d[1], &m.v[1], &m.a[1]);
-    return m;
+    const double w = motion->period > 0 ? 2 * PI / motion->period : 0,
+                 phase = w * t + motion->phase;
+    return (struct expr_jet){amplitude * (elementary_sin(phase) - elementary_sin(motion->phase)),
+                             amplitude * (w * elementary_cos(phase)),
+                             amplitude * (-w * w * elementary_sin(phase))};
 }
 
-/* sin(w t + phase) - sin(phase) with its first two derivatives. */
-static void sine_at(const struct scene_motion *motion, double t, double *d, double *v, double *a)
+static struct expr_jet turning_at(const struct scene_motion *motion,
+                                  const struct scene_table *table, double t)
 {
-    const double phase = motion->phase;
-    const double w = motion->period > 0 ? 2 * PI / motion->period : 0;
-    *d = elementary_sin(w * t + phase) - elementary_sin(phase);
-    *v = w * elementary_cos(w * t + phase);
-    *a = -w * w * elementary_sin(w * t + phase);
+    const struct expr_jet p = polynomial_at(&motion->angle, t), tabled = table_at(table, 0, t),
+                          s = sine_at(motion, motion->angle_amplitude, t);
+    return (struct expr_jet){p.value + (s.value + tabled.value), p.d1 + (s.d1 + tabled.d1),
+                             p.d2 + (s.d2 + tabled.d2)};
 }
 
-static void turning_at(const struct scene_motion *motion, const struct scene_table *table, double t,
-                       struct motion_state *m)
+/* Its value at t = 0 is subtracted, so that a body starts where it was sampled. */
+static struct expr_jet expression_at(const struct scene_expr *of, double t)
 {
-    double d, v, a;
-    sine_at(motion, t, &d, &v, &a);
-    polynomial_at(&motion->angle, t, &m->angle, &m->rate, &m->angular_acceleration);
-    const struct motion_state tabled = table_at(table, t);
-    m->angle += motion->angle_amplitude * d + tabled.d[0];
-    m->rate += motion->angle_amplitude * v + tabled.v[0];
-    m->angular_acceleration += motion->angle_amplitude * a + tabled.a[0];
-    memcpy(m->centre, motion->centre, sizeof m->centre);
-}
-
-/* Subtracted so that a body starts where it was sampled, and the derivatives are exact. */
-static void expression_at(const struct scene_expr *of, double t, double *d, double *v, double *a)
-{
-    if (!of->e[0]) return;
-    const struct expr_jet now = expr_jet_at(of->e[0], t);
-    *d = now.value - expr_jet_at(of->e[0], 0).value;
-    *v = now.d1;
-    *a = now.d2;
+    if (!of->e[0]) return (struct expr_jet){0, 0, 0};
+    struct expr_jet now = expr_jet_at(of->e[0], t);
+    now.value -= expr_jet_at(of->e[0], 0).value;
+    return now;
 }
 
 static struct motion_state moving_at(const struct scene_motion *motion,
                                      const struct scene_table *table, double t)
 {
     struct motion_state m = {0};
-    switch ((enum motion_kind)motion->kind) {
-    case MOTION_VELOCITY: return velocity_at(motion, table, t);
-    case MOTION_POLYNOMIAL:
-        polynomial_at(&motion->poly_x, t, &m.d[0], &m.v[0], &m.a[0]);
-        polynomial_at(&motion->poly_y, t, &m.d[1], &m.v[1], &m.a[1]);
-        return m;
-    case MOTION_TABLE: return table_at(table, t);
-    case MOTION_SINE:
-        for (int c = 0; c < 2; c++) {
-            sine_at(motion, t, &m.d[c], &m.v[c], &m.a[c]);
-            m.d[c] *= motion->amplitude[c];
-            m.v[c] *= motion->amplitude[c];
-            m.a[c] *= motion->amplitude[c];
+    struct expr_jet d[2] = {{0, 0, 0}, {0, 0, 0}}, angle = {0, 0, 0};
+    for (int c = 0; c < 2; c++) switch ((enum motion_kind)motion->kind) {
+        case MOTION_VELOCITY: d[c] = velocity_at(motion, table, c, t); break;
+        case MOTION_POLYNOMIAL:
+            d[c] = polynomial_at(c ? &motion->poly_y : &motion->poly_x, t);
+            break;
+        case MOTION_TABLE: d[c] = table_at(table, c, t); break;
+        case MOTION_SINE: d[c] = sine_at(motion, motion->amplitude[c], t); break;
+        case MOTION_ROTATION: angle = turning_at(motion, table, t); break;
+        case MOTION_EXPRESSION:
+            d[c] = expression_at(c ? &motion->y : &motion->x, t);
+            angle = expression_at(&motion->turn, t);
+            break;
         }
-        return m;
-    case MOTION_ROTATION: turning_at(motion, table, t, &m); return m;
-    case MOTION_EXPRESSION:
-        expression_at(&motion->x, t, &m.d[0], &m.v[0], &m.a[0]);
-        expression_at(&motion->y, t, &m.d[1], &m.v[1], &m.a[1]);
-        expression_at(&motion->turn, t, &m.angle, &m.rate, &m.angular_acceleration);
-        memcpy(m.centre, motion->centre, sizeof m.centre);
-        return m;
+    for (int c = 0; c < 2; c++) {
+        m.d[c] = d[c].value;
+        m.v[c] = d[c].d1;
+        m.a[c] = d[c].d2;
+        m.centre[c] = motion->centre[c];
     }
+    m.angle = angle.value;
+    m.rate = angle.d1;
+    m.angular_acceleration = angle.d2;
     return m;
 }
 
@@ -245,8 +203,8 @@ static struct motion_state prescribed_at(const struct scene *scene, int motion_i
     const struct motion_hook *const hook =
         scene->motion_hook ? &scene->motion_hook[motion_index] : NULL;
     if (hook && hook->at) {
-        if (time < 0) return m; /* while rest is sought (T-78) */
-        hook->at(hook->context, time, m.d, m.v, m.a);
+        if (time >= 0)
+            hook->at(hook->context, time, m.d, m.v, m.a); /* < 0: rest is sought (T-78) */
         return m;
     }
     const struct scene_motion *motion = &scene->motion[motion_index];

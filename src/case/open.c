@@ -19,8 +19,6 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
         .kind = from->speed.e[0] || from->velocity.e[0] ? OPEN_VELOCITY : OPEN_PRESSURE,
         .word = section_table[id].word,
         .common = &from->common,
-        .section = (int)id,
-        .index = index,
         .inflow = inflow,
         .from = {from->from[0], from->from[1]},
         .along = {from->to[0] - from->from[0], from->to[1] - from->from[1]},
@@ -77,9 +75,9 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
     const double *const g = r->scene->top.gravity;
-    const enum section_id id = (enum section_id)o->section;
-    if (!(o->length > 0) || !scene_given(r->scene, id, o->index, "from") ||
-        !scene_given(r->scene, id, o->index, "to"))
+    const enum section_id id = (enum section_id)o->common->section;
+    if (!(o->length > 0) || !scene_given(r->scene, id, o->common->index, "from") ||
+        !scene_given(r->scene, id, o->common->index, "to"))
         return bad_section(r, o->common, NULL,
                            "needs `from` and `to`, the two ends of the line through which the "
                            "fluid passes");

@@ -62,6 +62,9 @@ struct param {
     struct param_bound low, high; /* of a REAL, INTEGER */
     enum expr_scope scope;        /* of an EXPR or a TIME_VECTOR */
     int count;                    /* of their expressions */
+    enum section_id kind, also;   /* of the sections that a TEXT names; 0: it names none */
+    bool list;                    /* several of them */
+    const char *motion_kinds;     /* that have the key of a motion; NULL: all */
     size_t offset;                /* in the section's struct */
     size_t expr_offset;           /* of the expressions of a TIME_VECTOR; else 0 */
 };

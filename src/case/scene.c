@@ -95,15 +95,10 @@ double scene_contact_gap(const struct scene *scene, const struct scene_contact *
 
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
 {
-    for (; k > 0; k--) {
-        list = strchr(list, ',');
-        if (!list) return false;
-        list++;
-    }
-    list += strspn(list, " \t");
-    size_t length = strcspn(list, ",");
-    while (length > 0 && (list[length - 1] == ' ' || list[length - 1] == '\t')) length--;
-    snprintf(name, SCENE_TEXT, "%.*s", (int)length, list);
+    struct slice rest = slice_of(list), piece = rest;
+    for (; k >= 0; k--)
+        if (!slice_next(&rest, ',', &piece)) return false;
+    snprintf(name, SCENE_TEXT, "%.*s", (int)piece.length, piece.at);
     return true;
 }
 
@@ -116,65 +111,36 @@ bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 
 /* --- probes and snapshots --- */
 
-const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
-    [PROBE_DISPLACEMENT] = {"displacement", TARGET_SOLID_POINT, "dx_m,dy_m",
-                            "displacement of a material point of a solid"},
-    [PROBE_VELOCITY] =
-        {"velocity", TARGET_ANY_POINT, "vx_m_per_s,vy_m_per_s",
-         "velocity of a material point of `body`. Without `body`: velocity of the fluid at a fixed "
-         "point, or at a point that moves with the body of `on` (Shepard mean; 0 if dry)"},
-    [PROBE_PRESSURE] = {"pressure", TARGET_FLUID_POINT, "p_Pa",
-                        "pressure of the fluid at a fixed point, or at a point that moves with the "
-                        "body of `on`. It is the mean over the fluid within 2 h, brought to the "
-                        "point by the slope due to gravity and acceleration (T-10a), and 0 if dry"},
-    [PROBE_STRESS] = {"stress", TARGET_SOLID_POINT, "sxx_Pa,syy_Pa,szz_Pa,sxy_Pa,mises_Pa",
-                      "Cauchy stress at a material point of a solid, and von Mises stress"},
-    [PROBE_LEVEL] = {"level", TARGET_FLUID_POINT, "level_m",
-                     "height y of the first free surface above `point`; y of `point` if it is dry"},
-    [PROBE_FORCE] = {"force", TARGET_BODY, "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-                     "force of the fluid on the solid and wall sections that `body` names, and its "
-                     "counter-clockwise moment about `point`"},
-    [PROBE_FRONT] = {"front", TARGET_FLUID, "front_m",
-                     "coordinate of the foremost fluid in `direction`; drops of one or two "
-                     "particles do not count"},
-    [PROBE_ENERGY] = {"energy", TARGET_SOLID, "kinetic_J_per_m,elastic_J_per_m,hourglass_J_per_m",
-                      "kinetic energy, strain energy and energy of the hourglass force of a solid"},
-    [PROBE_FLUX] = {"flux", TARGET_FLUID_LINE, "q_m2_per_s",
-                    "volume flow rate per metre of depth through the line from `point` to `to`; "
-                    "positive from left to right, seen from `point` towards `to`"},
-    [PROBE_STRAIN] = {"strain", TARGET_SOLID_POINT, "Exx_1,Eyy_1,Exy_1",
-                      "Green-Lagrange strain at a material point of a solid"},
-    [PROBE_ACCELERATION] = {"acceleration", TARGET_SOLID_POINT, "ax_m_per_s2,ay_m_per_s2",
-                            "acceleration of a material point of a solid"},
-    [PROBE_POSE] = {"pose", TARGET_SOLID, "cx_m,cy_m,angle_rad",
-                    "position of the centre of mass of a solid, and its counter-clockwise rotation "
-                    "by least squares over its particles, between -pi and pi"},
-    [PROBE_REACTION] =
-        {"reaction", TARGET_SOLID, "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-         "reaction force of its clamps on a solid, and its counter-clockwise moment about `point`"},
-    [PROBE_SURFACE_PRESSURE] =
-        {"surface_pressure", TARGET_FLUID_LINE, "p_Pa,fx_N_per_m,fy_N_per_m",
-         "mean pressure of the fluid along the line from `point` to `to`, such as the face of a "
-         "wall. The force is that of this pressure on a surface with the fluid to the left of the "
-         "line. Where it is dry, the pressure is 0"},
+const enum probe_target probe_targets[PROBE_QUANTITIES] = {
+    [PROBE_DISPLACEMENT] = TARGET_SOLID_POINT,
+    [PROBE_VELOCITY] = TARGET_ANY_POINT,
+    [PROBE_PRESSURE] = TARGET_FLUID_POINT,
+    [PROBE_STRESS] = TARGET_SOLID_POINT,
+    [PROBE_LEVEL] = TARGET_FLUID_POINT,
+    [PROBE_FORCE] = TARGET_BODY,
+    [PROBE_FRONT] = TARGET_FLUID,
+    [PROBE_ENERGY] = TARGET_SOLID,
+    [PROBE_FLUX] = TARGET_FLUID_LINE,
+    [PROBE_STRAIN] = TARGET_SOLID_POINT,
+    [PROBE_ACCELERATION] = TARGET_SOLID_POINT,
+    [PROBE_POSE] = TARGET_SOLID,
+    [PROBE_REACTION] = TARGET_SOLID,
+    [PROBE_SURFACE_PRESSURE] = TARGET_FLUID_LINE,
 };
 
 enum probe_target scene_probe_target(const struct scene_probe *probe)
 {
-    const enum probe_target target = quantity_table[probe->quantity].target;
+    const enum probe_target target = probe_targets[probe->quantity];
     if (target != TARGET_ANY_POINT) return target;
     return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
 }
 
-bool scene_word(const char *text, int k, char word[SCENE_TEXT])
+bool scene_word(const char *list, int k, char word[SCENE_TEXT])
 {
     static const char blanks[] = " \t,";
-    text += strspn(text, blanks);
-    for (; k > 0; k--) {
-        text += strcspn(text, blanks);
-        text += strspn(text, blanks);
-    }
-    snprintf(word, SCENE_TEXT, "%.*s", (int)strcspn(text, blanks), text);
+    list += strspn(list, blanks);
+    for (; k > 0; k--) list += strcspn(list, blanks), list += strspn(list, blanks);
+    snprintf(word, SCENE_TEXT, "%.*s", (int)strcspn(list, blanks), list);
     return *word;
 }
 

@@ -4,7 +4,7 @@
 #ifndef SPHFSI_CASE_SCENE_H
 #define SPHFSI_CASE_SCENE_H
 
-#include "case/expr.h"
+#include "expr/expr.h"
 
 /* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0,
  * and |rho/rho0 - 1|. */
@@ -21,7 +21,6 @@ struct shape {
     double (*pt)[2];
     double size; /* radius of a circle; thickness of a polyline, to the left of its direction if
                          positive, to the right if negative; else 0 */
-    bool bare;   /* the side of a wall, drawn as a line without thickness (geometry/wall_lines.c) */
     int line;
 };
 
@@ -69,12 +68,7 @@ struct scene_section_common {
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
 enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
-enum scene_kind {
-    SCENE_SOLID,
-    SCENE_FLUID,
-    SCENE_COUPLED,
-    SCENE_EITHER
-}; /* the scenes that presets distinguish */
+enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED, SCENE_EITHER }; /* as presets need it */
 enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
@@ -130,14 +124,7 @@ enum probe_target {
     TARGET_FLUID,
     TARGET_FLUID_LINE
 };
-/* What a probe measures; in the order of probe.quantity in case/params.def. */
-struct quantity_info {
-    const char *name;
-    enum probe_target target;
-    const char *columns; /* their endings, each QUANTITY_UNIT, with commas between them */
-    const char *meaning;
-};
-extern const struct quantity_info quantity_table[PROBE_QUANTITIES];
+extern const enum probe_target probe_targets[PROBE_QUANTITIES];
 
 enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
 
@@ -229,10 +216,9 @@ struct scene {
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
     struct scene_points points[3];   /* by enum kind of particles/particles.h: fluid, wall, solid */
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
-    double h, c0,
-        rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
-    double
-        given_speed; /* the largest that walls, open boundaries and the start give the fluid, m/s */
+    double h;                                     /* smoothing length */
+    double c0, rho0;    /* speed of sound and density of the fluid; 0: no fluid */
+    double given_speed; /* largest that walls, open boundaries and the start give it, m/s */
     double domain_lower[2], domain_upper[2]; /* in effect */
     bool full;        /* there are open boundaries and, at the start, no free surface */
     bool packed;      /* fluid beside edges that are not along its lattice (T-80) */
@@ -261,7 +247,6 @@ struct scene_open {
     enum { OPEN_VELOCITY, OPEN_PRESSURE } kind;
     const char *word; /* inflow or outflow */
     const struct scene_section_common *common;
-    int section, index; /* enum section_id of case/params.h; its number among those of its kind */
     bool inflow;
     double from[2], along[2]; /* one end; unit vector to the other end */
     double inward[2];         /* unit vector into the fluid */
@@ -321,16 +306,13 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *scene, const char *name);
 int scene_find_solid(const struct scene *scene, const char *name);
+int scene_find_wall(const struct scene *scene, const char *name);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */
 double scene_solid_h(const struct scene *scene, int solid);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *scene, int solid);
-int scene_find_wall(const struct scene *scene, const char *name);
-
-/* Word k of a list with blanks or commas between them; false: there are fewer. */
-bool scene_word(const char *text, int k, char word[SCENE_TEXT]);
 
 /* Whether the snapshots of a scene have a field of case/pointdata.def. */
 bool scene_snapshot_has(const struct scene *scene, const char *field);
@@ -346,10 +328,10 @@ const struct scene_contact *scene_contact_of(const struct scene *scene, int a, i
  * scheme. */
 double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 
-/* The k-th name of a list with commas between them, without blanks around it; false: there are
- * fewer. */
+/* Name k of a list with commas between them, or word k of one with blanks or commas; false: there
+ * are fewer. */
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
-
+bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 

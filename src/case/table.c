@@ -25,16 +25,22 @@ enum err table_open(const struct scene *scene, struct csv *csv, const char *name
     return ERR_OK;
 }
 
+enum err table_allocate(struct scene *scene, struct scene_table *table, int rows, struct diag *d)
+{
+    double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
+    for (size_t k = 0; k < COUNT_OF(columns); k++) {
+        *columns[k] = arena_alloc(&scene->arena, (size_t)rows, sizeof(double), "table", d);
+        if (!*columns[k]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
 static enum err read_table(struct scene *scene, struct scene_table *table,
                            const struct table_kind *kind, struct csv *csv)
 {
-    double row[3], **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
-    for (size_t k = 0; k < COUNT_OF(columns); k++) {
-        *columns[k] =
-            arena_alloc(&scene->arena, (size_t)csv->lines, sizeof(double), "table", csv->diag);
-        if (!*columns[k]) return ERR_MEMORY;
-    }
+    double row[3];
     int more;
+    TRY(table_allocate(scene, table, csv->lines, csv->diag));
     for (; (more = csv_row(csv, row)) > 0; table->n++) {
         const int k = table->n;
         if (k > 0 && row[0] <= table->t[k - 1])

@@ -298,8 +298,6 @@ static void warn_of_motion(struct check *check, enum kind kind, int section,
 
 /* --- open boundaries --- */
 
-static const char *kind_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
-
 /* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there. */
 static void warn_of_end(struct check *check, const struct scene_open *o, bool last)
 {
@@ -317,7 +315,7 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
             "[%s %s] ends inside the fluid at (%.4g, %.4g) m, and no wall holds the fluid "
             "beyond it: it flows past the line and is lost; add a [wall], or let the line end at "
             "a wall or at the surface",
-            kind_of(o), o->common->name, o->from[0] + (last ? o->length * o->along[0] : 0),
+            o->word, o->common->name, o->from[0] + (last ? o->length * o->along[0] : 0),
             o->from[1] + (last ? o->length * o->along[1] : 0));
 }
 
@@ -341,7 +339,7 @@ static void warn_of_level(struct check *check, const struct scene_open *o)
     warn_at(check->diag, check->scene, o->common->line,
             "the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
             "before it is at y = %.4g m. Above it fluid %s; `level = %.4g m` prevents this",
-            kind_of(o), o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
+            o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
 }
 
 /* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:
@@ -370,8 +368,8 @@ static void warn_of_balance(struct check *check)
             "[%s %s]: the open boundaries give velocities only, which let %.3g m^2 more %s "
             "than %s by t = %.3g s, %.2g %% of the fluid. It has no free surface, so %s; give one "
             "of them a `pressure` instead of its velocity",
-            kind_of(&o), o.common->name, fabs(more), more > 0 ? "in" : "out",
-            more > 0 ? "out" : "in", n * step, 100 * fabs(more) / volume,
+            o.word, o.common->name, fabs(more), more > 0 ? "in" : "out", more > 0 ? "out" : "in",
+            n * step, 100 * fabs(more) / volume,
             more > 0 ? "its pressure rises until a guard stops the run" : "voids open in it");
 }
 

@@ -144,7 +144,8 @@ static void warn_of_absorb(struct check *check, const struct scene_open *open)
 {
     const struct scene *const scene = check->scene;
     const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h;
-    const int line = scene_line(scene, (enum section_id)open->section, open->index, "absorb");
+    const int line =
+        scene_line(scene, (enum section_id)open->common->section, open->common->index, "absorb");
     if (!(open->absorb > 0) || open->kind != OPEN_PRESSURE) return;
     if (wave < reach)
         warn_at(check->diag, scene, line,

@@ -2,7 +2,7 @@
 #include "fluid/open.h"
 
 #include "base/hash.h"
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 
@@ -393,7 +393,7 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k,
             d, ERR_GUARD,
             "[%s %s] has brought in so much fluid that the limit of %lld particles is reached, "
             "because more fluid enters than leaves; a larger [domain] or an [outflow] may help",
-            b->inflow ? "inflow" : "outflow", b->common->name, (long long)particles->capacity);
+            b->word, b->common->name, (long long)particles->capacity);
     const int64_t to = particles->n++;
     double place, along;
     particles_copy(particles, i, to);
@@ -515,7 +515,7 @@ static void turn_away(struct open *o, struct particles *particles, int64_t i, st
             d,
             "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less "
             "flows in than is given; a higher `level`, a slower start or a further line may help",
-            b->inflow ? "inflow" : "outflow", b->common->name, particles->x[i], particles->y[i]);
+            b->word, b->common->name, particles->x[i], particles->y[i]);
     o->warned = true;
     particles->open[i] = -particles->open[i];
 }

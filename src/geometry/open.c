@@ -15,8 +15,8 @@ static enum err refuse(const struct sampler *sampler, const struct scene_open *o
                        const double x[2], const char *mend)
 {
     return fail_at(sampler->diag, sampler->scene, o->common->line,
-                   "[%s %s] %s at (%.6g, %.6g) m: %s", o->inflow ? "inflow" : "outflow",
-                   o->common->name, what, x[0], x[1], mend);
+                   "[%s %s] %s at (%.6g, %.6g) m: %s", o->word, o->common->name, what, x[0], x[1],
+                   mend);
 }
 
 /* Fluid around a boundary's buffer. */

@@ -23,7 +23,6 @@ enum data {
     D_TYPES,
 #define POINTDATA(NAME, name, item, width, choice) D_##NAME,
 #include "case/pointdata.def"
-#undef POINTDATA
     D_COUNT,
     D_FIRST_POINTDATA = D_TYPES + 1
 };

@@ -5,6 +5,14 @@
 
 #include "time/simulation.h"
 
+/* What a probe measures; in the order of enum probe_quantity. */
+struct quantity_info {
+    const char *name;
+    const char *columns; /* their endings, each QUANTITY_UNIT, with commas between them */
+    const char *meaning;
+};
+extern const struct quantity_info quantity_table[PROBE_QUANTITIES];
+
 struct probe_body {
     enum kind kind;
     int body; /* index of its section */

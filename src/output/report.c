@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/report.h"
 
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "base/files.h"
 #include "output/json.h"
 #include "case/params.h"

@@ -34,7 +34,6 @@ static const struct column {
 #define POINTDATA(NAME, name, item, width, choice) \
     [D_##NAME] = {"PointData/" #name, BY_POINT, item, width},
 #include "case/pointdata.def"
-#undef POINTDATA
 };
 
 enum {
@@ -75,7 +74,6 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 #define POINTDATA(NAME, name, item, width, choice) \
     layout.has[D_##NAME] = !(choice) || scene_snapshot_has(scene, #name);
 #include "case/pointdata.def"
-#undef POINTDATA
     return layout;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/loads.h"
 
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "geometry/outline.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What a good case file means: defaults, constants, --set, inheritance, the effective case. */
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "case/params.h"
 #include "geometry/load.h"
 #include "unity.h"

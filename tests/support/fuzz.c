@@ -5,7 +5,7 @@
 #include "output/checkpoint.h"
 #include "output/reference.h"
 #include "output/series.h"
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "case/scene.h"
 #include "geometry/load.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The stack program of a compiled expression, which case/expr.c makes and case/expr_run.c runs. */
-#ifndef SPHFSI_CASE_EXPR_OPS_H
-#define SPHFSI_CASE_EXPR_OPS_H
+ * The stack program of a compiled expression, which expr/expr.c makes and expr/run.c runs. */
+#ifndef SPHFSI_EXPR_OPS_H
+#define SPHFSI_EXPR_OPS_H
 
 #include "base/base.h"
 

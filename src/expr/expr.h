@@ -14,8 +14,8 @@
  *
  * Dimensions are carried along. A plain number, written without a unit, may stand for any dimension
  * (it is SI); in a product with a number that has a unit it is a pure number. */
-#ifndef SPHFSI_CASE_EXPR_H
-#define SPHFSI_CASE_EXPR_H
+#ifndef SPHFSI_EXPR_H
+#define SPHFSI_EXPR_H
 
 #include "base/base.h"
 
@@ -105,7 +105,7 @@ const char *expr_source(const struct expr *e);
 /* The existing meaning of a name that cannot be redefined, or NULL. */
 const char *expr_reserved(const char *name);
 
-/* --- case/units.c --- */
+/* --- expr/units.c --- */
 
 /* Reads a unit ("kg/m^3") from the front of the text and applies it to q; false: no unit there, or
  * a wrong one, then `why` is written. */
@@ -123,7 +123,7 @@ bool dim_fits(const struct dim *dim, const char *unit);
 enum { DIM_TEXT = 96 };
 void dim_text(const struct dim *dim, char text[DIM_TEXT]);
 
-/* --- case/text.c --- */
+/* --- expr/text.c --- */
 
 struct slice slice_of(const char *text);
 /* Without its first n characters; without blanks at both ends. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Recursive descent to a small stack program; constant parts are evaluated during parsing. So a
  * value without x, y and t is a program of one number. */
-#include "case/expr.h"
-#include "case/expr_ops.h"
+#include "expr/expr.h"
+#include "expr/ops.h"
 
 #include <ctype.h>
 #include <math.h>

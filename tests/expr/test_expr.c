@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Arithmetic, units and dimensions of case files. */
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "case/scene.h"
 #include "unity.h"
 

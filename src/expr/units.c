@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Units after numbers, and their dimensions. */
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "base/elementary.h"
 
 #include <ctype.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Pieces of the text of a value. */
-#include "case/expr.h"
+#include "expr/expr.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -2,9 +2,9 @@
  * Runs the stack program of an expression: on numbers, or on numbers with their first two
  * derivatives in t. The compiler has counted: all operands exist, MAX_STACK suffices, one value
  * remains. */
-#include "case/expr.h"
+#include "expr/expr.h"
 #include "base/elementary.h"
-#include "case/expr_ops.h"
+#include "expr/ops.h"
 
 #include <math.h>
 #include <string.h>
