@@ -39,8 +39,8 @@ struct check {
 };
 
 enum err list_points(struct check *check) SPHFSI_CHECKED;
-/* Whether a region of walls or solids covers a place as drawn. */
-bool is_drawn(const struct check *check, double x, double y);
+/* The region of walls or solids that covers a place as drawn, or -1. */
+int drawn_at(const struct check *check, double x, double y);
 /* The first point of these kinds within a distance of a place, through periodic sides too; -1:
  * none. */
 int64_t point_at(const struct check *check, const double at[2], double within, int kinds);

@@ -400,7 +400,7 @@ static bool is_buried(const struct check *check, const double at[2])
     for (int corner = 0; corner < 4; corner++) {
         double to[2];
         corner_around(check, at, corner, to);
-        if (!is_drawn(check, to[0], to[1])) return false;
+        if (drawn_at(check, to[0], to[1]) < 0) return false;
     }
     return true;
 }

@@ -6,13 +6,11 @@
 
 #include <math.h>
 
-bool is_drawn(const struct check *check, double x, double y)
+int drawn_at(const struct check *check, double x, double y)
 {
-    for (int r = 0; r < check->shapes.n_regions; r++)
-        if (check->shapes.regions[r].kind != KIND_FLUID &&
-            geometry_covers(&check->shapes.regions[r], x, y))
-            return true;
-    return false;
+    for (int r = 0; r < check->scene->n_solid + check->scene->n_wall; r++)
+        if (geometry_covers(&check->shapes.regions[r], x, y)) return r;
+    return -1;
 }
 
 #define ALLOCATE(field)                                                                          \

@@ -228,12 +228,37 @@ static void test_off_lattice_edges_are_told(void)
 static void test_thin_walls_and_slits_are_told(void)
 {
     must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
-              "shape = box 0, 0, 5 mm, 5 mm\n[wall a]\nshape = box 0, -2 mm, 5 mm, 0\n"
+              "shape = box 0, 0, 5 mm, 5 mm\nshape = box 0, -5 mm, 5 mm, -2 mm\n"
+              "[wall a]\nshape = box 0, -2 mm, 5 mm, 0\n"
               "[wall b]\nshape = box 5.4 mm, -5 mm, 10 mm, 5 mm\n",
               NULL);
     TEST_ASSERT_NOT_NULL(strstr(warnings, "[wall a] is 0.002 m thick, less than the kernel's reach "
                                           "2 h = 0.004 m"));
-    TEST_ASSERT_NOT_NULL(strstr(warnings, "the gap between [wall a] and [wall b] is 0.0004 m"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings, "m is 0.0004 m wide, and closed by sampling, so no fluid passes"),
+        warnings);
+}
+
+/* Nothing is behind the outermost walls of a channel, nor of a tank; something is behind a weir. */
+static void test_thin_outermost_walls_are_not(void)
+{
+    static const char top[] = "dp = 5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+                              "shape = box 0, 0, 0.1, 0.1\n";
+    char text[1000];
+    snprintf(text, sizeof text, "%s%s", top,
+             "[domain]\nlower = 0, -0.05\nupper = 0.1, 0.15\nperiodic = x\n[wall c]\n"
+             "shape = box 0, -0.01, 0.1, 0\nshape = polyline thickness 10 mm: 0, 0.1; 0.1, 0.1\n");
+    must_read(text, NULL);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    static const char tank[] =
+        "[wall c]\nshape = polyline thickness -10 mm: 0, 0.2; 0, 0; 0.3, 0; 0.3, 0.2\n";
+    snprintf(text, sizeof text, "%s%s", top, tank);
+    must_read(text, NULL);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    snprintf(text, sizeof text, "%s%s[wall d]\nshape = box 0.1, 0, 0.11, 0.1\n", top, tank);
+    must_read(text, NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "[wall d] is 0.01 m thick"), warnings);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "[wall c]"), warnings);
 }
 
 static void test_thin_solids_are_told(void)
@@ -280,6 +305,7 @@ int main(void)
     RUN_TEST(test_a_solid_off_the_lattice_keeps_its_corner);
     RUN_TEST(test_off_lattice_edges_are_told);
     RUN_TEST(test_thin_walls_and_slits_are_told);
+    RUN_TEST(test_thin_outermost_walls_are_not);
     RUN_TEST(test_thin_solids_are_told);
     RUN_TEST(test_shapes_far_away);
     RUN_TEST(test_domain_holds_moving_walls);
