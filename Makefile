@@ -1,19 +1,18 @@
 # sphfsi: two-dimensional fluid-structure interaction with smoothed particle hydrodynamics
 #
-#   make                 ./sphfsi, build/release/libsphfsi.a and libsphfsi.so
-#   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
-#   make test            build and run the tests           (FILTER=cells for some of them)
-#   make test-sanitize | test-thread | memcheck | analyze    tests and short runs under checkers
-#   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
-#   make check | format  style, layers and exported symbols | clang-format in place
-#   make bench           what a step costs by phase, against bench/<processor>.csv
+#   make                ./sphfsi, build/release/libsphfsi.a and libsphfsi.so
+#   make gate           run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
+#   make test           build and run the tests           (FILTER=cells for some of them)
+#   make check | format style, layers and exported symbols | clang-format in place
+#   make bench          what a step costs by phase, against bench/<processor>.csv
+#   make docs           write the reference of keys in docs/cases.md
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
-#   make web | test-web  the program as a page for browsers | drive it in a headless Chromium
-#   make examples        build examples/*.c, programs that use the library
-#   make docs            write the reference of keys in docs/cases.md
-#   make install         to PREFIX (/usr/local), below DESTDIR
+#   make examples       build examples/*.c, programs that use the library
+#   make install        to PREFIX (/usr/local), below DESTDIR
 #   make info | dist | clean | distclean
-#   make help-reports    the goals that write the reports in docs/
+#   make help-reports   goals that write the reports in docs/
+#   make help-checks    tests under sanitizers, valgrind and qemu, static analysis
+#   make web | test-web the program as a page for browsers | drive it in a headless Chromium
 #
 # Variables: CC, CFLAGS, LDFLAGS, ARCH (native, x86-64-v3, x86-64-v4, armv8-a, ...), HDF5_PREFIX,
 # UNITY_DIR, PYTHON, WERROR=1, V=1 (show commands), SETUP=no (install nothing that is missing).
@@ -28,13 +27,13 @@ Q       := $(if $(V),,@)
 comma   := ,
 
 # Nothing is built by these goals, so nothing is looked for or installed either.
-IDLE  := help help-reports info format dist clean distclean
+IDLE  := help help-reports help-checks info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
-             $(if $(filter web,$(GOALS)),plot web) \
-             $(if $(filter gate gallery accuracy bench energy-account forecast glance performance \
-               stability-% turek-hron validate verify-%,$(GOALS)),plot))
+             $(if $(filter web,$(GOALS)),plot web) $(if $(filter gate gallery accuracy bench \
+               energy-account forecast glance performance stability-% turek-hron validate \
+               verify-%,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -66,8 +65,7 @@ endif
 # clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles, loops of
 # `omp simd` that it leaves alone without optimisation, and fields that an initialiser leaves out.
 WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion \
-          -Wno-pass-failed \
-          -Wno-missing-field-initializers)
+          -Wno-pass-failed -Wno-missing-field-initializers)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
 OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopenmp)
 # Older clang on AArch64 knows -mcpu=native only.
@@ -77,11 +75,9 @@ COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude -I
            $(CPPFLAGS) $(CFLAGS)
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
-DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
-                    { test -z "$$(git status --porcelain -- src include cases/templates \
-                                    Makefile CMakeLists.txt)" || \
-                      echo -dirty; })
-DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
+DESCRIBE := $(subst $() -dirty,-dirty,$(shell git describe --always --exclude='*' 2>/dev/null && \
+  { test -z "$$(git status --porcelain -- src include cases/templates Makefile CMakeLists.txt)" || \
+    echo -dirty; }))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---
@@ -98,14 +94,11 @@ LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/
 EMBEDDED := $(sort $(wildcard cases/templates/*.cfg src/app/data/*))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
-# Tests of one folder of src/ each, and of the tools.
-UNIT_DIRS := $(patsubst src/%/,%,$(wildcard src/*/)) tools
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: all help debug sanitize serial test test-sanitize test-thread test-neon memcheck analyze \
-        gate \
-        examples check docs format info install dist clean distclean FORCE
+.PHONY: all help debug sanitize serial test gate examples check docs format info install dist \
+        clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -149,10 +142,8 @@ $(LIB): $(LIB_OBJ)
 	$(Q)$(LD_R) -o $(@:.a=.o) $^ && $(LOCAL) $(@:.a=.o) && rm -f $@ && $(AR) rcs $@ $(@:.a=.o)
 
 $(SHARED): $(LIB_OBJ)
-	$(Q)$(COMPILE) $(LDFLAGS) -shared -o $@ $^ \
-	  $(if $(DARWIN),,-Wl$(comma)-soname$(comma)libsphfsi.so.$(ABI) \
-	    -Wl$(comma)--exclude-libs$(comma)ALL) \
-	  $(HDF5_LIBS) -lm
+	$(Q)$(COMPILE) $(LDFLAGS) -shared -o $@ $^ $(HDF5_LIBS) -lm $(if $(DARWIN),, \
+	  -Wl$(comma)-soname$(comma)libsphfsi.so.$(ABI) -Wl$(comma)--exclude-libs$(comma)ALL)
 
 $(PROGRAM): $(B)/src/app/main.o $(LIB)
 	$(Q)$(LINK) $(WRAP)
@@ -182,31 +173,6 @@ $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(CORE)
 test: $(PROGRAM) $(SHARED) $(TESTS) $(BENCHES)
 	@SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
 
-test-neon:
-	@bash tests/neon.sh $(UNITY_SRC)
-
-test-sanitize:
-	@TEST_DIRS='$(UNIT_DIRS) agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
-
-# gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher).
-# Tests that look at files or at long runs say nothing here and would take hours.
-test-thread: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=66
-test-thread: export OMP_NUM_THREADS := 2
-test-thread:
-	@$(MAKE) --no-print-directory CONFIG=thread CC=clang all
-	@tools/dev/short_runs.sh build/thread/sphfsi
-	@TEST_DIRS='$(UNIT_DIRS)' TEST_KINDS=c $(MAKE) --no-print-directory CONFIG=thread CC=clang test
-
-# valgrind knows no AVX-512.
-memcheck: export OMP_NUM_THREADS := 1
-memcheck:
-	@$(MAKE) --no-print-directory CONFIG=memcheck ARCH=x86-64-v3 all
-	@tools/dev/short_runs.sh build/memcheck/sphfsi valgrind --quiet --error-exitcode=99 \
-	  --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
-
-analyze:
-	@tools/dev/analyze.sh $(ARGS)
-
 # What a program outside of the source tree would do, with the library where it was built.
 EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
 $(EXAMPLES): $(B)/example_%: $(B)/examples/%.o $(LIB)
@@ -217,11 +183,8 @@ examples: $(EXAMPLES)
 gate: $(PROGRAM)
 	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \
 	   echo "$(OUT) holds a finished run, which is only drawn again (remove it to run it anew)"; \
-	 elif ls $(OUT)/*.ckpt >/dev/null 2>&1; then \
-	   ./$(PROGRAM) cases/gate.cfg --out $(OUT) --restart $(if $(DP),--set 'dp=$(DP)') $(ARGS); \
-	 else \
-	   ./$(PROGRAM) cases/gate.cfg --out $(OUT) $(if $(DP),--set 'dp=$(DP)') $(ARGS); \
-	 fi
+	 else ./$(PROGRAM) cases/gate.cfg --out $(OUT) $(if $(wildcard $(OUT)/*.ckpt),--restart) \
+	   $(if $(DP),--set 'dp=$(DP)') $(ARGS); fi
 	$(Q)$(PROJECT_PYTHON) tools/plot_m1.py $(OUT) --out $(OUT)/m1.png
 	$(Q)$(PROJECT_PYTHON) tools/plot_fields.py $(OUT) --time 0.08 0.16 0.24 0.36 \
 	  --window -0.01 0.45 -0.01 0.17
@@ -268,5 +231,5 @@ clean:
 distclean: clean
 	rm -rf build .venv
 
-include tools/report/report.mk web/web.mk
+include tests/checks.mk tools/report/report.mk web/web.mk
 -include $(wildcard $(B)/*/*.d $(B)/*/*/*.d)

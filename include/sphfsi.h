@@ -22,9 +22,9 @@
  *
  * Threads: different simulations may be used from different threads at the same time; one
  * simulation only by one thread at a time, not always the same one. A second call into a simulation
- * during a call returns SPHFSI_INPUT. A simulation keeps the number of threads that it was created
- * with. The locale and the OpenMP settings of the calling thread are the same after a call, and in
- * callbacks, as before the call.
+ * during a call returns SPHFSI_INPUT. A simulation uses at most the number of threads that it was
+ * created with, and one where that is faster. The locale and the OpenMP settings of the calling
+ * thread are the same after a call, and in callbacks, as before the call.
  *
  * Callbacks: the thread that called the library calls them, before that call returns and outside of
  * parallel regions. A callback may call the library. For the simulation or run that it serves, it
@@ -100,7 +100,7 @@ struct sphfsi_options {
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", replace values of the case */
     int n_sets;
-    int threads;  /**< 0: OMP_NUM_THREADS, else as many as are useful, idle and offered by OpenMP;
+    int threads;  /**< 0: OMP_NUM_THREADS, else as many as are useful and offered by OpenMP;
                        more than are useful, or than 4 a core, are reduced with a warning */
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 

@@ -21,6 +21,7 @@ struct shape {
     double (*pt)[2];
     double size; /* radius of a circle; thickness of a polyline, to the left of its direction if
                          positive, to the right if negative; else 0 */
+    bool bare;   /* the side of a wall, drawn as a line without thickness (geometry/wall_lines.c) */
     int line;
 };
 

@@ -5,7 +5,10 @@
  *   circle X, Y, R
  *   polygon X, Y; X, Y; X, Y ...          corners in either order of turning
  *   polyline thickness T: X, Y; X, Y ...  a band to the left of the direction of the points; T < 0:
- *                                         to the right; last point = first point: closed */
+ *                                         to the right; last point = first point: closed
+ *   polyline: X, Y; X, Y ...              the side of a wall, whose thickness the kernel determines
+ *   arc thickness T: X, Y, R, A, B        a polyline along a circle, from angle A to angle B
+ *   arc: X, Y, R, A, B */
 #include "case/case.h"
 #include "base/elementary.h"
 
@@ -91,35 +94,74 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
     return ERR_OK;
 }
 
-/* "thickness T:" before a polyline's points. */
+/* "thickness T:", or ":" alone, before the points of a line. */
 static enum err read_thickness(struct reader *r, const struct entry *e, struct slice *text,
-                               double *thickness)
+                               struct shape *shape)
 {
     static const char word[] = "thickness";
     const size_t length = sizeof word - 1;
     struct slice number;
-    if (text->length < length || memcmp(text->at, word, length) != 0 ||
-        !slice_next(text, ':', &number) || !text->at)
-        return bad_value(r, e, "write `polyline thickness T: X, Y; X, Y; ...`");
-    TRY(case_number(r, e, slice_after(number, length), "m", thickness));
-    if (*thickness == 0 || fabs(*thickness) > 1e9)
+    const bool given = text->length >= length && memcmp(text->at, word, length) == 0,
+               wall = r->sections[e->section].id == SECTION_wall && strcmp(e->key, "shape") == 0;
+    shape->bare = text->at[0] == ':' && wall;
+    if ((!given && !shape->bare) || !slice_next(text, ':', &number) || !text->at)
+        return bad_value(r, e,
+                         "write `polyline thickness T: X, Y; X, Y; ...`; `thickness T` may be left "
+                         "out in a `shape` of a [wall]");
+    if (shape->bare) return ERR_OK;
+    TRY(case_number(r, e, slice_after(number, length), "m", &shape->size));
+    if (shape->size == 0 || fabs(shape->size) > 1e9)
         return bad_value(r, e, "the thickness must not be 0 and at most 1e9 m");
+    return ERR_OK;
+}
+
+/* Points at most a degree apart. A full circle ends exactly where it begins. */
+static enum err read_arc(struct reader *r, const struct entry *e, struct slice text,
+                         struct shape *shape)
+{
+    static const char *const units[] = {"m", "m", "m", "rad", "rad"};
+    const double degree = PI / 180;
+    double v[COUNT_OF(units)] = {0};
+    struct slice piece;
+    if (slice_count(text, ',') != (int)COUNT_OF(units))
+        return bad_value(r, e, "write `arc: X, Y, R, A, B`: centre, radius and two angles");
+    for (size_t k = 0; k < COUNT_OF(units) && slice_next(&text, ',', &piece); k++)
+        TRY(case_number(r, e, piece, units[k], &v[k]));
+    const double turn = v[4] - v[3], parts = ceil(fabs(turn) / degree - 1e-9);
+    if (!(v[2] > 0 && v[2] <= 1e9) || !(fabs(v[0]) <= 1e9 && fabs(v[1]) <= 1e9) || !(parts > 0) ||
+        parts > 360)
+        return bad_value(r, e,
+                         "the radius must be above 0, and the angles differ by at most 360 "
+                         "degrees");
+    shape->n = (int)parts + 1;
+    shape->pt =
+        arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
+    if (!shape->pt) return ERR_MEMORY;
+    for (int k = 0; k < shape->n; k++) {
+        const double angle = v[3] + turn * k / parts;
+        shape->pt[k][0] = v[0] + v[2] * elementary_cos(angle);
+        shape->pt[k][1] = v[1] + v[2] * elementary_sin(angle);
+    }
+    if (fabs(fabs(turn) - 2 * PI) < 1e-9 * degree)
+        memcpy(shape->pt[shape->n - 1], shape->pt[0], sizeof *shape->pt);
     return ERR_OK;
 }
 
 const char *const shape_words[] = {[SHAPE_BOX] = "box",
                                    [SHAPE_POLYGON] = "polygon",
                                    [SHAPE_POLYLINE] = "polyline",
-                                   [SHAPE_CIRCLE] = "circle"};
+                                   [SHAPE_CIRCLE] = "circle",
+                                   [SHAPE_CIRCLE + 1] = "arc"};
 
-static enum err read_shape(struct reader *r, const struct entry *e, struct slice text,
+static enum err read_shape(struct reader *r, const struct entry *e, struct slice text, bool arc,
                            struct shape *shape)
 {
     static const int needed[] = {
         [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
     const int least = needed[shape->kind];
     const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
-    if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, &shape->size));
+    if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, shape));
+    if (arc) return read_arc(r, e, text, shape);
     shape->n = listed ? slice_count(text, ';') : least;
     if (shape->n < least)
         return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
@@ -138,18 +180,21 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
 
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
 {
-    const size_t length = strcspn(e->value, " \t");
+    const size_t length = strcspn(e->value, " \t:");
+    const int arc = SHAPE_CIRCLE + 1;
     int kind = SHAPE_BOX;
-    while (kind <= SHAPE_CIRCLE && (strlen(shape_words[kind]) != length ||
-                                    memcmp(shape_words[kind], e->value, length) != 0))
+    while (kind <= arc && (strlen(shape_words[kind]) != length ||
+                           memcmp(shape_words[kind], e->value, length) != 0))
         kind++;
-    if (kind > SHAPE_CIRCLE)
+    if (kind > arc)
         return bad_value(r, e,
                          "`%.*s` is not a shape; known: box X0, Y0, X1, Y1; circle X, Y, R; "
-                         "polygon X, Y; ...; polyline thickness T: X, Y; ...",
+                         "polygon X, Y; ...; polyline thickness T: X, Y; ...; arc thickness T: "
+                         "X, Y, R, A, B",
                          (int)(length < 40 ? length : 40), e->value);
-    struct shape shape = {.kind = (enum shape_kind)kind, .line = e->line};
-    TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), &shape));
+    struct shape shape = {.kind = kind == arc ? SHAPE_POLYLINE : (enum shape_kind)kind,
+                          .line = e->line};
+    TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), kind == arc, &shape));
     if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: double the memory */
         struct shape *const item =
             arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);

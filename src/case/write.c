@@ -46,15 +46,18 @@ static void write_text(FILE *out, const char *text)
 
 static void write_shape(FILE *out, const char *key, const struct shape *s)
 {
-    fprintf(out, "%s = %s ", key, shape_words[s->kind]);
+    const bool filled = s->bare && s->kind == SHAPE_POLYGON; /* a line without its last point */
+    fprintf(out, "%s = %s%s", key, shape_words[filled ? SHAPE_POLYLINE : s->kind],
+            s->bare ? ": " : " ");
     if (s->kind == SHAPE_BOX) {
         write_reals(out, 4, s->pt[0]);
     } else if (s->kind == SHAPE_CIRCLE) {
         write_reals(out, 3, (const double[]){s->pt[0][0], s->pt[0][1], s->size});
     } else {
-        if (s->kind == SHAPE_POLYLINE) write_real(out, "thickness ", s->size);
-        if (s->kind == SHAPE_POLYLINE) fputs(": ", out);
-        for (int k = 0; k < s->n; k++) {
+        const bool band = s->kind == SHAPE_POLYLINE && !s->bare;
+        if (band) write_real(out, "thickness ", s->size);
+        if (band) fputs(": ", out);
+        for (int k = 0; k < s->n + filled; k++) {
             write_real(out, k ? "; " : "", s->pt[k][0]);
             write_real(out, ", ", s->pt[k][1]);
         }

@@ -32,9 +32,44 @@ static void left_normal(const struct shape *p, int k, double normal[2])
     normal[1] = dx / length;
 }
 
+/* Another wall drawn as a line, and which of its ends meets an end of this one; NULL: none. The two
+ * have a joint as within a line. */
+static const struct shape *line_at(const struct scene *scene, const struct shape *p,
+                                   const double end[2], bool *last)
+{
+    const double nothing = 1e-6 * fabs(p->size);
+    for (int k = 0; k < scene->n_wall && p->bare; k++)
+        for (int j = 0; j < scene->wall[k].shape.n; j++) {
+            const struct shape *const q = &scene->wall[k].shape.item[j];
+            for (int n = 0; n < 2 && q != p && q->bare && q->kind == SHAPE_POLYLINE; n++) {
+                const double *const at = q->pt[n ? q->n - 1 : 0];
+                *last = n;
+                if (fabs(at[0] - end[0]) <= nothing && fabs(at[1] - end[1]) <= nothing) return q;
+            }
+        }
+    return NULL;
+}
+
+/* Refuses lines that meet with their walls on different sides. */
+static enum err check_ends(const struct scene *scene, const struct shape *p, struct diag *d)
+{
+    for (int k = 0; k < 2; k++) {
+        bool last;
+        const double *const end = p->pt[k ? p->n - 1 : 0];
+        const struct shape *const q = line_at(scene, p, end, &last);
+        if (q && (q->size == p->size) != (k != last))
+            return fail_at(d, scene, p->line > q->line ? p->line : q->line,
+                           "this line meets that of line %d at (%.4g, %.4g) m with the wall on the "
+                           "other side; list the points of the one without fluid beside it in the "
+                           "other order",
+                           p->line < q->line ? p->line : q->line, end[0], end[1]);
+    }
+    return ERR_OK;
+}
+
 /* The point opposite to point k on the far side, on the bisector of its two segments; false: too
  * sharp. */
-static bool mitre(const struct shape *p, int k, double far[2])
+static bool mitre(const struct scene *scene, const struct shape *p, int k, double far[2])
 {
     const int last = p->n - 2; /* segment */
     const double *const first = p->pt[0], *const end = p->pt[p->n - 1];
@@ -45,6 +80,14 @@ static bool mitre(const struct shape *p, int k, double far[2])
     double a[2], b[2];
     left_normal(p, before, a);
     left_normal(p, after, b);
+    bool of_end;
+    const bool end_here = !closed && (k == 0 || k == p->n - 1);
+    const struct shape *const q = end_here ? line_at(scene, p, p->pt[k], &of_end) : NULL;
+    if (q) {
+        double *const normal = k == 0 ? a : b;
+        left_normal(q, of_end ? q->n - 2 : 0, normal);
+        for (int c = 0; c < 2; c++) normal[c] *= q->size / p->size;
+    }
     /* The sum of the normals over 1 + their cosine has length 1/cos of half the angle between the
      * segments. */
     const double scale = 1 + a[0] * b[0] + a[1] * b[1];
@@ -60,8 +103,9 @@ static enum err cut_polyline(const struct scene *scene, const struct shape *p,
     double(*far)[2] = arena_alloc(a, (size_t)p->n, sizeof *far, "polyline", d);
     double(*corners)[2] = arena_alloc(a, 4 * (size_t)p->n, sizeof *corners, "polyline", d);
     if (!far || !corners) return ERR_MEMORY;
+    TRY(check_ends(scene, p, d));
     for (int k = 0; k < p->n; k++)
-        if (!mitre(p, k, far[k]))
+        if (!mitre(scene, p, k, far[k]))
             return fail_at(d, scene, p->line,
                            "the polyline turns too sharply at its point %d (%g, %g); use a "
                            "larger angle or insert a point",
@@ -72,8 +116,9 @@ static enum err cut_polyline(const struct scene *scene, const struct shape *p,
         if (along <= 0)
             return fail_at(d, scene, p->line,
                            "segment %d of the polyline is too short for a thickness of %g m: "
-                           "the joints at its ends cross",
-                           k + 1, fabs(p->size));
+                           "the joints at its ends cross%s",
+                           k + 1, fabs(p->size),
+                           p->bare ? "; draw the wall as a `polygon` or `box`" : "");
         pieces[k].n = 4;
         pieces[k].pt = corners + 4 * k;
         memcpy(pieces[k].pt[0], p->pt[k], sizeof *far);

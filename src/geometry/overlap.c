@@ -92,8 +92,8 @@ static enum err fail_overlap(struct sampler *sampler, const struct region *mine,
                    : mine->kind == its->kind ? "walls that move differently must not overlap"
                                              : "only the clamped part of a solid may lie in a wall",
                    has_band(mine) || has_band(its)
-                       ? "; if a polyline has its band on the wrong side, change the sign of its "
-                         "thickness"
+                       ? "; if the band of a polyline is on the wrong side, change the sign of its "
+                         "thickness or, without one, the order of its points"
                        : "");
 }
 

@@ -63,24 +63,29 @@ static enum err check_size(struct sampler *sampler)
     return ERR_OK;
 }
 
-static enum err add_region(struct sampler *sampler, enum kind kind, int body,
-                           const struct scene_section_common *common,
-                           const struct shape_list *shape, const struct shape_list *minus)
+static void add_region(struct sampler *sampler, enum kind kind, int body,
+                       const struct scene_section_common *common, const struct shape_list *shape,
+                       const struct shape_list *minus)
 {
-    struct region *region = &sampler->regions[sampler->n_regions++];
-    *region = (struct region){.kind = kind,
-                              .body = body,
-                              .name = common->name,
-                              .line = common->line,
-                              .list = shape,
-                              .minus_list = minus};
-    if (shape->n == 0)
-        return fail_at(sampler->diag, sampler->scene, common->line, "[%s %s] has no shape",
-                       kind_names[kind], common->name);
-    TRY(outlines_of(&region->add, sampler->scene, shape, &sampler->temp, sampler->diag));
-    return outlines_of(&region->minus, sampler->scene, minus, &sampler->temp, sampler->diag);
+    sampler->regions[sampler->n_regions++] = (struct region){.kind = kind,
+                                                             .body = body,
+                                                             .name = common->name,
+                                                             .line = common->line,
+                                                             .list = shape,
+                                                             .minus_list = minus};
 }
 
+static enum err draw_region(struct sampler *sampler, struct region *region)
+{
+    if (region->list->n == 0)
+        return fail_at(sampler->diag, sampler->scene, region->line, "[%s %s] has no shape",
+                       kind_names[region->kind], region->name);
+    TRY(outlines_of(&region->add, sampler->scene, region->list, &sampler->temp, sampler->diag));
+    return outlines_of(&region->minus, sampler->scene, region->minus_list, &sampler->temp,
+                       sampler->diag);
+}
+
+/* Fluid is drawn before the walls beside it, and these have their thickness before joints are. */
 static enum err list_regions(struct sampler *sampler)
 {
     const struct scene *scene = sampler->scene;
@@ -89,14 +94,18 @@ static enum err list_regions(struct sampler *sampler)
         arena_alloc(&sampler->temp, (size_t)n, sizeof *sampler->regions, "regions", sampler->diag);
     if (!sampler->regions) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++)
-        TRY(add_region(sampler, KIND_SOLID, k, &scene->solid[k].common, &scene->solid[k].shape,
-                       &scene->solid[k].minus));
+        add_region(sampler, KIND_SOLID, k, &scene->solid[k].common, &scene->solid[k].shape,
+                   &scene->solid[k].minus);
     for (int k = 0; k < scene->n_wall; k++)
-        TRY(add_region(sampler, KIND_WALL, k, &scene->wall[k].common, &scene->wall[k].shape,
-                       &scene->wall[k].minus));
+        add_region(sampler, KIND_WALL, k, &scene->wall[k].common, &scene->wall[k].shape,
+                   &scene->wall[k].minus);
     for (int k = 0; k < scene->n_fluid; k++)
-        TRY(add_region(sampler, KIND_FLUID, k, &scene->fluid[k].common, &scene->fluid[k].shape,
-                       &scene->fluid[k].minus));
+        add_region(sampler, KIND_FLUID, k, &scene->fluid[k].common, &scene->fluid[k].shape,
+                   &scene->fluid[k].minus);
+    for (int k = n - scene->n_fluid; k < n; k++) TRY(draw_region(sampler, &sampler->regions[k]));
+    for (int k = scene->n_solid; k < n - scene->n_fluid; k++)
+        TRY(geometry_thicken(sampler, &sampler->regions[k]));
+    for (int k = 0; k < n - scene->n_fluid; k++) TRY(draw_region(sampler, &sampler->regions[k]));
     return ERR_OK;
 }
 

@@ -70,6 +70,9 @@ SPHFSI_INLINE enum err geometry_problems(const struct sampler *sampler)
 
 enum err geometry_sample(struct sampler *sampler, struct samples *samples) SPHFSI_CHECKED;
 
+/* Gives the lines of a wall their thickness, once the outlines of the fluid are known. */
+enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SPHFSI_CHECKED;
+
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *sampler) SPHFSI_CHECKED;
 

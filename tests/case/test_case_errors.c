@@ -90,8 +90,9 @@ static const struct {
      "is expected"},
     {TOP FLUID "[wall w]\nshape = polyline thickness 5 mm: 0, 0; 20 mm, 0\n", NULL,
      "bad.cfg:3: 100 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0005) m: "
-     "move one of the shapes, or subtract the overlap with `minus`; if a polyline has its band on "
-     "the wrong side, change the sign of its thickness"},
+     "move one of the shapes, or subtract the overlap with `minus`; if the band of a polyline is "
+     "on the wrong side, change the sign of its thickness or, without one, the order of its "
+     "points"},
     {TOP "[solid]\n", NULL, "bad.cfg:3: [solid] needs a name: [solid NAME]"},
     {TOP "[numerics fast]\n", NULL, "bad.cfg:3: [numerics] takes no name"},
     {TOP "[solid a/b]\n", NULL,
@@ -212,7 +213,8 @@ static const struct {
     {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: there is no earlier [solid] of that name"},
     {TOP SOLID "clamp = bix 0, 0, 1, 1\n", NULL,
      "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
-     "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ..."},
+     "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...; arc thickness "
+     "T: X, Y, R, A, B"},
     {TOP SOLID "clamp = box 0, 0, 1\n", NULL,
      "bad.cfg:8: clamp = box 0, 0, 1: 4 numbers with commas between them are expected; `0, 0, 1` "
      "has 3"},
@@ -229,7 +231,8 @@ static const struct {
     {TOP SOLID "clamp = polygon 0, 0; 2, 2; 2, 0; 0, 1\n", NULL,
      "bad.cfg:8: clamp = polygon 0, 0; 2, 2; 2, 0; 0, 1: edges 1 and 3 of the polygon cross"},
     {TOP SOLID "clamp = polyline 0, 0; 1, 1\n", NULL,
-     "bad.cfg:8: clamp = polyline 0, 0; 1, 1: write `polyline thickness T: X, Y; X, Y; ...`"},
+     "bad.cfg:8: clamp = polyline 0, 0; 1, 1: write `polyline thickness T: X, Y; X, Y; ...`; "
+     "`thickness T` may be left out in a `shape` of a [wall]"},
     {TOP SOLID "clamp = polyline thickness 0: 0, 0; 1, 1\n", NULL,
      "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must not be 0 and at most "
      "1e9 m"},
@@ -503,7 +506,8 @@ static void test_all_problems_of_a_case_are_reported(void)
                 "bad.cfg:2: `end_time 1 s` is neither `key = value` nor `[section]`\n"
                 "bad.cfg:3: unknown section [constant]; did you mean [constants]?\n"
                 "bad.cfg:6: shape = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
-                "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...\n"
+                "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...; "
+                "arc thickness T: X, Y, R, A, B\n"
                 "bad.cfg:7: young = 1/0: division by zero\n"
                 "bad.cfg:9: unknown key `poison` in [solid]; did you mean `poisson`?\n"
                 "bad.cfg:10: unknown section [solids]; did you mean [solid]?\n");

@@ -10,10 +10,9 @@ solid.
 A field is chosen, and the acceleration that makes it a solution is added to that of the program.
 The scenes are cases/verify/manufactured_*.cfg; the method is that of Roache (2002) and, for
 particles, of Negi and Ramachandran (2022, arXiv 2208.10848)."""
-import argparse
 import math
 
-from common import ROOT, np, program_version
+from common import ROOT, np, options, program_version, run_tool, table, write
 import sphfsi
 
 REPORT = ROOT / "docs" / "manufactured.md"
@@ -166,51 +165,32 @@ def study(scene, ratios):
 
 
 def report(studies):
-    lines, met, missed = [], [], []
-    for scene, rows in studies.items():
-        lines += ["", f"| {scene}, L/dp = | " + " | ".join(map(str, RATIOS[scene])) +
-                  " | order | asked |",
-                  "|---|" + "---|" * (len(RATIOS[scene]) + 2)]
-        for scheme, quantity, errors in rows:
-            found = order(RATIOS[scene], errors)
-            name = quantity if scheme == "-" else f"{quantity}, {scheme}"
-            (met if found >= ASKED[scene] else missed).append(f"{scene}, {name} ({found:.2f})")
-            lines.append(f"| {name} | " + " | ".join(f"{e:.3g}" for e in errors)
-                         + f" | {found:.2f} | {ASKED[scene]} |")
-    return "\n".join([
-        "# Manufactured solutions", "",
-        "**With which order does it converge?** " + (f"Met: {'; '.join(met)}. " if met else "")
-        + (f"Missed: {'; '.join(missed)}." if missed else "All orders asked for are met."), "",
-        f"Written by `make verify-manufactured`; do not edit. {program_version()}. The order is",
-        "that between the two finest runs. Errors are RMS over the particles at the end: of the "
-        "velocity",
-        "over its scale U, of the pressure over rho U^2, of the displacement over its largest, of "
-        "the stress",
-        "over its RMS. The scenes are `cases/verify/manufactured_*.cfg`; see "
-        "`tools/report/manufactured.py`.",
-        *lines, "",
-        "On a sheared lattice the error of T-6 does not depend on the spacing: its sums converge "
-        "only with more",
-        "neighbours (a larger `h_over_dp`). In the solid the quadratic gradient (T-16) is exact "
-        "for quadratic",
-        "fields.", ""])
+    """The values of the document's text."""
+    tables, judged = [], {True: [], False: []}
+    for scene, found in studies.items():
+        rows = []
+        for scheme, quantity, errors in found:
+            slope, name = order(RATIOS[scene], errors), f"{quantity}, {scheme}".removesuffix(", -")
+            judged[slope >= ASKED[scene]].append(f"{scene}, {name} ({slope:.2f})")
+            rows.append([name, *(f"{e:.3g}" for e in errors), f"{slope:.2f}", ASKED[scene]])
+        tables.append(table([f"{scene}, L/dp =", *map(str, RATIOS[scene]), "order", "asked"], rows))
+    met, missed = ("; ".join(judged[is_met]) for is_met in (True, False))
+    answer = (f"Met: {met}. " if met else "") + \
+        (f"Missed: {missed}." if missed else "All orders asked for are met.")
+    return {"answer": answer, "version": program_version(), "tables": "\n\n".join(tables)}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("scene", nargs="?", choices=RATIOS)
     parser.add_argument("--ratios", nargs="+", type=int, help="particles over the length L")
     args = parser.parse_args()
     if args.scene:
-        ratios = args.ratios or RATIOS[args.scene]
-        for scheme, quantity, errors in study(args.scene, ratios):
+        for scheme, quantity, errors in study(args.scene, args.ratios or RATIOS[args.scene]):
             print(scheme, quantity, " ".join(f"{e:.4g}" for e in errors))
         return
-    REPORT.write_text(report({scene: study(scene, RATIOS[scene]) for scene in RATIOS}),
-                      encoding="utf-8")
-    print(f"written: {REPORT.relative_to(ROOT)}")
+    write(REPORT, REPORT.name, **report({scene: study(scene, RATIOS[scene]) for scene in RATIOS}))
 
 
 if __name__ == "__main__":
-    main()
+    run_tool(main)

@@ -116,7 +116,8 @@ class Job:
         if goes_on and status == 1 and NO_RESTART.search(said):
             say(f"{self.name}: {said.splitlines()[-1]}")
             return self.run(say, threads, limit, prefix, any_program, anew=True)
-        record.update(timing=timing, log=said, **outcome(self.folder, status, said, limit))
+        record.update(timing=timing, log=said, resumed=bool(goes_on),
+                      **outcome(self.folder, status, said, limit))
         self.store(record)
         return record
 

@@ -10,22 +10,15 @@ examples:
   tools/report/turek_hron.py report                      writes docs/turek_hron.md from there
   tools/report/turek_hron.py pictures runs/turek_hron/fsi2-10   draws docs/img/turek_hron_*.png
 """
-import argparse
-import csv
 import json
 import math
 import os
-import resource
-import subprocess
-import sys
-import time
 from pathlib import Path
 
-import numpy as np
-
+from common import ROOT, Run, load, np, options, plt, run_tool, store, table, write
 from palette import shrink
+from runs import Job
 
-ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases" / "turek_hron"
 KEPT = ROOT / "docs" / "turek_hron.json"
 PAGE = ROOT / "docs" / "turek_hron.md"
@@ -81,21 +74,13 @@ ALONE = 8        # parts without correlation that those of a series at rest stan
 
 def columns(folder):
     """Times and the series of a run in mm and N/m."""
-    path = Path(folder) / "probes.csv"
-    with open(path, encoding="utf-8") as file:
-        rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    names, values = rows[0], np.array([[float(v) for v in row] for row in rows[1:]])
-
-    def column(name):
-        return values[:, names.index(name)]
-
-    series = {}
-    if "A_dx_m" in names:
-        series["ux"], series["uy"] = 1e3 * column("A_dx_m"), 1e3 * column("A_dy_m")
-    if "cylinder_fx_N_per_m" in names:
+    probes, series = Run(folder).table("probes.csv"), {}
+    if "A_dx_m" in probes:
+        series["ux"], series["uy"] = 1e3 * probes["A_dx_m"], 1e3 * probes["A_dy_m"]
+    if "cylinder_fx_N_per_m" in probes:
         for name, axis in (("drag", "x"), ("lift", "y")):
-            series[name] = column(f"cylinder_f{axis}_N_per_m") + column(f"bar_f{axis}_N_per_m")
-    return column("time_s"), series
+            series[name] = probes[f"cylinder_f{axis}_N_per_m"] + probes[f"bar_f{axis}_N_per_m"]
+    return probes["time_s"], series
 
 
 def fit(times, values, frequency):
@@ -239,13 +224,13 @@ def read(folder):
     folder = Path(folder)
     times, series = columns(folder)
     found = period(times, series["uy"] if "uy" in series else series["lift"])
-    with open(folder / "summary.json", encoding="utf-8") as file:
-        run = json.load(file)
-    cost = json.loads((folder / "cost.json").read_text()) if (folder / "cost.json").exists() else {}
+    run, record = Run(folder).summary, load(folder.with_name(folder.name + ".json"), {})
     name, _, across = folder.name.rpartition("-")
     return {"case": name, "across": int(across), "time": times[-1], "exit": run["exit_reason"],
             "particles": run["particles"], "steps": run["steps"], "version": run["version"],
-            "cpu_seconds": cost.get("cpu_seconds"), "settings": cost.get("settings", []),
+            "cpu_seconds": record.get("cpu"),
+            "settings": [s for s in record.get("sets", []) if not s.startswith(("across=",
+                                                                                "end_time="))],
             "series": {k: summary(times, v, found) for k, v in series.items()}}
 
 
@@ -272,34 +257,26 @@ def show(quantity, found, wanted):
 
 
 def run_case(args):
-    folder = ROOT / "runs" / "turek_hron" / f"{args.case}-{args.across}"
-    command = [str(args.program.resolve()), str(CASES / f"{args.case}.cfg"), "--out", str(folder),
-               "--threads", str(args.threads), "--set", f"across={args.across}"]
-    if args.end:
-        command += ["--set", f"end_time={args.end}"]
-    for setting in args.set:
-        command += ["--set", setting]
-    begin = time.time()
-    status = subprocess.run(command, check=False).returncode
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    (folder / "cost.json").write_text(json.dumps(
-        {"cpu_seconds": used.ru_utime + used.ru_stime, "wall_seconds": time.time() - begin,
-         "settings": args.set}))
-    print(json.dumps(read(folder), indent=2))
-    return status
+    job = Job(ROOT / "runs" / "turek_hron" / f"{args.case}-{args.across}",
+              CASES / f"{args.case}.cfg", [f"across={args.across}", *args.set,
+                                           *([f"end_time={args.end}"] if args.end else [])])
+    record = job.run(threads=args.threads)
+    # What was computed before an interruption is not known.
+    job.store({**record, "sets": job.sets,
+               "cpu": None if record.get("resumed") else record["timing"]["cpu"]})
+    print(json.dumps(read(job.folder), indent=2))
+    return record["outcome"] != "finished"
 
 
 def keep(folders):
-    kept = json.loads(KEPT.read_text()) if KEPT.exists() else []
+    kept = load(KEPT, [])
 
     def place(run):
         return run["case"], run["across"], constants(run)
 
-    for folder in folders:
-        new = read(folder)
+    for new in map(read, folders):
         kept = [k for k in kept if place(k) != place(new)] + [new]
-    kept.sort(key=lambda k: (k["case"], len(constants(k)), k["across"]))
-    KEPT.write_text(json.dumps(kept, indent=1) + "\n")
+    store(KEPT, sorted(kept, key=lambda k: (k["case"], len(constants(k)), k["across"])))
 
 
 def constants(run):
@@ -328,8 +305,7 @@ def judged(best, quantity, part, limit):
         size = wanted[("mean", "amplitude", "frequency").index(part)]
         off, known = 100 * (found[part] / size - 1), 200 * abs(found.get(f"{part}_error", 0) / size)
         word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit
-                else
-                "undecided: noise")
+                else "undecided: noise")
         return f"{off:+.1f}{f' ± {0.5 * known:.1f}' if known else ''} % | {limit} % | {word}"
     return f"{found['state']} | {limit} % | not shown"
 
@@ -345,57 +321,43 @@ def headline(kept):
                       f"| {judged(best, quantity, part, limit)} |"
                       for case, quantity, part, limit in TARGETS if case == of_case]
     missing = [c.upper() for c in REFERENCE if c not in {k[0] for k in finest}]
-    if missing:
-        lines += ["", f"Not run yet: {', '.join(missing)}."]
-    return lines
+    return lines + (["", f"Not run yet: {', '.join(missing)}."] if missing else [])
+
+
+def rows_of(run):
+    """A row for each quantity of a run."""
+    particles = run["particles"]
+    for quantity, wanted in REFERENCE[run["case"]].items():
+        found = run["series"].get(quantity)
+        if found:
+            reference = f"{wanted[0]:g}" + (f" ± {wanted[1]:g}, {wanted[2]:g} Hz" if wanted[1]
+                                            else "")
+            yield (run["case"].upper(), f"{run['across']}{changed(run)}", run["version"],
+                   f"{run['time']:.4g}", run["exit"],
+                   f"{particles['fluid']}, {particles['solid']}", cost_of(run), quantity,
+                   show(quantity, found, wanted), reference)
 
 
 def report():
-    kept = json.loads(KEPT.read_text())
-    text = ["# The benchmark of Turek and Hron", "",
-            "Written by `tools/report/turek_hron.py report` from `docs/turek_hron.json`. The first "
-            "table holds the finest run of each case, with the constants of the case and with "
-            "others. Errors are those against the finest reference.", "",
-            *headline(kept), "",
-            (ROOT / "docs" / "turek_hron_notes.md").read_text().strip(), "",
-            "## Every run", "",
-            "| case | across | version | simulated s | end | particles (fluid, solid) | CPU s | "
-            "CPU s a second | quantity | found | reference |",
-            "|---|---|---|---|---|---|---|---|---|---|---|"]
-    for run in kept:
-        head = (f"| {run['case'].upper()} | {run['across']}{changed(run)} | {run['version']} | "
-                f"{run['time']:.4g} | {run['exit']} | {run['particles']['fluid']}, "
-                f"{run['particles']['solid']} | {cost_of(run)} |")
-        for quantity, wanted in REFERENCE[run["case"]].items():
-            found = run["series"].get(quantity)
-            if not found:
-                continue
-            reference = f"{wanted[0]:g}"
-            if wanted[1]:
-                reference += f" ± {wanted[1]:g}, {wanted[2]:g} Hz"
-            text.append(f"{head} {quantity} | {show(quantity, found, wanted)} | {reference} |")
-    text += ["", "## What others pay", "",
-             "| program | error of the amplitude of uy, % | core-seconds of the run | source |",
-             "|---|---|---|---|"]
-    text += [f"| {n} | {e:+.1f} | {c:.0f} | {s} |" for n, e, c, s in OTHERS]
-    text += ["", "SPHinXsys, `test_2d_fsi2`, 10 across, channel 1.1 m long without an outlet: 8 to "
-                 "12 CPU "
-             "seconds a second, uy 77 to 81 mm, 1.72 to 1.78 Hz (timed on two cores).", ""]
-    PAGE.write_text("\n".join(text), encoding="utf-8")
+    kept = load(KEPT)
+    head = ["case", "across", "version", "simulated s", "end", "particles (fluid, solid)",
+            "CPU s | CPU s a second", "quantity", "found", "reference"]
+    write(PAGE, "turek_hron.md", headline="\n".join(headline(kept)),
+          notes=(ROOT / "docs" / "turek_hron_notes.md").read_text().strip(),
+          runs=table(head, (row for run in kept for row in rows_of(run))).replace(
+              "|---|\n", "|---|---|\n", 1),
+          others="\n".join(f"| {n} | {e:+.1f} | {c:.0f} | {s} |" for n, e, c, s in OTHERS))
 
 
 def pictures(run):
     """Error of the amplitude of uy against core-seconds, from the kept runs; histories of a run."""
-    import matplotlib
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
     fig, ax = plt.subplots(figsize=(6, 3.6))
     for case, mark in (("fsi2", "o"), ("fsi3", "s")):
         wanted = REFERENCE[case]["uy"][1]
         own = [(k["cpu_seconds"], abs(100 * (k["series"]["uy"]["amplitude"] / wanted - 1)),
                 f"  {k['across']} across" +
                 "".join(f",\n  {c.split('.')[-1]}" for c in constants(k)))
-               for k in json.loads(KEPT.read_text())
+               for k in load(KEPT)
                if k["case"] == case and k["series"]["uy"]["state"] == "periodic" and
                k["cpu_seconds"]]
         other = [(cost, abs(off)) for name, off, cost, _ in OTHERS if name.endswith(case.upper())]
@@ -430,8 +392,7 @@ def pictures(run):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     sub = parser.add_subparsers(dest="command")
     run = sub.add_parser("run", help="run a case")
     run.add_argument("case", choices=sorted(REFERENCE))
@@ -440,7 +401,6 @@ def main():
     run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                      help="change a constant of the case; the report names it")
     run.add_argument("--threads", type=int, default=os.cpu_count())
-    run.add_argument("--program", type=Path, default=ROOT / "sphfsi")
     for name in ("read", "keep"):
         sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+",
                                                                          type=Path)
@@ -451,8 +411,7 @@ def main():
     if args.command == "run":
         return run_case(args)
     if args.command == "read":
-        for folder in args.runs:
-            print(json.dumps(read(folder), indent=2))
+        print(json.dumps([read(folder) for folder in args.runs], indent=2))
     elif args.command == "keep":
         keep(args.runs)
     elif args.command == "pictures":
@@ -463,4 +422,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_tool(main)

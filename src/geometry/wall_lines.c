@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT
+ * Walls that are drawn as lines without thickness. Such a line becomes a band on its dry side, as
+ * many layers of particles thick as the kernel reaches. */
+#include "geometry/sampling.h"
+
+#include "base/elementary.h"
+#include "case/case.h"
+#include "particles/kernel.h"
+
+#include <math.h>
+
+static bool is_fluid(const struct sampler *sampler, const double at[2])
+{
+    for (int k = 0; k < sampler->n_regions; k++) {
+        const struct region *const region = &sampler->regions[k];
+        if (region->kind == KIND_FLUID && outlines_find(&region->add, at[0], at[1]) >= 0 &&
+            outlines_find(&region->minus, at[0], at[1]) < 0)
+            return true;
+    }
+    return false;
+}
+
+/* Whether there is fluid half a spacing beside a line, on its left (side = 1) or right (-1), and
+ * where. Places less than a spacing from a corner may lie beyond the next segment. */
+static bool is_wet(const struct sampler *sampler, const struct shape *line, double side,
+                   double at[2])
+{
+    const double dp = sampler->scene->top.dp;
+    for (int k = 0; k + 1 < line->n; k++) {
+        const double *const a = line->pt[k], *const b = line->pt[k + 1];
+        const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
+        const double off = 0.5 * side * dp / length;
+        const int64_t parts = 1 + (int64_t)max2(0, min2(1e8, 2 * (length / dp - 2)));
+        for (int64_t j = 1; j <= parts; j++) {
+            const double s =
+                parts == 1
+                    ? 0.5
+                    : (dp + (length - 2 * dp) * (double)(j - 1) / (double)(parts - 1)) / length;
+            at[0] = a[0] + s * dx - off * dy;
+            at[1] = a[1] + s * dy + off * dx;
+            if (is_fluid(sampler, at)) return true;
+        }
+    }
+    return false;
+}
+
+/* Whether a closed line turns counter-clockwise. */
+static bool turns_left(const struct shape *line)
+{
+    double twice = 0;
+    for (int k = 0; k + 1 < line->n; k++) {
+        const double *const o = line->pt[0], *const a = line->pt[k], *const b = line->pt[k + 1];
+        twice += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
+    }
+    return twice > 0;
+}
+
+/* Whether a piece of fluid begins inside a closed line, wherever it is. */
+static enum err find_inside(struct sampler *sampler, const struct shape *line, bool *found)
+{
+    struct shape inside = *line;
+    struct outlines o;
+    inside.kind = SHAPE_POLYGON;
+    TRY(outlines_of(&o, sampler->scene, &(struct shape_list){1, &inside}, &sampler->temp,
+                    sampler->diag));
+    *found = false;
+    for (int k = 0; k < sampler->n_regions; k++) {
+        const struct outlines *const add = &sampler->regions[k].add;
+        for (int j = 0; j < add->n && sampler->regions[k].kind == KIND_FLUID; j++) {
+            const double *const at = add->item[j].n ? add->item[j].pt[0] : add->item[j].centre;
+            *found |= outlines_find(&o, at[0], at[1]) >= 0;
+        }
+    }
+    return ERR_OK;
+}
+
+/* Fluid beside the line decides on which side the wall is. Without any, the fluid is meant to be on
+ * the left of an open line, and inside a closed one if it has some there. A closed line around a
+ * wall is filled. */
+static enum err thicken_line(struct sampler *sampler, const struct region *wall, struct shape *line)
+{
+    const struct scene *const scene = sampler->scene;
+    const double dp = scene->top.dp, *const first = line->pt[0],
+                 *const last = line->pt[line->n - 1];
+    const double thick = dp * ceil(KERNEL_REACH * scene->h / dp - 1e-9);
+    const bool closed = line->n > 3 && first[0] == last[0] && first[1] == last[1];
+    double left[2], right[2];
+    const bool wet_left = is_wet(sampler, line, 1, left),
+               wet_right = is_wet(sampler, line, -1, right);
+    bool fluid_left = !wet_right;
+    if (wet_left && wet_right)
+        return fail_at(
+            sampler->diag, scene, line->line,
+            "this line of [wall %s] has fluid on both sides, at (%.4g, %.4g) and (%.4g, %.4g) m. "
+            "Draw such a wall as a `box` or `polyline thickness T`, 2 h = %.4g m thick or more, "
+            "and subtract it from the fluid with `minus`",
+            wall->name, left[0], left[1], right[0], right[1], KERNEL_REACH * scene->h);
+    if (closed && !wet_left && !wet_right) {
+        TRY(find_inside(sampler, line, &fluid_left));
+        fluid_left = fluid_left == turns_left(line);
+    }
+    line->size = fluid_left ? -thick : thick;
+    if (!closed || fluid_left == turns_left(line)) return ERR_OK;
+    line->kind = SHAPE_POLYGON;
+    line->size = 0;
+    line->n--;
+    return ERR_OK;
+}
+
+enum err geometry_thicken(struct sampler *sampler, const struct region *wall)
+{
+    for (int k = 0; k < wall->list->n; k++) {
+        struct shape *const shape = &wall->list->item[k];
+        if (shape->bare && shape->kind == SHAPE_POLYLINE && shape->size == 0)
+            TRY(thicken_line(sampler, wall, shape));
+    }
+    return ERR_OK;
+}
