@@ -1,7 +1,7 @@
 # The program as a page for browsers; included by the Makefile.
 # What steps a simulation, without the files of runs: no HDF5, one thread. `fused` needs relaxed SIMD;
 # `exact` computes multiply-add in software. Both give the native program's bits.
-WEB_SRC := web/exports.c $(filter-out src/base/run_dir.c,$(wildcard $(patsubst %,src/%/*.c,base \
+WEB_SRC := web/exports.c $(filter-out src/base/run_dir.c,$(wildcard $(patsubst %,src/%/*.c,base expr \
              particles case geometry fluid solid coupling time check))) src/output/probes.c src/output/fluid_sample.c \
              src/output/point_data.c \
              $(patsubst %,src/app/%.c,api call session due)
