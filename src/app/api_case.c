@@ -34,82 +34,6 @@ enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
     return call_end(&c, e);
 }
 
-/* What is done with a session; `path`: of the file that sphfsi_effective writes. */
-typedef enum err session_action(struct session *x, struct sphfsi_options *o, const char *path,
-                                struct diag *d);
-
-static enum sphfsi_status act(const char *name, const struct sphfsi_options *options,
-                              session_action *action, const char *path)
-{
-    struct call c;
-    enum err e = call_begin(&c, name, options);
-    struct session *const x = e ? NULL : calloc(1, sizeof *x);
-    if (!e && !x)
-        e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory for %zu bytes", name, sizeof *x);
-    if (x) e = action(x, &c.options, path, &c.diag);
-    free(x);
-    return call_end(&c, e);
-}
-
-static enum err explain(struct session *x, struct sphfsi_options *o, const char *path,
-                        struct diag *d)
-{
-    (void)path;
-    TRY(session_open(x, o, d));
-    const enum err e = explain_text(x, o, d);
-    session_close(x);
-    return e;
-}
-
-enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
-{
-    return act("explain", options, explain, NULL);
-}
-
-static enum err explain_as_json(struct session *x, struct sphfsi_options *o, const char *path,
-                                struct diag *d)
-{
-    (void)path;
-    struct heard h;
-    heard_begin(&h, o);
-    enum err e = session_open(x, o, d);
-    if (!e) {
-        e = explain_json(x, &h, o, d);
-        session_close(x);
-    }
-    free(h.text);
-    return e;
-}
-
-enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
-{
-    return act("explain", options, explain_as_json, NULL);
-}
-
-static enum err effective(struct session *x, struct sphfsi_options *o, const char *path,
-                          struct diag *d)
-{
-    TRY(session_read(x, o, d));
-    const enum err e = scene_write(&x->scene, path, d);
-    scene_free(&x->scene);
-    return e;
-}
-
-enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
-{
-    if (!path) return call_without("effective", "path");
-    return act("case", options, effective, path);
-}
-
-enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
-{
-    struct call c;
-    if (!file) return call_without("inspect", "file");
-    enum err e = call_begin(&c, "inspect", options);
-    if (!e) e = inspect_file(file, &c.options, &c.diag);
-    return call_end(&c, e);
-}
-
 static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
 {
     const char *name = o->case_path ? o->case_path : "case";
@@ -122,36 +46,88 @@ static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
         snprintf(path, PATH_BYTES, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
 }
 
-static enum err preview(struct session *x, struct sphfsi_options *o, const char *path,
-                        struct diag *d)
+/* What is done with a scene that was read, or with a session. */
+enum action { EFFECTIVE, PREVIEW, CITE, EXPLAIN, EXPLAIN_JSON };
+
+static enum err show_scene(enum action action, const struct scene *scene,
+                           const struct sphfsi_options *o, const char *path, struct diag *d)
 {
-    (void)path;
-    char to[PATH_BYTES];
-    TRY(session_read(x, o, d));
-    preview_path(o, to);
-    const enum err e = preview_draw(&x->scene, to, d);
-    if (!e) session_say(o, "%s: picture of the case at the start; open it in a browser", to);
-    scene_free(&x->scene);
+    char picture[PATH_BYTES];
+    if (action == EFFECTIVE) return scene_write(scene, path, d);
+    if (action == CITE) {
+        manual_cite(scene, effects_of_scene(scene), o);
+        return ERR_OK;
+    }
+    preview_path(o, picture);
+    TRY(preview_draw(scene, picture, d));
+    session_say(o, "%s: picture of the case at the start; open it in a browser", picture);
+    return ERR_OK;
+}
+
+static enum err show(enum action action, struct session *x, struct sphfsi_options *o,
+                     const char *path, struct diag *d)
+{
+    struct heard h = {.text = NULL};
+    if (action == EXPLAIN_JSON) heard_begin(&h, o);
+    enum err e = action < EXPLAIN ? session_read(x, o, d) : session_open(x, o, d);
+    if (!e && action < EXPLAIN) {
+        e = show_scene(action, &x->scene, o, path, d);
+        scene_free(&x->scene);
+    } else if (!e) {
+        e = action == EXPLAIN ? explain_text(x, o, d) : explain_json(x, &h, o, d);
+        session_close(x);
+    }
+    free(h.text);
     return e;
+}
+
+/* `path`: of the file that sphfsi_effective writes. */
+static enum sphfsi_status act(const char *name, const struct sphfsi_options *options,
+                              enum action action, const char *path)
+{
+    struct call c;
+    enum err e = call_begin(&c, name, options);
+    struct session *const x = e ? NULL : calloc(1, sizeof *x);
+    if (!e && !x)
+        e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory for %zu bytes", name, sizeof *x);
+    if (x) e = show(action, x, &c.options, path, &c.diag);
+    free(x);
+    return call_end(&c, e);
+}
+
+enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
+{
+    return act("explain", options, EXPLAIN, NULL);
+}
+
+enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
+{
+    return act("explain", options, EXPLAIN_JSON, NULL);
+}
+
+enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
+{
+    if (!path) return call_without("effective", "path");
+    return act("case", options, EFFECTIVE, path);
 }
 
 enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
 {
-    return act("preview", options, preview, NULL);
-}
-
-static enum err cite(struct session *x, struct sphfsi_options *o, const char *path, struct diag *d)
-{
-    (void)path;
-    TRY(session_read(x, o, d));
-    manual_cite(&x->scene, effects_of_scene(&x->scene), o);
-    scene_free(&x->scene);
-    return ERR_OK;
+    return act("preview", options, PREVIEW, NULL);
 }
 
 enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
 {
-    return act("cite", options, cite, NULL);
+    return act("cite", options, CITE, NULL);
+}
+
+enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
+{
+    struct call c;
+    if (!file) return call_without("inspect", "file");
+    enum err e = call_begin(&c, "inspect", options);
+    if (!e) e = inspect_file(file, &c.options, &c.diag);
+    return call_end(&c, e);
 }
 
 enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)

@@ -106,24 +106,6 @@ static void say_effects(const struct simulation *sim, const struct sphfsi_option
                         effect_table[k].meaning);
 }
 
-/* Bytes of each group of fields that is in use. */
-static void say_groups(const struct simulation *sim, const struct sphfsi_options *o)
-{
-    for (int g = 0; g < GROUP_COUNT; g++) {
-        size_t bytes[KIND_COUNT] = {0}, all = 0;
-        for (int k = 0; k < KIND_COUNT; k++) {
-            const struct particles *particles = &sim->kind[k];
-            for (int f = 0; f < field_count; f++)
-                if (field_table[f].group == 1u << g && field_array(particles, &field_table[f]))
-                    bytes[k] += field_table[f].size * (size_t)particles->capacity;
-            all += bytes[k];
-        }
-        if (all == 0) continue;
-        session_say(o, "  %-12s %10zu bytes: fluid %zu, walls %zu, solids %zu", group_names[g], all,
-                    bytes[KIND_FLUID], bytes[KIND_WALL], bytes[KIND_SOLID]);
-    }
-}
-
 static void say_fields(const struct simulation *sim, const struct sphfsi_options *o)
 {
     session_say(o, "fields");
@@ -139,7 +121,6 @@ static void say_fields(const struct simulation *sim, const struct sphfsi_options
         session_say(o, "  %-6s %.3g MB, %zu bytes per particle:%s", kind_names[k],
                     1e-6 * (double)bytes, bytes / (size_t)particles->capacity, names);
     }
-    say_groups(sim, o);
     session_say(
         o, "  total %.3g MB (fields, cells, packed copies, stencils), and %.3g MB for the case",
         1e-6 * (double)sim->arena.bytes, 1e-6 * (double)sim->scene->arena.bytes);

@@ -33,9 +33,28 @@ static const char *const section_meanings[][2] = {
     {"reference", "A curve that a probe is compared with, in the summary and in plots."},
 };
 
+/* A paragraph, with an empty line before it. */
+static void say_paragraph(const struct sphfsi_options *o, const char *text)
+{
+    session_say(o, "%s", "");
+    session_say(o, "%s", text);
+}
+
 static bool pure(const struct param *param)
 {
     return !param->unit || strcmp(param->unit, "1") == 0;
+}
+
+/* A number or the name of a choice. */
+static void value_of(const struct param *param, double value, char *text, size_t size)
+{
+    char name[SCENE_NAME];
+    if (param->type == PARAM_CHOICE) {
+        param_choice_name(param, (int)value, name);
+        snprintf(text, size, "%s", name);
+    } else {
+        snprintf(text, size, "%g", value);
+    }
 }
 
 /* The default as in a case file; "" if there is none. */
@@ -49,13 +68,8 @@ static void default_of(const struct param *param, char *text, size_t size)
         if (!isnan(value))
             snprintf(text, size, "%g%s%s", value, value == 0 ? "" : space, value == 0 ? "" : unit);
         break;
-    case PARAM_INTEGER: snprintf(text, size, "%d", (int)value); break;
-    case PARAM_CHOICE: {
-        char name[SCENE_NAME];
-        param_choice_name(param, (int)value, name);
-        snprintf(text, size, "%s", name);
-        break;
-    }
+    case PARAM_INTEGER:
+    case PARAM_CHOICE: value_of(param, value, text, size); break;
     case PARAM_VECTOR:
         snprintf(text, size, "%g, %g", param->vector_default[0], param->vector_default[1]);
         break;
@@ -137,18 +151,6 @@ static void in_cell(const char *text, char *cell, size_t size)
     cell[at] = '\0';
 }
 
-/* A number or the name of a choice. */
-static void value_of(const struct param *param, double value, char *text, size_t size)
-{
-    char name[SCENE_NAME];
-    if (param->type == PARAM_CHOICE) {
-        param_choice_name(param, (int)value, name);
-        snprintf(text, size, "%s", name);
-    } else {
-        snprintf(text, size, "%g", value);
-    }
-}
-
 /* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value.
  */
 static void default_cell(const struct param *param, char *cell, size_t size)
@@ -200,18 +202,13 @@ static void say_key(const struct param *param, const struct sphfsi_options *o)
 static void say_section(enum section_id id, const struct sphfsi_options *o)
 {
     const struct section_info *const info = &section_table[id];
-    session_say(o, "%s", "");
-    if (id == SECTION_top)
-        session_say(o, "### Top of the file");
-    else
-        session_say(o, "### [%s%s]", info->word, info->named ? " NAME" : "");
-    session_say(o, "%s", "");
+    char title[SCENE_NAME];
+    snprintf(title, sizeof title, "### [%s%s]", info->word, info->named ? " NAME" : "");
+    say_paragraph(o, id == SECTION_top ? "### Top of the file" : title);
     for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
-        if (strcmp(section_meanings[k][0], info->word) == 0) {
-            session_say(o, "%s", section_meanings[k][1]);
-            session_say(o, "%s", "");
-        }
-    session_say(o, "| key | type | unit | default | range | meaning | example |");
+        if (strcmp(section_meanings[k][0], info->word) == 0)
+            say_paragraph(o, section_meanings[k][1]);
+    say_paragraph(o, "| key | type | unit | default | range | meaning | example |");
     session_say(o, "|---|---|---|---|---|---|---|");
     for (int k = 0; k < PARAM_COUNT; k++)
         if (param_table[k].section == id) say_key(&param_table[k], o);
@@ -228,14 +225,11 @@ static void say_quantities(const struct sphfsi_options *o)
         [TARGET_FLUID] = "",
         [TARGET_FLUID_LINE] = "`point`, `to`",
     };
-    session_say(o, "%s", "");
-    session_say(o, "### Quantities of a probe");
-    session_say(o, "%s", "");
-    session_say(
+    say_paragraph(o, "### Quantities of a probe");
+    say_paragraph(
         o, "A column is called PROBE_COLUMN, such as `tip_dx_m`. Forces, moments, energies and "
            "fluxes are per metre of depth.");
-    session_say(o, "%s", "");
-    session_say(o, "| quantity | keys | columns | meaning |");
+    say_paragraph(o, "| quantity | keys | columns | meaning |");
     session_say(o, "|---|---|---|---|");
     for (int k = 0; k < PROBE_QUANTITIES; k++) {
         const struct quantity_info *const q = &quantity_table[k];
@@ -246,13 +240,11 @@ static void say_quantities(const struct sphfsi_options *o)
 
 static void list_effects(const struct sphfsi_options *o)
 {
-    session_say(o, "%s", "");
-    session_say(o, "### Effects");
-    session_say(o, "%s", "");
-    session_say(o, "An effect is a part of the model that a case enables. Only enabled effects are "
-                   "computed; `--explain` lists them.");
-    session_say(o, "%s", "");
-    session_say(o, "| effect | enabled by | meaning | source |");
+    say_paragraph(o, "### Effects");
+    say_paragraph(o,
+                  "An effect is a part of the model that a case enables. Only enabled effects are "
+                  "computed; `--explain` lists them.");
+    say_paragraph(o, "| effect | enabled by | meaning | source |");
     session_say(o, "|---|---|---|---|");
     for (int k = 0; k < EFFECT_COUNT; k++) {
         char meaning[512];

@@ -70,8 +70,8 @@ struct reader {
     struct constant *constants;    /* and the numbers at the top, which can be used as names */
     int depth;                     /* of constants that depend on constants */
     bool cause_named;              /* the message names the invalid constant */
-    bool in_lost_section;          /* after a section header that is invalid */
-    bool lost;                     /* invalid lines, sections or keys are skipped */
+    bool in_unknown_section;       /* after a section header that is invalid */
+    bool incomplete;               /* invalid lines, sections or keys are skipped */
     int n_problems;                /* those beyond the array are only counted */
     struct problem problems[CASE_MAX_PROBLEMS];
 };

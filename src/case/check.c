@@ -134,7 +134,7 @@ static enum err check_solid(struct reader *r, const void *section)
                            scene->n_fluid ? "" : "; without fluid it may be finer");
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(scene, a->joined);
-    if (other < 0) return ERR_OK; /* told by case_check_names */
+    if (other < 0) return ERR_OK; /* case_check_names reports it */
     const struct scene_solid *const b = &scene->solid[other];
     if (a == b)
         return bad_section(r, a, NULL,

@@ -21,9 +21,9 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
     }
     if (table->n == 0) return;
     const int k = table_row(table, t);
-    const double share = (t - table->t[k]) / (table->t[k + 1] - table->t[k]);
+    const double fraction = (t - table->t[k]) / (table->t[k + 1] - table->t[k]);
     const double u =
-        min2(max2(share, 0), 1); /* before its first and after its last row the table is constant */
+        min2(max2(fraction, 0), 1); /* constant before its first and after its last row */
     g[0] += table->x[k] + u * (table->x[k + 1] - table->x[k]);
     g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
 }

@@ -152,7 +152,7 @@ static enum err read_entry(struct reader *r, int line, char *text)
     const char *why;
     const char *const value = cut_value(equals + 1, &why);
     if (why) return bad_line(r, line, "`%s` %s", key, why);
-    if (!r->in_lost_section)
+    if (!r->in_unknown_section)
         r->entries[r->n_entries++] =
             (struct entry){.section = r->n_sections - 1, .line = line, .key = key, .value = value};
     return ERR_OK;
@@ -167,7 +167,7 @@ static enum err read_line(struct reader *r, int line, char *text)
     if (!*text || *text == '#') return ERR_OK;
     if (*text != '[') return read_entry(r, line, text);
     const enum err err = read_header(r, line, text);
-    r->in_lost_section = err != ERR_OK;
+    r->in_unknown_section = err != ERR_OK;
     return err;
 }
 
@@ -191,7 +191,7 @@ enum err case_split(struct reader *r, const char *text)
         next = strchr(copy, '\n');
         if (next) *next++ = '\0';
         const enum err err = read_line(r, line, copy);
-        if (err) r->lost = true;
+        if (err) r->incomplete = true;
         TRY(case_go_on(r, err));
     }
     return ERR_OK;

@@ -106,7 +106,7 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
         r->cause_named = true;
         return false;
     }
-    r->cause_named |= r->lost; /* it may be defined in an invalid line */
+    r->cause_named |= r->incomplete; /* it may be defined in an invalid line */
     struct nearest near = {0};
     char unit[EXPR_NAME];
     for (int k = 0; k < r->n_constants; k++) nearest_offer(&near, name, r->constants[k].entry->key);

@@ -102,9 +102,9 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
     return ERR_OK;
 }
 
-/* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs.
- * `largest`: of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0 c0^2)
- * in Eq. 2. */
+/* Where the guards would warn of the flow itself (time/guards.c), the user is warned before the
+ * run. `largest`: of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0
+ * c0^2) in Eq. 2. */
 static void warn_of_sound(struct reader *r, const struct scene_open *o, double largest)
 {
     const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;

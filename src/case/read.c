@@ -96,7 +96,7 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
         return ERR_OK;
     }
-    if (r->lost) return ERR_INPUT; /* it may be defined in an invalid line */
+    if (r->incomplete) return ERR_INPUT; /* it may be defined in an invalid line */
     return bad_value(r, e, "there is no earlier [%s] of that name%s",
                      section_table[like->section].word, nearest_hint(&near));
 }
@@ -127,7 +127,7 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
 {
     char hint[PARAM_HINT], title[TITLE_TEXT];
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
-    r->lost = true;
+    r->incomplete = true;
     return bad_entry(r, e, "unknown key `%s` %s%s", e->key,
                      id == SECTION_top ? "at the top of the file" : title,
                      param_hint((enum section_id)id, e->key, hint));
@@ -213,7 +213,8 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
                                "case file", r->diag);
     if (!scene->given) return ERR_MEMORY;
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
-    if (r->lost) return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
+    if (r->incomplete)
+        return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
     TRY(check_needed(r));
     const bool valid = r->n_problems == 0;
     case_apply_defaults(scene);

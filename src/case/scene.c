@@ -161,10 +161,10 @@ void scene_location(const struct scene *scene, int line, char place[LOCATION_TEX
         snprintf(place, LOCATION_TEXT, "--set");
         return;
     }
-    const size_t length = strlen(scene->path), most = 270;
-    const bool cut = length > most;
+    const size_t length = strlen(scene->path), max_shown = 270;
+    const bool cut = length > max_shown;
     const int n = snprintf(place, LOCATION_TEXT, "%s%.270s", cut ? "..." : "",
-                           scene->path + (cut ? length - most : 0));
+                           scene->path + (cut ? length - max_shown : 0));
     if (line != LINE_NONE) snprintf(place + n, LOCATION_TEXT - (size_t)n, ":%d", line);
 }
 

@@ -158,14 +158,14 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
 {
     static const int needed[] = {
         [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
-    const int least = needed[shape->kind];
+    const int min_points = needed[shape->kind];
     const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
     if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, shape));
     if (arc) return read_arc(r, e, text, shape);
-    shape->n = listed ? slice_count(text, ';') : least;
-    if (shape->n < least)
+    shape->n = listed ? slice_count(text, ';') : min_points;
+    if (shape->n < min_points)
         return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
-                         least, shape->n == 1 ? "is" : "are", shape->n);
+                         min_points, shape->n == 1 ? "is" : "are", shape->n);
     if (shape->n > CASE_MAX_POINTS)
         return bad_value(r, e, "more than %d points are given; use fewer points or several shapes",
                          CASE_MAX_POINTS);

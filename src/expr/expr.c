@@ -33,8 +33,8 @@ struct compiler {
     char *why;
 };
 
-static bool say(struct compiler *c, const char *format, ...) SPHFSI_PRINTF(2, 3);
-static bool say(struct compiler *c, const char *format, ...)
+static bool fail(struct compiler *c, const char *format, ...) SPHFSI_PRINTF(2, 3);
+static bool fail(struct compiler *c, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -70,20 +70,21 @@ static bool operate(struct compiler *c, enum op_code code, double value)
     for (int k = 0; k < used; k++) number &= first[k].code == OP_NUMBER;
     c->stack += 1 - used;
     if (c->stack > MAX_STACK)
-        return say(
+        return fail(
             c, "the expression needs more than %d values at once; use [constants] for parts of it",
             MAX_STACK);
     if (!number && c->n == MAX_OPS)
-        return say(c, "the expression has more than %d operations; use [constants] for parts of it",
-                   MAX_OPS);
+        return fail(c,
+                    "the expression has more than %d operations; use [constants] for parts of it",
+                    MAX_OPS);
     if (!number) {
         c->op[c->n++] = (struct op){code, value};
         return true;
     }
-    if (code == OP_DIV && last->value == 0) return say(c, "division by zero");
+    if (code == OP_DIV && last->value == 0) return fail(c, "division by zero");
     first->value = expr_operate(code, first->value, last->value);
     c->n -= used - 1;
-    return isfinite(first->value) || say(c, "the result is not a finite number");
+    return isfinite(first->value) || fail(c, "the result is not a finite number");
 }
 
 /* --- dimensions --- */
@@ -102,7 +103,7 @@ static bool join_dims(struct compiler *c, struct dim *a, const struct dim *b)
     char left[DIM_TEXT], right[DIM_TEXT];
     dim_text(a, left);
     dim_text(b, right);
-    return say(c, "%s and %s cannot be added or compared", left, right);
+    return fail(c, "%s and %s cannot be added or compared", left, right);
 }
 
 /* a times b^sign. */
@@ -117,7 +118,7 @@ static bool multiply_dims(struct compiler *c, struct dim *a, const struct dim *b
         a->power[k] += sign * b->power[k];
         large |= fabs(a->power[k]) > 99;
     }
-    if (large) return say(c, "the unit of the result has a power above 99; check the exponents");
+    if (large) return fail(c, "the unit of the result has a power above 99; check the exponents");
     if (plain && dim_same(a, &pure)) *a = (struct dim){DIM_PLAIN, {0, 0, 0}};
     return true;
 }
@@ -132,7 +133,7 @@ static bool pure_argument(struct compiler *c, const char *what, const struct dim
     char text[DIM_TEXT];
     if (d->kind != DIM_KNOWN || dim_same(d, &pure)) return true;
     dim_text(d, text);
-    return say(c, "%s of %s; it needs a number without a unit", what, text);
+    return fail(c, "%s of %s; it needs a number without a unit", what, text);
 }
 
 /* Of base^exponent; the exponent, if it is a number, is the last operation. */
@@ -142,10 +143,10 @@ static bool power_dims(struct compiler *c, struct dim *base, const struct dim *e
     if (!pure_argument(c, "the power", exponent)) return false;
     if (base->kind == DIM_KNOWN && !dim_same(base, &pure)) {
         if (last->code != OP_NUMBER)
-            return say(c, "a quantity with a unit has an exponent that depends on x, y or t; the "
-                          "exponent must be a number");
+            return fail(c, "a quantity with a unit has an exponent that depends on x, y or t; the "
+                           "exponent must be a number");
         if (fabs(last->value) > 9)
-            return say(c, "a quantity with a unit has an exponent outside the range -9 to 9");
+            return fail(c, "a quantity with a unit has an exponent outside the range -9 to 9");
         scale_dim(base, last->value);
     }
     if (exponent->kind == DIM_ANY) base->kind = DIM_ANY;
@@ -158,12 +159,13 @@ static bool parse_number(struct compiler *c, struct dim *dim)
 {
     char digits[64], *end;
     const size_t n = number_length(c->rest);
-    if (n >= sizeof digits) return say(c, "the number has more than 60 characters; shorten it");
+    if (n >= sizeof digits) return fail(c, "the number has more than 60 characters; shorten it");
     memcpy(digits, c->rest.at, n);
     digits[n] = '\0';
     struct quantity q = {strtod(digits, &end), {DIM_PLAIN, {0, 0, 0}}};
-    if (*end || end == digits) return say(c, "`%s` is not a number", digits);
-    if (!isfinite(q.value)) return say(c, "%s is too large; the largest number is 1.8e308", digits);
+    if (*end || end == digits) return fail(c, "`%s` is not a number", digits);
+    if (!isfinite(q.value))
+        return fail(c, "%s is too large; the largest number is 1.8e308", digits);
     c->rest = slice_after(c->rest, n);
     const int next = peek(c);
     c->why[0] = '\0';
@@ -173,15 +175,15 @@ static bool parse_number(struct compiler *c, struct dim *dim)
         const int shown = (int)(word.length < 40 ? word.length : 40);
         if (c->why[0]) return false;
         if (near)
-            return say(c, "`%.*s` after %s is not a unit; did you mean `%s`?", shown, word.at,
-                       digits, near);
-        return say(c,
-                   "`%.*s` after %s is not a unit (units: m km cm mm um, s min ms us, kg g, N, "
-                   "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
-                   shown, word.at, digits);
+            return fail(c, "`%.*s` after %s is not a unit; did you mean `%s`?", shown, word.at,
+                        digits, near);
+        return fail(c,
+                    "`%.*s` after %s is not a unit (units: m km cm mm um, s min ms us, kg g, N, "
+                    "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
+                    shown, word.at, digits);
     }
     if (!isfinite(q.value))
-        return say(c, "%s with its unit is too large; the largest number is 1.8e308", digits);
+        return fail(c, "%s with its unit is too large; the largest number is 1.8e308", digits);
     *dim = q.dim;
     return operate(c, OP_NUMBER, q.value);
 }
@@ -191,9 +193,9 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
     const bool two = operands(f->code) == 2;
     struct dim other = {0};
     if (!take(c, '(') || !parse_sum(c, dim)) return false;
-    if (two && !take(c, ',')) return say(c, "%s needs two values: %s(a, b)", f->name, f->name);
+    if (two && !take(c, ',')) return fail(c, "%s needs two values: %s(a, b)", f->name, f->name);
     if (two && (!parse_sum(c, &other) || !join_dims(c, dim, &other))) return false;
-    if (!take(c, ')')) return say(c, "`(` after %s is not closed", f->name);
+    if (!take(c, ')')) return fail(c, "`(` after %s is not closed", f->name);
     if (f->code == OP_SQRT) {
         scale_dim(dim, 0.5);
     } else if (!two && f->code != OP_ABS) {
@@ -214,14 +216,14 @@ static bool parse_constant(struct compiler *c, const char *name, struct dim *dim
         return operate(c, y ? OP_Y : x || scope == EXPR_IN_TIME ? OP_X : OP_T, 0);
     }
     if (x || y)
-        return say(c, "`%s` is known only in keys that take an expression in x and y", name);
+        return fail(c, "`%s` is known only in keys that take an expression in x and y", name);
     struct quantity q = {0, {DIM_PLAIN, {0, 0, 0}}};
     c->why[0] = '\0';
     if (c->names->find(c->names->context, name, &q, c->why)) {
         *dim = q.dim;
         return operate(c, OP_NUMBER, q.value);
     }
-    return c->why[0] ? false : say(c, "unknown name `%s`", name);
+    return c->why[0] ? false : fail(c, "unknown name `%s`", name);
 }
 
 static bool parse_name(struct compiler *c, struct dim *dim)
@@ -230,7 +232,7 @@ static bool parse_name(struct compiler *c, struct dim *dim)
     struct quantity unit = {1, {DIM_PLAIN, {0, 0, 0}}};
     char name[EXPR_NAME] = "";
     if (word.length >= EXPR_NAME)
-        return say(c, "a name has more than %d characters; shorten it", EXPR_NAME - 1);
+        return fail(c, "a name has more than %d characters; shorten it", EXPR_NAME - 1);
     memcpy(name, word.at, word.length);
     const struct slice after = slice_trimmed(slice_after(c->rest, word.length));
     const bool call = after.length && *after.at == '(';
@@ -242,7 +244,7 @@ static bool parse_name(struct compiler *c, struct dim *dim)
     c->rest = after;
     for (size_t k = 0; call && k < COUNT_OF(functions); k++)
         if (strcmp(functions[k].name, name) == 0) return parse_call(c, &functions[k], dim);
-    if (call) return say(c, "unknown function `%s`", name);
+    if (call) return fail(c, "unknown function `%s`", name);
     return parse_constant(c, name, dim);
 }
 
@@ -254,25 +256,25 @@ static bool unexpected(struct compiler *c, int ch, const char *expected)
     char rest[5] = "";
     memcpy(rest, at, c->rest.length < 4 ? c->rest.length : 4);
     const char *const strange = strange_character(rest);
-    if (ch >= 0x80 && strange) return say(c, "%s is expected, not %s", expected, strange);
+    if (ch >= 0x80 && strange) return fail(c, "%s is expected, not %s", expected, strange);
     if (ch == ',' && isdigit(before) && isdigit((unsigned char)rest[1])) /* as in 0,005 */
-        return say(c, "`,` where %s is expected; a decimal number is written with a point: 0.005",
-                   expected);
+        return fail(c, "`,` where %s is expected; a decimal number is written with a point: 0.005",
+                    expected);
     if (ch == '/' && before == '/')
-        return say(c, "`//` where %s is expected; a comment begins with #", expected);
-    if (isprint(ch)) return say(c, "`%c` where %s is expected", ch, expected);
-    return say(c, "a character outside ASCII (byte %d) where %s is expected", ch, expected);
+        return fail(c, "`//` where %s is expected; a comment begins with #", expected);
+    if (isprint(ch)) return fail(c, "`%c` where %s is expected", ch, expected);
+    return fail(c, "a character outside ASCII (byte %d) where %s is expected", ch, expected);
 }
 
 static bool parse_primary(struct compiler *c, struct dim *dim)
 {
     *dim = (struct dim){DIM_PLAIN, {0, 0, 0}};
     const int ch = peek(c);
-    if (ch == 0) return say(c, "a value is missing");
+    if (ch == 0) return fail(c, "a value is missing");
     if (isdigit(ch) || ch == '.') return parse_number(c, dim);
     if (isalpha(ch) || ch == '_') return parse_name(c, dim);
     if (!take(c, '(')) return unexpected(c, ch, "a value");
-    return parse_sum(c, dim) && (take(c, ')') || say(c, "`(` is not closed"));
+    return parse_sum(c, dim) && (take(c, ')') || fail(c, "`(` is not closed"));
 }
 
 static bool parse_power(struct compiler *c, struct dim *dim)
@@ -286,7 +288,7 @@ static bool parse_power(struct compiler *c, struct dim *dim)
 static bool parse_factor(struct compiler *c, struct dim *dim)
 {
     if (c->nesting == MAX_NESTING)
-        return say(
+        return fail(
             c, "parentheses or signs are nested more than %d deep; use [constants] for parts of it",
             MAX_NESTING);
     c->nesting++;
@@ -328,7 +330,7 @@ static bool parse_all(struct compiler *c, struct dim *dim)
     if (!parse_sum(c, dim)) return false;
     const int ch = peek(c);
     if (c->rest.length == 0) return true;
-    if (ch == ')') return say(c, "`)` without `(`");
+    if (ch == ')') return fail(c, "`)` without `(`");
     return unexpected(c, ch, "an operator");
 }
 

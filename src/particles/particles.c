@@ -5,12 +5,6 @@
 
 const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};
 
-const char *const group_names[GROUP_COUNT] = {
-#define GROUP(name, meaning) #name,
-#include "particles/groups.def"
-#undef GROUP
-};
-
 const struct field_info field_table[] = {
 #define FIELD(type, name, group, keep, unit, meaning)                                      \
     {#name,     #type,      unit, meaning, sizeof(type), offsetof(struct particles, name), \

@@ -18,7 +18,6 @@ enum group {
 #include "particles/groups.def"
 #undef GROUP
 };
-extern const char *const group_names[GROUP_COUNT];
 
 enum keep { KEEP_STATE, KEEP_DERIVED };
 
