@@ -199,11 +199,34 @@ static enum err check_top(struct reader *r, const void *section)
     return ERR_OK;
 }
 
+/* Implicit steps need an energy of the hourglass force, forces in double and, beside fluid, an
+ * exchange that allows the solid steps of its own. */
+static enum err check_solid_steps(struct reader *r)
+{
+    const struct scene *const scene = r->scene;
+    static const char with[] = "numerics.solid_steps = implicit";
+    if (scene->numerics.solid_steps != SOLID_STEPS_IMPLICIT) return ERR_OK;
+    if (scene->numerics.solid_precision == SOLID_PRECISION_SINGLE)
+        return bad_line(r, scene_line(scene, SECTION_numerics, 0, "solid_precision"),
+                        "%s computes in double precision, but solid_precision = single; use auto",
+                        with);
+    if (scene->n_fluid > 0 && scene->numerics.multirate == MULTIRATE_OFF)
+        return bad_line(r, scene_line(scene, SECTION_numerics, 0, "multirate"),
+                        "%s gives the solid steps of its own, but multirate = off; use auto", with);
+    for (int k = 0; k < scene->n_solid; k++)
+        if (scene->solid[k].hourglass > 0 && scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
+            return bad_line(r, scene_line(scene, SECTION_solid, k, "hourglass_form"),
+                            "[solid %s] hourglass_form = printed has no energy, which %s needs; "
+                            "use variational",
+                            scene->solid[k].common.name, with);
+    return ERR_OK;
+}
+
 /* 0 stands for h_over_dp, which has the same bounds. */
 static enum err check_numerics(struct reader *r, const void *section)
 {
     const double value = ((const struct scene_numerics *)section)->solid_h_over_dp;
-    if (value == 0 || value >= 1.1) return ERR_OK;
+    if (value == 0 || value >= 1.1) return check_solid_steps(r);
     return bad_line(r, scene_line(r->scene, SECTION_numerics, 0, "solid_h_over_dp"),
                     "solid_h_over_dp = %g is too small, so particles would have too few "
                     "neighbours; use 1.1 to 2, or 0 for the value of h_over_dp",

@@ -15,7 +15,8 @@ static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
     const double fixed = scene->numerics.fixed_step, limit = sim->integrator->largest_cfl;
-    const bool shared = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
+    const bool shared =
+        sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE) && !sim->solid.implicit;
     char given[64];
     if (fixed > 0)
         snprintf(given, sizeof given, "numerics.fixed_step = %g s (C_CFL = %.3g)", fixed,
@@ -85,7 +86,9 @@ static void warn_of_intervals(const struct simulation *sim, struct diag *d)
 static void warn_of_damping(const struct simulation *sim, struct diag *d)
 {
     const double free = solid_step_of(square(sim->solid.omega_max), 0);
-    if (sim->kind[KIND_SOLID].n == 0 || !(sim->solid.stable_step < 0.5 * free)) return;
+    if (sim->kind[KIND_SOLID].n == 0 || sim->solid.implicit ||
+        !(sim->solid.stable_step < 0.5 * free))
+        return;
     for (int k = 0; k < sim->scene->n_solid; k++) {
         const struct scene_solid *const body = &sim->scene->solid[k];
         if (!(body->damping_time > 0)) continue;

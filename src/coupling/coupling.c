@@ -80,7 +80,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     if (impedance) impulse_return(coupling, kick);
     if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
     if (coupling->substeps && particles->mean_fx)
-        extrapolate_force(coupling, 0.5 * (dt - dt / n), last);
+        extrapolate_force(coupling, 0.5 * (coupling->centred ? dt : dt - dt / n), last);
     /* Over its sub-steps the structure gets exactly the impulse given to the fluid. */
     if (kick != dt) scale_force(particles, kick / dt);
         /* The state at the start gives the mean velocity and acceleration of the step. */
@@ -91,7 +91,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
         particles->vx0[i] = particles->vx[i];
         particles->vy0[i] = particles->vy[i];
     }
-    if (impedance) impulse_begin(coupling, dt / n);
+    if (impedance) impulse_begin(coupling, solid_steps_implicitly(coupling->solid) ? 0 : dt / n);
     solid_advance(coupling->solid, particles, dt / n, n, coupling->centred);
     if (impedance) impulse_end(coupling);
     const double moved = solid_set_positions(particles);

@@ -8,15 +8,16 @@
 
 /* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
  * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
- * velocity that the fluid uses. Zero for dry and clamped particles. */
+ * velocity that the fluid uses. Zero for dry and clamped particles. dt = 0: the root of the
+ * rate at which it is removed. */
 static void find_normal(const struct coupling *coupling, struct particles *particles, int64_t i,
                         double dt)
 {
     const struct solid_body *const body = &coupling->solid->body[particles->body[i]];
     const double wet =
         sqrt(square(particles->wet_x[i]) + square(particles->wet_y[i])) * particles->free[i];
-    const double k = dt * coupling->impedance * wet / body->mass;
-    const double root = wet > 0 ? sqrt(k / (1 + k)) / wet : 0;
+    const double k = (dt > 0 ? dt : 1) * coupling->impedance * wet / body->mass;
+    const double root = wet > 0 ? sqrt(dt > 0 ? k / (1 + k) : k) / wet : 0;
     particles->face_x[i] = root * particles->wet_x[i];
     particles->face_y[i] = root * particles->wet_y[i];
     particles->face_v[i] =

@@ -6,8 +6,8 @@
 
 #include "coupling/coupling.h"
 
-/* Before sub-steps of dt: the wetted normals. Afterwards: the impulse of the sub-steps, and
- * the pressure that gives it to the fluid. */
+/* Before sub-steps of dt, 0: an implicit step of any length: the wetted normals. Afterwards: the
+ * impulse of the sub-steps, and the pressure that gives it to the fluid. */
 void impulse_begin(struct coupling *coupling, double dt);
 void impulse_end(struct coupling *coupling);
 

@@ -6,6 +6,7 @@
 
 #include "solid/contact.h"
 #include "solid/contact_friction.h"
+#include "solid/implicit.h"
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "case/params.h"
@@ -87,7 +88,8 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
                                                 const struct particles *particles, struct diag *d)
 {
     const int choice = scene->numerics.solid_precision;
-    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE)
+    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE ||
+        scene->numerics.solid_steps == SOLID_STEPS_IMPLICIT)
         return &solid_sweeps_double;
     const char *const name = needs_double(solid, scene, particles);
     if (!name) return &solid_sweeps_mixed;
@@ -166,6 +168,7 @@ static void stress_sweeps(const struct chunk *own, bool displaced)
         sweep(own, solid->sweeps->pairs);
     }
     if (solid->kelvin_voigt) sweep(own, solid->sweeps->damping);
+    if (solid->within_step) sweep(own, solid->within_step);
 #pragma omp barrier
 }
 
@@ -308,6 +311,28 @@ void solid_stress(struct solid *solid, struct particles *particles)
     }
 }
 
+void solid_gradient(const struct solid *solid, struct particles *particles)
+{
+#pragma omp parallel num_threads(solid->threads)
+    {
+        const struct chunk own = chunk_of(solid, particles);
+        pack_all_motion(&own);
+        sweep(&own, solid->sweeps->stress);
+    }
+}
+
+void solid_forces_within(const struct solid *solid, struct particles *particles, double time)
+{
+#pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
+    {
+        const struct chunk own = chunk_of(solid, particles);
+        pack_all_motion(&own);
+        stress_sweeps(&own, true);
+        force_sweeps(&own);
+        outer_forces(solid, particles, time);
+    }
+}
+
 void solid_operator(struct solid *solid, struct particles *particles, bool displaced)
 {
 #pragma omp parallel num_threads(solid->threads)
@@ -387,6 +412,10 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
 
 void solid_advance(struct solid *solid, struct particles *particles, double dt, int n, bool centred)
 {
+    if (solid_steps_implicitly(solid)) {
+        for (int k = 0; k < n; k++, solid->time += dt) implicit_step(solid, particles, dt);
+        return;
+    }
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     substeps(solid, particles, dt, n, centred);
     solid->time += n * dt;

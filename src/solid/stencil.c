@@ -12,9 +12,6 @@
 /* Neighbours of one particle within 2h. */
 enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
 
-/* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
-#define NOBODY 1e6
-
 /* A slot under construction. */
 struct draft {
     double weight[SOLID_WEIGHTS][MAX_LANES];

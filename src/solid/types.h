@@ -53,6 +53,9 @@ enum solid_packed_field {
     SOLID_PACKED_FIELDS
 };
 
+/* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
+#define NOBODY 1e6
+
 /* One reference neighbour of each particle of a pack, a slot. For lane l it is the particle
  * `offset` + i + l; the weights are zero if that lane has no such neighbour. A slot has one number
  * per lane for each weight, one weight after the other. */
@@ -133,6 +136,8 @@ struct solid {
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
     solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
+    struct implicit *implicit;   /* NULL: explicit steps only */
+    solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };

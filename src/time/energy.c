@@ -6,6 +6,7 @@
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
+#include "solid/implicit.h"
 #include "time/evaluation.h"
 #include "time/repulsion.h"
 
@@ -121,6 +122,10 @@ struct ledger simulation_ledger(struct simulation *sim)
     row.time = state->time;
     row.dt = state->dt;
     row.det_low = det_low;
+    if (sim->solid.implicit) {
+        row.newton_steps = sim->solid.implicit->iterations;
+        row.newton_residual = sim->solid.implicit->residual;
+    }
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
                      open_energy(&sim->open) - state->lost_energy - without_potential(&row) -
                      row.potential;

@@ -23,7 +23,9 @@
     LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                           \
     LEDGER(dens_extreme, "1", "current largest |rho/rho0 - 1| of the fluid")                      \
     LEDGER(det_low, "1", "current smallest det F")                                                \
-    LEDGER(dt, "s", "last time step")
+    LEDGER(dt, "s", "last time step")                                                             \
+    LEDGER(newton_steps, "1", "corrections of Newton's method in the last implicit step")         \
+    LEDGER(newton_residual, "1", "its residual, over the largest force of a particle")
 /* clang-format on */
 
 struct ledger {

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "solid/implicit.h"
 #include "time/penetration.h"
 #include "time/timestep.h"
 #include "time/energy.h"
@@ -196,6 +197,12 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
 static enum err check_solid(struct simulation *sim, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
+    if (sim->solid.implicit && sim->solid.implicit->failed)
+        return diag_fail(d, ERR_GUARD,
+                         "%s: Newton's method finds no solution for the implicit step of the "
+                         "solid of %.3g s or for parts of it (residual: %.2g of the largest "
+                         "force); a smaller fixed_step or solid_steps = explicit may help",
+                         time_text(sim).text, sim->state.dt, sim->solid.implicit->residual);
     const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
         return complain(sim, KIND_SOLID, fast,

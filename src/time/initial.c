@@ -6,6 +6,7 @@
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
+#include "solid/implicit.h"
 #include "time/advance.h"
 #include "time/evaluation.h"
 #include "time/sorting.h"
@@ -106,7 +107,8 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
 {
     if (!(sim->effects & FX_COUPLING)) return ERR_OK;
     const double ratio = timestep_fluid_limit(sim) / sim->dt_solid;
-    if (!(ratio <= SUBSTEPS_MOST))
+    const bool implicit = sim->effects & FX_IMPLICIT;
+    if (!implicit && !(ratio <= SUBSTEPS_MOST))
         return diag_fail(
             d, ERR_INPUT,
             "the solid's stable step of %.3g s needs %.3g sub-steps per fluid step, more than the "
@@ -114,7 +116,8 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
             sim->dt_solid, ratio, SUBSTEPS_MOST, remedy_of_substeps(sim));
     const int wish = sim->scene->numerics.multirate;
     const bool binds = sim->dt_solid < timestep_fluid_limit(sim);
-    if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) sim->effects |= FX_MULTIRATE;
+    if (implicit || wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds))
+        sim->effects |= FX_MULTIRATE;
     if (!(sim->effects & FX_MULTIRATE))
         sim->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
     sim->fluid.effects = sim->effects;
@@ -127,7 +130,9 @@ static void set_guards(struct simulation *sim)
     sim->guard = (struct guard){
         .dens_limit = 0.3,
         .speed_limit = sim->effects & FX_FLUID ? sim->scene->c0 : (double)INFINITY,
-        .step_limit = 1e-4 * (sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid),
+        .step_limit =
+            1e-4 * (sim->effects & FX_FLUID ? timestep_fluid_limit(sim)
+                                            : min2(sim->dt_solid, sim->solid.stable_step)),
     };
 }
 
@@ -165,6 +170,10 @@ enum err initial_state(struct simulation *sim, struct diag *d)
             TRY(loads_create(&sim->loads, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
             sim->solid.loads = &sim->loads;
         }
+        if (sim->effects & FX_IMPLICIT) {
+            TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
+            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
+        }
         sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
         sim->state.solid_stiffening = sim->state.solid_slowing = 1;
         timestep_set_solid(sim);
@@ -180,7 +189,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .solid = &sim->solid,
         .particles = &sim->kind[KIND_SOLID],
         .ahead = sim->integrator->ahead,
-        .centred = sim->integrator->centred,
+        .centred = sim->integrator->centred || sim->effects & FX_IMPLICIT,
         .exchange_time = &sim->state.exchange_time,
     };
     TRY(choose_rate(sim, d));

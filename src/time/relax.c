@@ -42,7 +42,7 @@ static void stop_solid(struct simulation *sim)
     particles_clear(particles->vy, particles->n);
     particles_clear(particles->wx, particles->n);
     particles_clear(particles->wy, particles->n);
-    if (sim->integrator->centred || particles->n == 0) return;
+    if (sim->coupling.centred || particles->n == 0) return;
     solid_stress(&sim->solid, particles);
     solid_forces(&sim->solid, particles);
     for (int64_t i = 0; i < particles->n; i++) {

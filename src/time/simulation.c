@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "solid/implicit.h"
 #include "time/advance.h"
 #include "time/guards.h"
 #include "time/initial.h"
@@ -171,6 +172,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         if (sim->effects & FX_COUPLING)
             coupling_set_rate(&sim->coupling, sim->effects, timestep_fluid_limit(sim));
         contact_forget(&sim->contact, &sim->kind[KIND_WALL]);
+        if (sim->effects & FX_IMPLICIT) implicit_resume(&sim->solid, &sim->kind[KIND_SOLID]);
         solid_stress(&sim->solid, &sim->kind[KIND_SOLID]); /* the guards read the last gradients */
     }
     update_extremes(sim);

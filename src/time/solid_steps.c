@@ -22,6 +22,10 @@ static enum bound lone_bounds(struct simulation *sim)
         return BOUND_fixed;
     }
     sim->dt_bound[BOUND_solid] = sim->dt_lone_solid;
+    if (sim->solid.implicit && sim->solid.contact) /* as beside fluid */
+        sim->dt_bound[BOUND_contact] = sim->contact.approach;
+    if (sim->solid.implicit)
+        return sim->dt_bound[BOUND_contact] < sim->dt_lone_solid ? BOUND_contact : BOUND_solid;
     if (!(sim->dt_solid < sim->dt_lone_solid)) return BOUND_solid;
     sim->dt_bound[BOUND_contact] = sim->dt_solid;
     return BOUND_contact;
@@ -30,12 +34,21 @@ static enum bound lone_bounds(struct simulation *sim)
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
     const struct integrator *const by = sim->integrator;
-    if (by->solid_step) {
+    if (by->solid_step && !sim->solid.implicit) {
         for (int k = 0; k < n; k++) by->solid_step(sim, dt);
     } else {
-        solid_advance(&sim->solid, &sim->kind[KIND_SOLID], dt, n, by->centred);
+        solid_advance(&sim->solid, &sim->kind[KIND_SOLID], dt, n, sim->coupling.centred);
         sim->state.solid_evaluations += n;
     }
+}
+
+/* One implicit step, or while surfaces are near each other explicit sub-steps. */
+static void advance_implicit(struct simulation *sim, double dt)
+{
+    const double needed = sim->solid.contact ? ceil(dt / sim->dt_solid * (1 - 1e-9)) : 1;
+    sim->substeps = (int)max2(1, min2(needed, SUBSTEPS_MOST + 1));
+    advance_lone(sim, dt / sim->substeps, sim->substeps);
+    sim->state.solid_substeps += sim->substeps - 1;
 }
 
 /* When a contact is near, each step is chosen separately and may be shorter than planned.
@@ -67,7 +80,7 @@ static double advance_near(struct simulation *sim, double dt, int *n)
 static void external_for_step(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->kind[KIND_SOLID];
-    const double half = sim->integrator->centred ? 0.5 * dt : 0;
+    const double half = sim->coupling.centred ? 0.5 * dt : 0;
     for (int64_t i = 0; half > 0 && i < particles->n; i++) {
         particles->x[i] += half * particles->vx[i];
         particles->y[i] += half * particles->vy[i];
@@ -85,7 +98,7 @@ static void book_lone(struct simulation *sim, double dt, int n, enum bound bindi
     st->solid_substeps += n;
     st->particle_steps += n * sim->kind[KIND_SOLID].n;
     st->bound_steps[binding] += n;
-    sim->substeps = 1;
+    if (!sim->solid.implicit) sim->substeps = 1;
 }
 
 /* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
@@ -104,11 +117,12 @@ void solid_only_step(struct simulation *sim, double t_limit)
 {
     struct state *const st = &sim->state;
     const double start = wall_clock();
-    const bool near = timestep_watch_contact(sim, st->time, SOLID_BATCH);
+    const bool implicit = sim->solid.implicit != NULL;
+    const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
     const enum bound binding = lone_bounds(sim);
     const double bound = sim->dt_bound[binding];
     const bool external = sim->external[KIND_SOLID].at != NULL;
-    const int batch = external || sim->gravity_varies ? 1 : SOLID_BATCH;
+    const int batch = external || sim->gravity_varies || implicit ? 1 : SOLID_BATCH;
     /* Equal steps up to the limit, as in timestep_choose. Rounding of the times must not add a
      * step. */
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
@@ -120,7 +134,9 @@ void solid_only_step(struct simulation *sim, double t_limit)
     if (external) external_for_step(sim, dt);
     double advanced = 0;
     if (external) add_external_work(sim, 0.5 * dt);
-    if (near)
+    if (implicit)
+        advance_implicit(sim, dt);
+    else if (near)
         advanced = advance_near(sim, dt, &n);
     else
         advance_lone(sim, dt, n);

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Every shipped case, made coarse and short: cut in the middle and continued, it ends with the bits
-# and rows of the run that was not cut; by both integrators, and Verlet at a single rate as well.
+# and rows of the run that was not cut; by both integrators, and Verlet at a single rate as well;
+# with implicit steps of the solid by all three.
 . tests/support/shell.sh
 
 run() { "$sphfsi" "$@" --quiet >"$dir/output" 2>&1 || fail "$*"; }
@@ -13,7 +14,7 @@ short() {
     eighth=$(awk "BEGIN { printf \"%.12g\", $end / 8 }")
     cut=$(awk "BEGIN { printf \"%.12g\", $end / 8 * 3 }")
     for integrator in ${integrators:-symplectic verlet}; do
-        for multirate in auto off; do
+        for multirate in ${multirates:-auto off}; do
             [ $multirate = auto ] || [ $integrator = verlet ] || continue
             set=(--set integrator=$integrator --set numerics.multirate=$multirate
                 --set end_time="$end" --set output.probe_interval="$eighth"
@@ -48,6 +49,11 @@ short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm W=0.1m H=0.
     gate.density=110 \
     top=0.16m
 short hydrostatic_plate 0.004 "dp=25 mm"
+implicit=numerics.solid_steps=implicit
+multirates=auto integrators="symplectic verlet leapfrog" short hydrostatic_plate 0.004 \
+    "dp=25 mm" $implicit
+multirates=auto integrators="symplectic verlet" short cantilever 0.08 ratio=4 plate.law=svk \
+    $implicit
 short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
 short two_posts 0.005 "dp=10 mm" "wall=30 mm" "held=20 mm"

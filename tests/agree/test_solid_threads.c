@@ -90,6 +90,14 @@ static void test_structure_in_water(void)
     compare(water, 2, "integrator=symplectic", "numerics.multirate=on");
 }
 
+/* The matrix is of one thread, its forces of all. */
+static void test_implicit_steps(void)
+{
+    compare(bar, 4, "numerics.solid_steps=implicit", "numerics.fixed_step=0.5 ms");
+    compare(joined, 3, "numerics.solid_steps=implicit", "numerics.fixed_step=0.5 ms");
+    compare(water, 3, "integrator=leapfrog", "numerics.solid_steps=implicit");
+}
+
 /* Pushes from outside, numbers of sub-steps, and results read between them. */
 static uint64_t push(int threads)
 {
@@ -148,6 +156,7 @@ int main(void)
     RUN_TEST(test_a_wide_kernel);
     RUN_TEST(test_joined_bodies);
     RUN_TEST(test_structure_in_water);
+    RUN_TEST(test_implicit_steps);
     RUN_TEST(test_pushes_from_outside);
     RUN_TEST(test_small_bodies_have_one_thread);
     return UNITY_END();

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ * Implicit steps of the solid: one that conserves energy and momentum takes the place of its
+ * sub-steps (T-90). */
+#ifndef SPHFSI_SOLID_IMPLICIT_H
+#define SPHFSI_SOLID_IMPLICIT_H
+
+#include "solid/envelope.h"
+#include "solid/solid.h"
+
+/* Particles on which the gradient at a particle depends, itself included, and its derivatives. */
+struct implicit_links {
+    int64_t *first; /* [n + 1] of each particle */
+    int32_t *node;
+    double *gx, *gy; /* 1/m */
+};
+
+struct implicit {
+    int64_t n;      /* particles whose motion is unknown */
+    int32_t *order; /* [n of particles] place among them, -1: its motion is given */
+    struct implicit_links links;
+    struct envelope springs; /* of T-28, the same for both components, N/m^2; constant */
+    struct envelope matrix;  /* the factors of the last matrix */
+    double *unknown;         /* both components, one particle after the other */
+    double *start[4];        /* displacement gradient at the start of the step */
+    bool factored;
+    double period; /* the longest of the bodies about their undeformed state, s */
+    /* Of the last step. */
+    int iterations;  /* solutions with the matrix */
+    double residual; /* over the largest force of a particle */
+    bool failed;     /* no solution, however short the step */
+};
+
+/* Makes the solid take implicit steps; its particles, loads and clamps are set. */
+enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,
+                         struct diag *d) SPHFSI_CHECKED;
+
+/* A step of dt from the present time, which its caller advances. */
+void implicit_step(struct solid *solid, struct particles *particles, double dt);
+
+/* After the state has been read: the matrix that it was found with. */
+void implicit_resume(struct solid *solid, struct particles *particles);
+
+/* The longest period of the bodies about their undeformed state, in which they are now, s; INFINITY
+ * without any. */
+double implicit_period(struct solid *solid, struct particles *particles);
+
+#endif

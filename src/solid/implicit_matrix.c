@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT
+ * What the matrix of implicit steps needs and never changes: links between particles, the
+ * numbering of the unknowns, and the springs of hourglass control. */
+#include <math.h>
+#include <string.h>
+
+#include "solid/implicit.h"
+#include "solid/packed.h"
+
+static const char what[] = "matrix of the solid";
+
+/* One weight of a pair: of slot m and lane l of its pack. */
+static double weight(const struct solid *solid, int64_t m, int number, int l)
+{
+    return solid_get(solid, solid->weight, (m * SOLID_WEIGHTS + number) * solid->sweeps->lanes + l);
+}
+
+/* Neighbours of each particle with the weights of its gradient, and itself with the opposite of
+ * their sum. The last particle of a pack has as many places as the others. */
+static enum err link_particles(const struct solid *solid, struct implicit_links *links,
+                               struct arena *a, int64_t n, struct diag *d)
+{
+    int64_t most = n, at = 0;
+    for (int64_t k = 0; k < solid->n_packs; k++)
+        most += (int64_t)solid->pack[k].n_slots * solid->pack[k].lanes;
+    links->first = arena_alloc(a, (size_t)n + 1, sizeof *links->first, what, d);
+    links->node = arena_alloc(a, (size_t)most, sizeof *links->node, what, d);
+    links->gx = arena_alloc(a, (size_t)most, sizeof *links->gx, what, d);
+    links->gy = arena_alloc(a, (size_t)most, sizeof *links->gy, what, d);
+    if (!links->first || !links->node || !links->gx || !links->gy) return ERR_MEMORY;
+    for (int64_t k = 0; k < solid->n_packs; k++) {
+        const struct solid_pack *const pack = &solid->pack[k];
+        for (int l = 0; l < pack->lanes; l++) {
+            const int64_t i = pack->i + l, own = at++;
+            links->first[i] = own;
+            links->node[own] = (int32_t)i;
+            for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
+                const double gx = weight(solid, m, W_GX, l), gy = weight(solid, m, W_GY, l);
+                if (weight(solid, m, W_X, l) == NOBODY) continue;
+                links->node[at] = (int32_t)(i + solid->offset[m]);
+                links->gx[at] = gx;
+                links->gy[at] = gy;
+                links->gx[own] -= gx;
+                links->gy[own] -= gy;
+                at++;
+            }
+        }
+    }
+    links->first[n] = at;
+    return ERR_OK;
+}
+
+/* Visits all particles in order of their distance from `from`, in steps between neighbours on the
+ * lattice; returns how many these are. `seen` is larger than `round` where it was not visited. */
+static int64_t visit(const struct solid *solid, const struct implicit_links *links,
+                     const struct particles *p, int64_t from, int32_t *seen, int32_t round,
+                     int32_t *queue)
+{
+    int64_t n = 0;
+    queue[n++] = (int32_t)from;
+    seen[from] = round;
+    for (int64_t k = 0; k < n; k++) {
+        const int32_t i = queue[k];
+        const double reach = 1.5 * solid->body[p->body[i]].dp;
+        for (int64_t m = links->first[i]; m < links->first[i + 1]; m++) {
+            const int32_t j = links->node[m];
+            const double r2 = square(p->X[i] - p->X[j]) + square(p->Y[i] - p->Y[j]);
+            if (seen[j] >= round || r2 > square(reach)) continue;
+            seen[j] = round;
+            queue[n++] = j;
+        }
+    }
+    return n;
+}
+
+/* Along each body from one of its ends, so that the matrix has few columns beside its diagonal. */
+static void number_unknowns(const struct solid *solid, struct implicit *by,
+                            const struct particles *p, const double *moves, int32_t *seen,
+                            int32_t *queue)
+{
+    for (int64_t i = 0; i < p->n; i++) seen[i] = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (seen[i]) continue;
+        const int64_t n = visit(solid, &by->links, p, i, seen, 1, queue);
+        visit(solid, &by->links, p, queue[n - 1], seen, 2, queue);
+        for (int64_t k = 0; k < n; k++)
+            by->order[queue[k]] = moves[queue[k]] > 0 ? (int32_t)by->n++ : -1;
+    }
+}
+
+/* The first unknown that the force on each depends on: in three steps, since the springs of two
+ * neighbours depend on the neighbours of both (T-26). */
+static void find_first(const struct implicit *by, int64_t n, int64_t *first, int64_t *next)
+{
+    const struct implicit_links *const links = &by->links;
+    for (int64_t i = 0; i < n; i++) first[i] = by->order[i] < 0 ? INT64_MAX : by->order[i];
+    for (int round = 0; round < 3; round++) {
+        for (int64_t i = 0; i < n; i++) {
+            next[i] = INT64_MAX;
+            for (int64_t m = links->first[i]; m < links->first[i + 1]; m++)
+                if (first[links->node[m]] < next[i]) next[i] = first[links->node[m]];
+        }
+        memcpy(first, next, (size_t)n * sizeof *first);
+    }
+    for (int64_t i = 0; i < n; i++)
+        if (by->order[i] >= 0) next[by->order[i]] = first[i];
+}
+
+/* The error of T-26 of one pair as a sum over particles, `share` of each; 0 outside `node`. */
+struct spring {
+    double *share;
+    int32_t *node;
+    int n;
+};
+
+static void add_share(struct spring *spring, int32_t node, double share)
+{
+    int k = 0;
+    while (k < spring->n && spring->node[k] != node) k++;
+    if (k == spring->n) {
+        spring->node[spring->n++] = node;
+        spring->share[k] = 0;
+    }
+    spring->share[k] += share;
+}
+
+static void add_spring(struct implicit *by, const struct spring *spring, double stiffness)
+{
+    for (int m = 0; m < spring->n; m++) {
+        const int64_t row = by->order[spring->node[m]];
+        for (int k = 0; k < spring->n && row >= 0; k++) {
+            const int64_t column = by->order[spring->node[k]];
+            if (column >= 0 && column <= row)
+                envelope_add(&by->springs, row, column,
+                             stiffness * spring->share[m] * spring->share[k]);
+        }
+    }
+}
+
+/* T-28: k e e^T/2 of each pair, with e = (F_a + F_b) X_ab/2 - x_ab. */
+static void add_springs(const struct solid *solid, struct implicit *by, const int32_t *body,
+                        struct spring *spring)
+{
+    const struct implicit_links *const links = &by->links;
+    for (int64_t k = 0; k < solid->n_packs; k++) {
+        const struct solid_pack *const pack = &solid->pack[k];
+        for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++)
+            for (int l = 0; l < pack->lanes; l++) {
+                const int64_t i = pack->i + l, j = i + solid->offset[m];
+                const double half_k = weight(solid, m, W_HALF_K, l), X = weight(solid, m, W_X, l),
+                             Y = weight(solid, m, W_Y, l);
+                if (!(half_k > 0) || j < i) continue;
+                const int64_t ends[] = {i, j};
+                spring->n = 0;
+                for (int e = 0; e < 2; e++)
+                    for (int64_t at = links->first[ends[e]]; at < links->first[ends[e] + 1]; at++)
+                        add_share(spring, links->node[at],
+                                  0.5 * (links->gx[at] * X + links->gy[at] * Y));
+                add_share(spring, (int32_t)i, -1);
+                add_share(spring, (int32_t)j, 1);
+                add_spring(by, spring, 2 * half_k * solid->body[body[i]].mass);
+            }
+    }
+}
+
+static enum err create_matrices(const struct solid *solid, struct implicit *by, struct arena *a,
+                                const struct particles *p, const double *moves,
+                                struct arena *scratch, struct diag *d)
+{
+    const size_t n = (size_t)p->n;
+    int32_t *const seen = arena_alloc(scratch, n, sizeof *seen, what, d),
+                   *const queue = arena_alloc(scratch, n, sizeof *queue, what, d);
+    int64_t *const first = arena_alloc(scratch, 2 * n, sizeof *first, what, d),
+                   *const next = arena_alloc(scratch, n, sizeof *next, what, d);
+    struct spring spring = {.share = arena_alloc(scratch, n, sizeof *spring.share, what, d),
+                            .node = arena_alloc(scratch, n, sizeof *spring.node, what, d)};
+    if (!seen || !queue || !first || !next || !spring.share || !spring.node) return ERR_MEMORY;
+    number_unknowns(solid, by, p, moves, seen, queue);
+    find_first(by, p->n, first, next);
+    TRY(envelope_create(&by->springs, a, by->n, next, d));
+    for (int64_t i = 0; i < 2 * by->n; i++) first[i] = 2 * next[i / 2];
+    TRY(envelope_create(&by->matrix, a, 2 * by->n, first, d));
+    add_springs(solid, by, p->body, &spring);
+    return ERR_OK;
+}
+
+enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *p,
+                         struct diag *d)
+{
+    const size_t n = (size_t)p->n;
+    struct implicit *const by = arena_alloc(a, 1, sizeof *by, what, d);
+    if (!by) return ERR_MEMORY;
+    by->order = arena_alloc(a, n, sizeof *by->order, what, d);
+    by->unknown = arena_alloc(a, 2 * n + ENVELOPE_ALIGN, sizeof *by->unknown, what, d);
+    if (!by->order || !by->unknown) return ERR_MEMORY;
+    for (int k = 0; k < 4; k++) {
+        by->start[k] = arena_alloc(a, n, sizeof *by->start[k], what, d);
+        if (!by->start[k]) return ERR_MEMORY;
+    }
+    TRY(link_particles(solid, &by->links, a, p->n, d));
+    struct arena scratch = {.limit = a->limit};
+    double *const moves = arena_alloc(&scratch, n, sizeof *moves, what, d);
+    for (size_t i = 0; moves && i < n; i++) moves[i] = p->free[i];
+    for (int64_t k = 0; moves && solid->loads && k < solid->loads->n_held; k++)
+        moves[solid->loads->held[k]] = 0;
+    const enum err e = moves ? create_matrices(solid, by, a, p, moves, &scratch, d) : ERR_MEMORY;
+    arena_free(&scratch);
+    solid->implicit = by;
+    return e;
+}
