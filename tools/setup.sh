@@ -36,27 +36,17 @@ record() { [ "$(cat "$1" 2>/dev/null)" = "$2" ] || { mkdir -p build && echo "$2"
 
 # --- compiler and HDF5 ---
 
-compiler_works() {
-    echo 'int omp_get_max_threads(void); int main(void) { return !omp_get_max_threads(); }' |
-        $CC -x c -fopenmp -o build/probe - >/dev/null 2>&1
-    local status=$?
-    rm -f build/probe
-    return $status
-}
-
 find_compiler() {
+    local kind="gcc libc6-dev libgomp1"
+    case "$CC $($CC --version 2>/dev/null)" in *clang*) kind="clang libc6-dev libomp-dev" ;; esac
     mkdir -p build
     if ! have "${CC%% *}"; then
-        case $CC in
-            *clang*) lacks "a C compiler ($CC)" "clang libc6-dev libomp-dev" "llvm libomp" ;;
-            *) lacks "a C compiler ($CC)" "gcc libc6-dev" gcc ;;
-        esac
-    elif ! compiler_works; then
-        case $($CC --version 2>/dev/null) in
-            *clang*) lacks "OpenMP for $CC" "libc6-dev libomp-dev" gcc ;;
-            *) lacks "OpenMP or the C library's headers for $CC" "libc6-dev libgomp1" gcc ;;
-        esac
+        lacks "a C compiler ($CC)" "${kind% libgomp1}" gcc
+    elif ! echo 'int omp_get_max_threads(void); int main(void) { return !omp_get_max_threads(); }' |
+        $CC -x c -fopenmp -o build/probe - >/dev/null 2>&1; then
+        lacks "OpenMP or the C library's headers for $CC" "${kind#* }" gcc
     fi
+    rm -f build/probe
 }
 
 # Compiler and linker flags of HDF5, on two lines. Debian's hdf5.pc may belong to an MPI build,
@@ -115,19 +105,15 @@ sys.exit(any(u.find_spec(m) is None for m in ("numpy", "matplotlib", "h5py")))' 
 
 # Every python3 in the PATH, not just the first: a version manager's often has no packages.
 pythons() {
-    [ -z "${PYTHON:-}" ] || echo "$PYTHON"
-    [ ! -x .venv/bin/python ] || echo "$PWD/.venv/bin/python"
-    type -aP python3
-    [ ! -x /usr/bin/python3 ] || echo /usr/bin/python3
+    local p
+    for p in "${PYTHON:-}" "$PWD/.venv/bin/python" $(type -aP python3) /usr/bin/python3; do
+        [ ! -x "$p" ] || echo "$p"
+    done
 }
 
 find_python() {
-    local p=${PYTHON:-$(cat build/python 2>/dev/null)}
-    if [ -n "$p" ] && python_complete "$p"; then
-        record build/python "$p"
-        return
-    fi
-    for p in $(pythons); do
+    local p
+    for p in ${PYTHON:-$(cat build/python 2>/dev/null)} $(pythons); do
         python_complete "$p" || continue
         # The interpreter itself, not a version manager's stand-in for it.
         record build/python "$("$p" -c 'import sys; print(sys.executable)')"
@@ -135,21 +121,26 @@ find_python() {
     done
     lacks "Python 3 with numpy, matplotlib and h5py" \
         "python3-numpy python3-matplotlib python3-h5py python3-cffi" \
-            "python numpy python-matplotlib"
+        "python numpy python-matplotlib"
+}
+
+# pip of the first Python that has it and succeeds, with its options.
+pip_install() {
+    local python=$1
+    shift
+    "$python" -m pip install --quiet --disable-pip-version-check --retries 1 --timeout 15 \
+        --only-binary :all: "$@" >build/pip.log 2>&1
 }
 
 # A virtual environment from the first python that can make one and reach the package index.
 make_venv() {
     local p
     for p in $(pythons); do
-        "$p" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 8))' 2>/dev/null ||
-            continue
+        "$p" -c 'import venv, ensurepip' 2>/dev/null || continue
         say "installing numpy, matplotlib, h5py and cffi into .venv"
         rm -rf .venv
         "$p" -m venv .venv >/dev/null 2>&1 &&
-            .venv/bin/python -m pip install --quiet --disable-pip-version-check --retries 1 \
-                --timeout 15 --only-binary :all: -r tools/requirements.txt >build/pip.log 2>&1 &&
-            return
+            pip_install .venv/bin/python -r tools/requirements.txt && return
         rm -rf .venv
         say "pip did not succeed (build/pip.log)"
         return 1
@@ -185,9 +176,8 @@ find_unity() {
 unpack_unity() {
     local sum member
     sum=$(sha256sum "$1" 2>/dev/null || shasum -a 256 "$1") && sum=${sum%% *}
-    say "$(basename "$1"): sha256 $sum"
-    if [ -n "$2" ] && [ "$sum" != "$2" ]; then
-        say "that is not the expected $2"
+    if [ "$sum" != "${2:-$sum}" ]; then
+        say "$(basename "$1"): sha256 is $sum, not the expected $2"
         return 1
     fi
     rm -rf build/deps/unpack build/deps/unity
@@ -246,12 +236,8 @@ fetch_unity_from_debian() {
 
 # `zig cc` is clang with wasi-libc. Debian's clang 14 has no relaxed SIMD.
 zig_works() {
-    echo 'int main(void) { return 0; }' | env ZIG_{LOCAL,GLOBAL}_CACHE_DIR=build/web/cache \
-        "$1" cc -target wasm32-wasi -msimd128 -mrelaxed-simd -x c -o build/probe.wasm - >/dev/null \
-            2>&1
-    local status=$?
-    rm -f build/probe.wasm
-    return $status
+    echo 'int main(void) { return 0; }' | env ZIG_{LOCAL,GLOBAL}_CACHE_DIR=build/web/cache "$1" cc \
+        -target wasm32-wasi -msimd128 -mrelaxed-simd -x c -o build/probe.wasm - >/dev/null 2>&1
 }
 
 find_zig() {
@@ -267,12 +253,9 @@ find_zig() {
 # 100 MB, and nothing outside of build/ changes.
 fetch_zig() {
     local p
+    say "fetching ziglang $ziglang_version into build/deps/ziglang"
     for p in $(pythons); do
-        "$p" -m pip --version >/dev/null 2>&1 || continue
-        say "fetching ziglang $ziglang_version into build/deps/ziglang"
-        "$p" -m pip install --quiet --disable-pip-version-check --retries 1 --timeout 15 --no-deps \
-            --only-binary :all: --target build/deps/ziglang "ziglang==$ziglang_version" \
-            >build/pip.log 2>&1 && return
+        pip_install "$p" --no-deps --target build/deps/ziglang "ziglang==$ziglang_version" && return
     done
     say "pip did not succeed (build/pip.log)"
     return 1
@@ -299,17 +282,16 @@ privilege() {
     [ "$(id -u)" = 0 ] || { have sudo && sudo -n true 2>/dev/null && echo "sudo -n"; }
 }
 
+# With the package lists there are, and once more with new ones: those of last month name files that
+# the mirror no longer has.
 install_packages() {
     local run="$1 env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=120"
     shift
-    local list=(/var/lib/apt/lists/*_Packages*)
     say "installing $* (build/apt.log)"
-    { [ -e "${list[0]}" ] || $run update; } >build/apt.log 2>&1
-    $run install -y --no-install-recommends "$@" >>build/apt.log 2>&1 </dev/null && return
-    # A package list from last month names files that the mirror no longer has.
-    { $run update && $run install -y --no-install-recommends "$@" </dev/null; } \
-        >>build/apt.log 2>&1 || say \
-            "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
+    { $run install -y --no-install-recommends "$@" </dev/null ||
+        { $run update && $run install -y --no-install-recommends "$@" </dev/null; }; } \
+        >build/apt.log 2>&1 ||
+        say "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
 }
 
 unique() { printf '%s\n' "$@" | awk '!seen[$0]++'; }
@@ -318,12 +300,10 @@ mkdir -p build
 find_all "$@"
 [ ${#missing[@]} -gt 0 ] || exit 0
 
-case "${missing[*]}" in
-    *"Python 3"*) [ "${SETUP:-}" = no ] || { make_venv && find_all "$@"; } ;;
-esac
-case "${missing[*]}" in
-    *WebAssembly*) [ "${SETUP:-}" = no ] || { fetch_zig && find_all "$@"; } ;;
-esac
+if [ "${SETUP:-}" != no ]; then
+    case "${missing[*]}" in *"Python 3"*) make_venv && find_all "$@" ;; esac
+    case "${missing[*]}" in *WebAssembly*) fetch_zig && find_all "$@" ;; esac
+fi
 if [ ${#packages[@]} -gt 0 ] && sudo=$(privilege); then
     install_packages "$sudo" $(unique "${packages[@]}")
     find_all "$@"

@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import PROGRAM, ROOT, TOOLS, packages
 with packages():
     import sweep
+    from sphfsi.sweep import swings
 from runfiles import BadFile, np
 
 TINY = ROOT / "tests" / "fault" / "tiny.cfg"
@@ -65,7 +66,7 @@ def check_swings():
     random = np.random.default_rng(3)
     a, b = random.random(30), 10 * random.random(30)
     a[0], a[1], b[2], b[3] = 0, 1, 0, 10
-    swing = sweep.swings(["a", "b"], {"a": a, "b": b}, 7 + 3 * a - 0.2 * b)
+    swing = swings(["a", "b"], {"a": a, "b": b}, 7 + 3 * a - 0.2 * b)
     assert abs(swing["a"] - 3) < 1e-9 and abs(swing["b"] + 2) < 1e-9, swing
 
 
