@@ -163,7 +163,7 @@ $(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(CORE)
 	$(Q)$(LINK) $(WRAP)
 
 # A test that puts itself between the program and a library names the functions in lines of its own
-# (CMakeLists.txt and tools/dev/mutants.py, too).
+# (CMakeLists.txt and tests/mutants/mutants.py, too).
 $(TESTS): private WRAP = $(addprefix -Wl$(comma)--wrap=,$(shell sed -n 's/^ \* --wrap: //p' \
   $(@:$(B)/%=%).c | tr -d '*/'))
 

@@ -1,4 +1,4 @@
-# The goals that write reports. ARGS='...' goes to the tool below tools/report/ or tools/dev/.
+# The goals that write reports. ARGS='...' goes to the tool.
 #
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted;
@@ -20,35 +20,29 @@
 #   make glance          the charts of the README from the results of the reports
 #   make gallery         run the elastic valve, draw the picture of it in the README
 #   make reliability     run the fault tests and write docs/reliability.md
-#   make faults          the long forms of the fault tests: 50 kills, many sizes of a full disk
-#   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
-#   make random-cases    1000 random scenes in every build, killed, restarted and forked: the same bits
-#   make mutants         put small faults into the sources and count those that tests find: docs/mutants.md
-#   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
 
 # goal: the tool and its options. Each is run on the built program by the project's Python.
-validate_TOOL            := report/validation.py $(if $(QUICK),--quick) $(if $(KEEP),--keep)
-accuracy_TOOL            := report/accuracy.py
-forecast_TOOL            := report/forecast.py
-stability_TOOL           := report/stability.py --report --keep
-stability-map_TOOL       := report/stability_map.py
-stability-substeps_TOOL  := report/stability_substeps.py
-verify-fluid_TOOL        := report/verify_fluid.py
-verify-contact_TOOL      := report/verify_contact.py
-verify-open_TOOL         := report/verify_open.py
-verify-manufactured_TOOL := report/manufactured.py
-turek-hron_TOOL          := report/turek_hron.py
-energy-account_TOOL      := report/energy_account.py
-performance_TOOL         := report/performance.py
-bench_TOOL               := report/performance.py --bench
-glance_TOOL              := report/glance.py
-reliability_TOOL         := dev/reliability.py
-random-cases_TOOL        := dev/random_cases.py --all-builds
+validate_TOOL            := tools/report/validation.py $(if $(QUICK),--quick) $(if $(KEEP),--keep)
+accuracy_TOOL            := tools/report/accuracy.py
+forecast_TOOL            := tools/report/forecast.py
+stability_TOOL           := tools/report/stability.py --report --keep
+stability-map_TOOL       := tools/report/stability_map.py
+stability-substeps_TOOL  := tools/report/stability_substeps.py
+verify-fluid_TOOL        := tools/report/verify_fluid.py
+verify-contact_TOOL      := tools/report/verify_contact.py
+verify-open_TOOL         := tools/report/verify_open.py
+verify-manufactured_TOOL := tools/report/manufactured.py
+turek-hron_TOOL          := tools/report/turek_hron.py
+energy-account_TOOL      := tools/report/energy_account.py
+performance_TOOL         := tools/report/performance.py
+bench_TOOL               := tools/report/performance.py --bench
+glance_TOOL              := tools/report/glance.py
+reliability_TOOL         := tests/fault/reliability.py
 REPORTS := $(patsubst %_TOOL,%,$(filter %_TOOL,$(.VARIABLES)))
 
-.PHONY: $(REPORTS) help-reports gallery faults absence fuzz mutants
+.PHONY: $(REPORTS) help-reports gallery
 $(REPORTS): $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) tools/$($@_TOOL) $(ARGS)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) $($@_TOOL) $(ARGS)
 	$(if $(filter accuracy,$@),@$(MAKE) --no-print-directory all)
 
 # What a report runs beside the program. Several runs at a time must not spin while they wait.
@@ -66,18 +60,3 @@ gallery: $(PROGRAM)
 	@[ -e runs/elastic_valve/summary.json ] || ./$(PROGRAM) cases/elastic_valve.cfg --quiet
 	@$(PROJECT_PYTHON) tools/plot_fields.py runs/elastic_valve --time 0.75 --field velocity \
 	  --out docs/img/elastic_valve.png
-
-faults: $(PROGRAM)
-	@set -e; export SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)'; \
-	 export KILLS=50 FULL_STEPS=40 INJECT_STRIDE=1; \
-	 for t in fault/test_kill fault/test_full fault/test_inject fault/test_fork \
-	   agree/test_restart_cases; do bash tests/$$t.sh; done
-
-absence:
-	@SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py --each
-
-fuzz:
-	@tools/dev/fuzz.sh $(ARGS)
-
-mutants:
-	@$(PROJECT_PYTHON) tools/dev/mutants.py $(ARGS)

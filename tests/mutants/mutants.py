@@ -3,22 +3,20 @@
 """Measures the tests: puts small faults into the sources, one at a time, and counts those that a
 test finds.
 
-    tools/dev/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md
-                                            (hours)
-    tools/dev/mutants.py --files src/solid  faults of one folder or file only
-    tools/dev/mutants.py --again            judges anew what was not found, for instance by new
-                                            tests
-    tools/dev/mutants.py --report           writes docs/mutants.md from what is kept
+    mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md (hours)
+    mutants.py --files src/solid  faults of one folder or file only
+    mutants.py --again            judges anew what was not found, for instance by new tests
+    mutants.py --report           writes docs/mutants.md from what is kept
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or
 inverts a condition. The objects that hold the changed line are compiled, and the tests that run it
-(by gcov, tools/dev/coverage.py) are linked and run, the shortest first, until one finds it or their
-time is used up. Faults that none finds are judged again with the build of `make test-sanitize`,
-which sees what is read behind an array, or not freed. A fault whose object code is that of the
-program is equivalent. So are those that tests/mutants/equivalent.txt explains. Results are kept in
-tests/mutants/results.json; a run that was interrupted goes on from there. How a fault was judged
-first is kept beside its present verdict: tests are written for those of each sample that were not
-found, so only a fresh sample measures the tests.
+(by gcov, tests/mutants/coverage.py) are linked and run, the shortest first, until one finds it or
+their time is used up. Faults that none finds are judged again with the build of `make test-
+sanitize`, which sees what is read behind an array, or not freed. A fault whose object code is that
+of the program is equivalent. So are those that tests/mutants/equivalent.txt explains. Results are
+kept in tests/mutants/results.json; a run that was interrupted goes on from there. How a fault was
+judged first is kept beside its present verdict: tests are written for those of each sample that
+were not found, so only a fresh sample measures the tests.
 """
 import argparse
 import json

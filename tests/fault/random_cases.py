@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Runs random valid cases with every build and every kind of interruption, and compares all bits.
 
-    tools/dev/random_cases.py --count 1000          1000 cases; outcomes go to
+    tests/fault/random_cases.py --count 1000          1000 cases; outcomes go to
     tests/fault/random.json
-    tools/dev/random_cases.py --seed 17 --print     the case of a seed
-    tools/dev/random_cases.py --seed 17 --keep DIR  runs it and keeps its folders
+    tests/fault/random_cases.py --seed 17 --print     the case of a seed
+    tests/fault/random_cases.py --seed 17 --keep DIR  runs it and keeps its folders
 
 A case is a small scene: a tank, a channel with periodic or open sides, or solids that meet, with
 random bodies, motions, laws, loads, probes and numerics. It runs some dozen steps with the programs

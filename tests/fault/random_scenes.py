@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Random small scenes for tools/dev/random_cases.py: make(seed) gives the text of a valid case."""
+"""Random small scenes for random_cases.py: make(seed) gives the text of a valid case."""
 import math
 import random
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Every shipped case, coarse and short (the lines `short NAME END SETTING...` of
 # tests/agree/test_restart_cases.sh), each with the next integrator, and a stop, a restart and a
-# fork: tools/dev/short_runs.sh PROGRAM [COMMAND...], COMMAND being a checker such as valgrind, or a
+# fork: tests/short_runs.sh PROGRAM [COMMAND...], COMMAND being a checker such as valgrind, or a
 # program that checks itself. Fails if one of the runs does.
 set -u
-cd "$(dirname "$0")/../.."
+cd "$(dirname "$0")/.."
 program=$1
 shift
 checker=("$@")

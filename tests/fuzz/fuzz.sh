@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers with libFuzzer, ASan and UBSan: tools/dev/fuzz.sh [SECONDS for each target]
+# Fuzzes the readers with libFuzzer, ASan and UBSan: tests/fuzz/fuzz.sh [SECONDS for each target]
 # [TARGET...] Targets: case expr motion reference series checkpoint. Needs clang with its runtime
 # (Debian: clang libclang-rt-14-dev).
 # What was run is appended to tests/fuzz/counts.txt, from the fuzzer's own log; failing inputs land
@@ -30,7 +30,7 @@ flags=(-std=gnu11 -O2 -g -ffp-contract=off -fno-math-errno -fno-omit-frame-point
     -fno-sanitize-recover=undefined)
 
 # Objects are made anew when a source, or a header or a table, is newer.
-newest=$(ls -t src/*/*.h src/*/*.def tests/support/*.h tools/dev/fuzz.sh | head -n 1)
+newest=$(ls -t src/*/*.h src/*/*.def tests/support/*.h tests/fuzz/fuzz.sh | head -n 1)
 objects=()
 sh tools/embed.sh $build/embedded.c cases/templates/*.cfg src/app/data/*
 for file in src/*/*.c $build/embedded.c tests/support/fuzz.c; do

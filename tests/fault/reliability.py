@@ -6,8 +6,8 @@ The tests, sanitizers and analysers are those that reliability.md beside this fi
 outcomes are kept in tests/fault/checks.json; fuzzers log their counts in tests/fuzz/counts.txt.
 Sanitizers and analysers take long; --run runs them. Examples:
 
-  tools/dev/reliability.py                          the fault tests, then the report
-  tools/dev/reliability.py --run memcheck --only    one of the checkers, no report
+  tests/fault/reliability.py                          the fault tests, then the report
+  tests/fault/reliability.py --run memcheck --only    one of the checkers, no report
 """
 import argparse
 import json

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Runs each test on the build for gcov and keeps which lines and branches of src/ it took.
 
-    tools/dev/coverage.py                  all tests that run the program: build/coverage/taken
-    tools/dev/coverage.py --filter fluid   those whose path contains this
-    tools/dev/coverage.py --missing        lists the lines and branches that no test took
+    tests/mutants/coverage.py                  all tests that run the program: build/coverage/taken
+    tests/mutants/coverage.py --filter fluid   those whose path contains this
+    tests/mutants/coverage.py --missing        lists the lines and branches that no test took
 
 A test is run again only if it has changed, or if a source has. Branches of a line are merged over
 the functions that the compiler made of it (a law is compiled for float and for double), and over
@@ -191,7 +191,7 @@ def text_of(name, line):
 
 
 def keep_summary(tests, total):
-    """Keeps in SUMMARY what tools/dev/mutants.py reports."""
+    """Keeps in SUMMARY what tests/mutants/mutants.py reports."""
     folders = defaultdict(dict)
     for name, file in total.items():
         folders[name.split("/")[1]][name] = file
