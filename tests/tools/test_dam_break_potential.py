@@ -7,7 +7,8 @@ missing."""
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "support"),
+                str(Path(__file__).resolve().parents[2] / "cases" / "reference")]
 from scripts import packages
 with packages():
     import dam_break_potential as dam

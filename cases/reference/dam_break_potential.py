@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Front of a dam break on a dry bed by potential flow, as a reference whose time origin is exact.
 
-  tools/report/dam_break_potential.py            writes its table of cases/reference (three minutes)
-  tools/report/dam_break_potential.py --spacing 0.008     a coarser solution, to the screen
+  cases/reference/dam_break_potential.py                    writes the table beside it (three minutes)
+  cases/reference/dam_break_potential.py --spacing 0.008    a coarser solution, to the screen
 
 A square column of water, at rest between a wall and a plate, is free at t = 0. The fluid is
 incompressible and has no friction, so its velocity has a potential. Unit of length is the height H,
@@ -25,13 +25,12 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-TABLE = ROOT / "cases" / "reference" / "dam_break_front_potential.csv"
+TABLE = Path(__file__).with_name("dam_break_front_potential.csv")
 CORNER = 0.02
 END, ROWS = 1.8, 36
 HEAD = """\
 # COMPUTED: front of a dam break on a dry bed, x/H against t sqrt(g/H), x from the wall behind the
-# column of H x H. Potential flow, free at t = 0: tools/report/dam_break_potential.py.
+# column of H x H. Potential flow, free at t = 0: cases/reference/dam_break_potential.py.
 # {error}
 time_nd,front_nd
 """
