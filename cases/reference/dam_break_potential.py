@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Front of a dam break on a dry bed by potential flow, as a reference whose time origin is exact.
 
-  cases/reference/dam_break_potential.py                    writes the table beside it (three minutes)
+  cases/reference/dam_break_potential.py                    writes the table beside it (3 min)
   cases/reference/dam_break_potential.py --spacing 0.008    a coarser solution, to the screen
 
 A square column of water, at rest between a wall and a plate, is free at t = 0. The fluid is

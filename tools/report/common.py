@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -79,6 +80,9 @@ class CaseRun:
         self.summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
         top = self.summary["parameters"]
         self.dp, self.end_time = top["dp"], top["end_time"]
+        words = (word.removeprefix("constants.").split("=") for word in sets)
+        self.constants = {key: float(value) for key, value in words
+                          if re.fullmatch(r"[-+.\de]+", value)}
 
     def table(self, name="probes.csv"):
         with open(self.folder / name, encoding="utf-8") as file:
@@ -98,9 +102,10 @@ def summary_of(case, sets, *more, **options):
 
 
 def case_of(scene, folder):
-    """The case of a scene: of cases/verify, of cases, or a template, which is written to the
-    folder."""
-    for path in (ROOT / "cases" / "verify" / f"{scene}.cfg", ROOT / "cases" / f"{scene}.cfg"):
+    """The case of a scene: of cases/verify, cases or tests/stability, or a template, which is
+    written to the folder."""
+    for part in ("cases/verify", "cases", "tests/stability"):
+        path = ROOT / part / f"{scene}.cfg"
         if path.is_file():
             return path
     path = Path(folder) / f"{scene}.cfg"
@@ -112,6 +117,14 @@ def options(doc):
     """A parser that shows the tool's own text."""
     return argparse.ArgumentParser(description=doc,
                                    formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def measure_scene(scene, variants, measure):
+    """measure(runs) of runs of a scene, one for each list of settings, and their processor time."""
+    with tempfile.TemporaryDirectory() as folder:
+        runs = [CaseRun(case_of(scene, folder), settings, Path(folder) / f"run{k}")
+                for k, settings in enumerate(variants)]
+        return measure(runs), round(sum(run.seconds for run in runs), 1)
 
 
 # --- kept results ---
@@ -177,6 +190,10 @@ def judged(rows):
               if not kept(value, limit)]
     text = f"{len(rows) - len(missed)} of {len(rows)} limits are kept."
     return "\n".join([text, "", "Missed:", "", *missed] if missed else [text])
+
+
+def limit_text(limit):
+    return "" if limit is None else number(limit)
 
 
 def run_scenes(doc, names, run_scene, path, report):

@@ -11,12 +11,9 @@ verify-contact, some minutes on one core).
 The scenes are cases/verify/contact_*.cfg and two others. tools/report/verify_contact_measures.py
 says how each figure is taken. The figures are kept in docs/contact_verification.json."""
 import math
-import tempfile
-from pathlib import Path
 
 import verify_contact_measures as of
-from common import (ROOT, CaseRun, case_of, cell, judged, number, run_scenes, runfiles,
-                    table)
+from common import ROOT, cell, judged, limit_text, measure_scene, run_scenes, run_tool, table
 
 REPORT = ROOT / "docs" / "contact_verification.md"
 LINE = [{"D": 1.2e-3}, {"D": 2.4e-3}]
@@ -98,29 +95,21 @@ SCENES = [
     bullet("200 m/s, corner first, at a wall", corner=1),
     bullet("200 m/s, corner first, at a strip of three", corner=1, held=1),
     bullet("200 m/s, corner on corner", corner=1, held=1, top=0),
-    scene("ram presses two blocks to half their height", "driven", ("dp", "m, spacing"),
+    scene("ram presses two blocks to half their height", "pressed", ("dp", "m, spacing"),
           (5e-3, 2.5e-3),
           of.measure_driven, against="no overlap of half a spacing"),
 ]
 
 
-def settings_of(constants):
-    return [f"{'' if key == 'dp' else 'constants.'}{key}={value!r}"
-            for key, value in constants.items()]
-
-
 def run_level(of_scene, level):
     """Figures of one resolution, and the processor time."""
-    runs = []
-    with tempfile.TemporaryDirectory() as folder:
-        case = ROOT / "tests" / "stability" / "pressed.cfg" if of_scene["case"] == "driven" else \
-            case_of(of_scene["case"], folder)
-        for k, variant in enumerate(of_scene["variants"] or [{}]):
-            constants = {**of_scene["constants"], **variant, of_scene["key"][0]: level}
-            runs.append(CaseRun(case, settings_of(constants), Path(folder) / f"run{k}"))
-            runs[-1].constants = constants
-        figures = of_scene["measure"](runs if of_scene["variants"] else runs[0])
-        return figures, round(sum(run.seconds for run in runs), 1)
+    def settings(variant):
+        constants = {**of_scene["constants"], **variant, of_scene["key"][0]: level}
+        return [f"{'' if key == 'dp' else 'constants.'}{key}={value!r}"
+                for key, value in constants.items()]
+    several = of_scene["variants"]
+    return measure_scene(of_scene["case"], map(settings, several or [{}]),
+                         lambda runs: of_scene["measure"](runs if several else runs[0]))
 
 
 def order(values, levels):
@@ -150,16 +139,14 @@ def answer(rows):
 def report(known):
     rows = list(rows_of(known))
     absent = [f"* {s['name']}" for s in SCENES if s["name"] not in known]
-    figures = table(
-        ["scene", "figure", "resolution", "found", "order", "limit", "reference"],
-        [[s["name"], words, f"{', '.join(f'{level:g}' for level in s['levels'])} {s['key'][1]}",
-          ", ".join(cell(value, limit) for value in values),
-          order(values, s["levels"]) if "%" in words else "",
-          "" if limit is None else number(limit), s["against"]] for s, words, values,
-         limit in rows])
     return {"answer": "\n".join([answer(rows),
                                  *(["", "Not run yet:", "", *absent] if absent else [])]),
-            "figures": figures,
+            "figures": table(
+                ["scene", "figure", "resolution", "found", "order", "limit", "reference"],
+                [[s["name"], words, ", ".join(f"{level:g}" for level in s["levels"]) +
+                  f" {s['key'][1]}", ", ".join(cell(value, limit) for value in values),
+                  order(values, s["levels"]) if "%" in words else "", limit_text(limit),
+                  s["against"]] for s, words, values, limit in rows]),
             "seconds": table(["scene", "processor time, s"],
                              [[name, ", ".join(map(str, entry["seconds"]))]
                               for name, entry in known.items()])}
@@ -175,5 +162,4 @@ def run_scene(name):
 
 
 if __name__ == "__main__":
-    runfiles.run_tool(lambda: run_scenes(__doc__, [s["name"] for s in SCENES], run_scene, REPORT,
-                                         report))
+    run_tool(lambda: run_scenes(__doc__, [s["name"] for s in SCENES], run_scene, REPORT, report))

@@ -11,11 +11,9 @@ fluid and says how far each is off (make verify-fluid, ten minutes on one core).
 The scenes are those of cases/verify, shipped cases and templates.
 tools/report/verify_fluid_measures.py says how each figure is taken. The figures are kept in
 docs/fluid_verification.json."""
-import tempfile
-from pathlib import Path
-
 import verify_fluid_measures as of
-from common import ROOT, CaseRun, case_of, cell, kept, number, run_scenes, runfiles, table
+from common import (ROOT, cell, kept, limit_text, measure_scene, number, run_scenes, run_tool,
+                    table)
 
 REPORT = ROOT / "docs" / "fluid_verification.md"
 SCHEMES = ("paper", "standard")
@@ -108,7 +106,7 @@ def answer(rows):
 def report(known):
     rows = list(rows_of(known))
     figures = table(["scene", "figure", "limit", *SCHEMES],
-                    [[name, what, "" if limit is None else number(limit),
+                    [[name, what, limit_text(limit),
                       *(cell(values[s], limit) if s in values else "" for s in SCHEMES)]
                      for name, what, limit, values in rows])
     seconds = table(["scene", *SCHEMES], [[name, *(scene["seconds"].get(s, "") for s in SCHEMES)]
@@ -120,16 +118,12 @@ def run_scene(name):
     scene, _, variants, measure = next(row for row in RUNS if row[1] == name)
     now = {"figures": {}, "seconds": {}}
     for scheme in SCHEMES[standard_only(name):]:
-        with tempfile.TemporaryDirectory() as folder:
-            runs = [CaseRun(case_of(scene, folder), [f"scheme={scheme}", *settings],
-                            Path(folder) / f"run{k}") for k, settings in enumerate(variants)]
-            now["figures"][scheme] = measure(runs)
-            now["seconds"][scheme] = round(sum(run.seconds for run in runs), 1)
+        now["figures"][scheme], now["seconds"][scheme] = measure_scene(
+            scene, ([f"scheme={scheme}", *settings] for settings in variants), measure)
     for _, what, _, values in rows_of({name: now}):
         print(name, what, *map(number, values.values()), flush=True)
     return now
 
 
 if __name__ == "__main__":
-    runfiles.run_tool(lambda: run_scenes(__doc__, [row[1] for row in RUNS], run_scene, REPORT,
-                                         report))
+    run_tool(lambda: run_scenes(__doc__, [row[1] for row in RUNS], run_scene, REPORT, report))

@@ -10,21 +10,13 @@ examples:
 
 The scenes are cases/verify/open_*.cfg. The figures are kept in docs/open_verification.json."""
 import math
-import tempfile
 
-from common import ROOT, BadFile, CaseRun, case_of, cell, judged, np, number, run_scenes, \
-    runfiles, table
+from common import (ROOT, BadFile, cell, judged, limit_text, measure_scene, np, number, run_scenes,
+                    run_tool, table)
 from sphfsi.snapshots import KINDS, Snapshots
 
 REPORT = ROOT / "docs" / "open_verification.md"
 G = 9.81
-
-
-def open_run(scene, settings, folder):
-    run = CaseRun(case_of(scene, folder), settings, folder)
-    if run.stopped:
-        raise BadFile(f"a guard stopped {scene} {' '.join(settings)}")
-    return run
 
 
 def fluid(run):
@@ -45,46 +37,37 @@ def on_grid(points, x, values, reach):
     return out
 
 
-def measure_vortex(ratio):
+def measure_vortex(runs):
     """Beside a channel twice as long, over 1.3 m that end 0.1 m before the outlet; per cent of the
     swirl."""
-    dp, swirl = 1 / ratio, 0.3
+    dp, swirl = runs[0].dp, 0.3
     grid = np.array([(x, y) for x in np.arange(-0.6, 0.701, 0.05)
                      for y in np.arange(-0.4, 0.41, 0.05)])
-    with tempfile.TemporaryDirectory() as folder:
-        runs = [open_run("open_vortex", [f"ratio={ratio}", f"length={length} m"],
-                         f"{folder}/{length}")
-                for length in (1.6, 3.2)]
-        most, left, left_long = 0.0, 0.0, 0.0
-        for (t, x, v), (_, far_x, far_v) in zip(fluid(runs[0]), fluid(runs[1])):
-            if t < 0.49:
-                continue
-            near, far = on_grid(grid, x, v, 2 * dp), on_grid(grid, far_x, far_v, 2 * dp)
-            most = max(most, float(np.sqrt(((near - far) ** 2).sum(axis=1).mean())))
-            if t > 1.99:
-                left = float(np.hypot(*(near - (1, 0)).T).max())
-                left_long = float(np.hypot(*(far - (1, 0)).T).max())
+    most, left, left_long = 0.0, 0.0, 0.0
+    for (t, x, v), (_, far_x, far_v) in zip(*map(fluid, runs)):
+        if t < 0.49:
+            continue
+        near, far = on_grid(grid, x, v, 2 * dp), on_grid(grid, far_x, far_v, 2 * dp)
+        most = max(most, float(np.sqrt(((near - far) ** 2).sum(axis=1).mean())))
+        if t > 1.99:
+            left, left_long = (float(np.hypot(*(found - (1, 0)).T).max()) for found in (near, far))
     return [("RMS difference from a channel twice as long, largest in time, % of the swirl",
              100 * most / swirl, 5),
             ("largest velocity beside the stream's, 2.2 s, % of the swirl", 100 * left / swirl,
              None),
-            ("the same in the long channel", 100 * left_long / swirl, None)], \
-        sum(run.seconds for run in runs)
+            ("the same in the long channel", 100 * left_long / swirl, None)]
 
 
-def measure_weir(ratio):
+def measure_weir(runs):
     """Means of the last two seconds."""
-    q, crest = 0.05, 0.1
-    with tempfile.TemporaryDirectory() as folder:
-        run = open_run("open_weir", [f"ratio={ratio}"], f"{folder}/run")
-        p = run.table()
-        late = p["time_s"] > p["time_s"][-1] - 2
-        names = {key: next(c for c in p if c.startswith(key)) for key in ("head", "over")}
-        level, over = (float(p[names[key]][late].mean()) for key in ("head", "over"))
+    q, crest, p = 0.05, 0.1, runs[0].table()
+    late = p["time_s"] > p["time_s"][-1] - 2
+    level, over = (float(p[next(c for c in p if c.startswith(key))][late].mean())
+                   for key in ("head", "over"))
     head = level - crest + (q / level) ** 2 / (2 * G)
     wanted = 1.5 * (q * q / G) ** (1 / 3)
     return [("head over the crest, % too high", 100 * (head / wanted - 1), 5),
-            ("discharge over the crest, % too high", 100 * (abs(over) / q - 1), 2)], run.seconds
+            ("discharge over the crest, % too high", 100 * (abs(over) / q - 1), 2)]
 
 
 def womersley(y, time):
@@ -94,65 +77,70 @@ def womersley(y, time):
     return (-1j * (1 - np.cosh(k * 2 * y) / np.cosh(k)) * np.exp(1j * omega * time)).real
 
 
-def measure_reversal(ratio):
+def measure_reversal(runs):
     """The second period; profile halfway between the boundaries, pressure between 0.4 and 1.6 m.
     Particles of the buffers do not count: the last row of each comes and goes."""
     omega = 2 * math.pi / 4
-    with tempfile.TemporaryDirectory() as folder:
-        run = open_run("open_reversal", [f"ratio={ratio}"], f"{folder}/run")
-        off, size, count = [], [], []
-        for t, x, v in fluid(run):
-            count.append(int(((x[:, 0] > 0) & (x[:, 0] < 2)).sum()))
-            if t < 3.99:
-                continue
-            middle = abs(x[:, 0] - 1) < 0.1
-            exact = womersley(x[middle, 1], t)
-            off.append(((v[middle, 0] - exact) ** 2).mean())
-            size.append((exact ** 2).mean())
-        p = run.table()
-        t = p["time_s"]
-        late = t >= 4
-        basis = np.stack([np.cos(omega * t[late]), np.sin(omega * t[late])], axis=1)
-        drop = (p["ahead_p_Pa"] - p["behind_p_Pa"])[late]
-        c, s = np.linalg.lstsq(basis, drop, rcond=None)[0]
-        noise = float(np.std(drop - basis @ (c, s)))
-    wanted = 1000 * omega * 1.2
+    off, size, count = [], [], []
+    for t, x, v in fluid(runs[0]):
+        count.append(int(((x[:, 0] > 0) & (x[:, 0] < 2)).sum()))
+        if t < 3.99:
+            continue
+        middle = abs(x[:, 0] - 1) < 0.1
+        exact = womersley(x[middle, 1], t)
+        off.append(((v[middle, 0] - exact) ** 2).mean())
+        size.append((exact ** 2).mean())
+    p = runs[0].table()
+    t = p["time_s"]
+    late = t >= 4
+    basis = np.stack([np.cos(omega * t[late]), np.sin(omega * t[late])], axis=1)
+    drop = (p["ahead_p_Pa"] - p["behind_p_Pa"])[late]
+    c, s = np.linalg.lstsq(basis, drop, rcond=None)[0]
+    noise, wanted = float(np.std(drop - basis @ (c, s))), 1000 * omega * 1.2
     return [("RMS error of the velocity, % of its RMS", 100 * math.sqrt(sum(off) / sum(size)), 2),
             ("amplitude of the pressure difference, % too high",
              100 * (math.hypot(c, s) / wanted - 1), 2),
             ("its phase, degrees late", math.degrees(math.atan2(s, c)), 2),
             ("rest of it, % of the amplitude", 100 * noise / wanted, None),
             ("change of the number of particles between the lines, %",
-             100 * max(abs(n / count[0] - 1) for n in count), 2)], run.seconds
+             100 * max(abs(n / count[0] - 1) for n in count), 2)]
 
 
-RUNS = [("vortex, 30 spacings over the channel", measure_vortex, 30),
-        ("vortex, 60 spacings", measure_vortex, 60),
-        ("weir, 10 spacings high", measure_weir, 10), ("weir, 20 spacings high", measure_weir, 20),
-        ("reversal, 20 spacings across", measure_reversal, 20),
-        ("reversal, 40 spacings across", measure_reversal, 40)]
+def vortex(ratio):
+    return "open_vortex", [[f"ratio={ratio}", f"length={length} m"] for length in (1.6, 3.2)], \
+        measure_vortex
+
+
+# name: case, settings of each run, how they are measured
+SCENES = {"vortex, 30 spacings over the channel": vortex(30), "vortex, 60 spacings": vortex(60),
+          "weir, 10 spacings high": ("open_weir", [["ratio=10"]], measure_weir),
+          "weir, 20 spacings high": ("open_weir", [["ratio=20"]], measure_weir),
+          "reversal, 20 spacings across": ("open_reversal", [["ratio=20"]], measure_reversal),
+          "reversal, 40 spacings across": ("open_reversal", [["ratio=40"]], measure_reversal)}
 
 
 def report(known):
     rows = [(name, *figure) for name, scene in known.items() for figure in scene["figures"]]
-    return {"answer": judged([(f"{name}, {what}", found, limit) for name, what, found,
-                              limit in rows]),
+    return {"answer": judged([(f"{name}, {what}", *rest) for name, what, *rest in rows]),
             "figures": table(["scene", "figure", "found", "limit"],
-                             [[name, what, cell(found, limit), "" if limit is None
-                               else number(limit)]
+                             [[name, what, cell(found, limit), limit_text(limit)]
                               for name, what, found, limit in rows]),
             "seconds": table(["scene", "processor time, s"],
                              [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
 
 
 def run_scene(name):
-    _, measure, ratio = next(row for row in RUNS if row[0] == name)
-    figures, seconds = measure(ratio)
+    scene, variants, measure = SCENES[name]
+
+    def finished(runs):
+        if any(run.stopped for run in runs):
+            raise BadFile(f"a guard stopped {scene}")
+        return measure(runs)
+    figures, seconds = measure_scene(scene, variants, finished)
     for what, value, _ in figures:
         print(name, what, number(value), flush=True)
     return {"figures": figures, "seconds": seconds}
 
 
 if __name__ == "__main__":
-    runfiles.run_tool(lambda: run_scenes(__doc__, [row[0] for row in RUNS], run_scene, REPORT,
-                                         report))
+    run_tool(lambda: run_scenes(__doc__, SCENES, run_scene, REPORT, report))
