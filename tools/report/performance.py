@@ -11,15 +11,14 @@ bench only, prints the change against the file there was, and writes it anew.
 Example: tools/report/performance.py --bench
 """
 
-import argparse
 import csv
 import os
 import re
 import subprocess
 from pathlib import Path
 
-from common import (ROOT, BadFile, fill, in_scratch, np, program_version, runfiles, table,
-                    words_of)
+from common import (ROOT, BadFile, in_scratch, np, options, program_version, run_tool, table,
+                    words_of, write)
 from performance_targets import bench_rows, run_rows
 
 # As the Makefile says where another build folder is measured (B=...).
@@ -27,6 +26,7 @@ BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
 paragraph = words_of("performance_words.md")
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
+PARTS = ["sort", "packed", "wall", "fluid", "update", "all"]
 # Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides,
 # counted in the source.
 OPERATIONS = 46
@@ -35,8 +35,7 @@ SOLID_OPERATIONS = 56
 
 
 def arguments():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("--bench", action="store_true", help="the bench only")
     parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median "
                                                             "counts")
@@ -46,24 +45,21 @@ def arguments():
 
 
 def run_bench(args):
-    """Comment lines, and rows by (what, variant, particles, threads, part)."""
-    command = [str(BUILD / "bench_bench"), "--reps", str(args.reps)]
-    out = subprocess.run(command + ["--large"] * (args.large or not args.bench), check=True,
-                         text=True,
-                         capture_output=True).stdout
-    ways = subprocess.run([str(BUILD / "bench_neighbours"), "--reps", str(args.reps)],
-                          check=True, text=True, capture_output=True).stdout
-    return out + ways
+    """What the two programs print: comment lines, and rows of a table."""
+    def ask(name, *more):
+        return subprocess.run([str(BUILD / name), "--reps", str(args.reps), *more], check=True,
+                              text=True, capture_output=True).stdout
+    return ask("bench_bench", *["--large"] * (args.large or not args.bench)) + \
+        ask("bench_neighbours")
 
 
 def parse(text):
+    """Comment lines, and rows by (what, variant, particles, threads, part)."""
     lines = text.splitlines()
-    notes = [line[2:] for line in lines if line.startswith("#")]
-    rows = {}
-    for row in csv.DictReader(line for line in lines if not line.startswith("#")):
-        key = (row["what"], row["variant"], int(row["particles"]), int(row["threads"]), row["part"])
-        rows[key] = row
-    return notes, rows
+    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    return [line[2:] for line in lines if line.startswith("#")], {
+        (row["what"], row["variant"], int(row["particles"]), int(row["threads"]), row["part"]): row
+        for row in rows}
 
 
 def bench_file(notes):
@@ -95,20 +91,18 @@ def run_case(case, sets, *more, threads=0):
 
 def step_study():
     """Rows of the table: integrator, C, steps, seconds, extremes of density, how it ended."""
-    rows = []
     for integrator, factors in STEPS.items():
         for factor in factors:
             summary, _ = run_case("cases/verify/dam_break_impact.cfg", [
                 "ratio=40", f"integrator={integrator}", f"numerics.cfl={factor}"], threads=1)
-            if summary is None:
-                rows.append((integrator, factor, "-", "-", "-", "-", "no result"))
-                continue
-            ends = summary["extremes"]
-            low, high = (f"{100 * ends[f'density_{end}']:+.1f}" for end in ("lowest", "highest"))
-            rows.append((integrator, factor, summary["steps"], f"{summary['wall_seconds']:.1f}",
-                         low, high, summary["exit_reason"]))
-            print("  ", *rows[-1], flush=True)
-    return rows
+            row = [integrator, factor, *"----", "no result"]
+            if summary:
+                low, high = (f"{100 * summary['extremes'][f'density_{end}']:+.1f}"
+                             for end in ("lowest", "highest"))
+                row[2:] = [summary["steps"], f"{summary['wall_seconds']:.1f}", low, high,
+                           summary["exit_reason"]]
+            print("  ", *row, flush=True)
+            yield row
 
 
 # case, --set arguments, words, whether on one thread as well
@@ -132,20 +126,16 @@ def work_runs(threads):
             if summary is None:
                 rows.append((words, n, *"-------"))
                 continue
-            seconds = summary["phase_seconds"]
-            numbers[words] = {"seconds": summary["wall_seconds"], "phases": seconds,
-                              "ms": 1e3 * summary["wall_seconds"] / summary["steps"],
-                              "rate": 1e-6 * summary["particle_steps_per_second"]}
-            whole = sum(seconds.values()) or 1
-            share = ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in seconds.items())
-            tops = [np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and
-                    len(c)]
-            peak = max(tops, default=float("nan"))
-            rows.append((words, n, summary["steps"], summary["solid_substeps"],
-                         f"{summary['wall_seconds']:.1f}",
-                         f"{1e3 * summary['wall_seconds'] / summary['steps']:.3g}",
-                         f"{1e-6 * summary['particle_steps_per_second']:.3g}",
-                         f"{1e3 * peak:.4g}", share))
+            phases, wall = summary["phase_seconds"], summary["wall_seconds"]
+            of = numbers[words] = {"seconds": wall, "phases": phases,
+                                   "ms": 1e3 * wall / summary["steps"],
+                                   "rate": 1e-6 * summary["particle_steps_per_second"]}
+            whole = sum(phases.values()) or 1
+            peak = max((np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and
+                        len(c)), default=float("nan"))
+            rows.append((words, n, summary["steps"], summary["solid_substeps"], f"{wall:.1f}",
+                         f"{of['ms']:.3g}", f"{of['rate']:.3g}", f"{1e3 * peak:.4g}",
+                         ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in phases.items())))
             print("  ", *rows[-1], flush=True)
     return rows, numbers
 
@@ -169,80 +159,89 @@ def shared_work(threads):
             {"with output": one / many, "steps alone": steps_one / steps_many})
 
 
-def neighbour_words(rows):
+def neighbour_words(value, n):
     """Clusters in chunks and without, against a tile and a neighbour list (bench/neighbours.c)."""
-    found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
-             if key[0] == "neighbours"}
-    n = next(key[2] for key in rows if key[0] == "neighbours")
-    swept = {"clusters, pairs once": found["chunk", "list and sweep"],
-             "clusters": found["cluster", "list and sweep"],
-             "tile": found["tile", "copy and sweep"],
-             "list": found["list", "sweep"]}
-    return (paragraph("neighbour words", n=n, swept=swept["clusters, pairs once"],
-                      pairs=found["chunk", "pairs"], clusters=swept["clusters"],
-                      pairs_2=found["cluster", "pairs"], tile=swept["tile"], list=swept["list"],
-                      build=found["list", "build"], entries=4 * found["list", "entries"],
-                      swept_2=min(swept, key=swept.get)))
+    def of(variant, part):
+        return value("neighbours", variant, n, 1, part)
+    swept = {"clusters, pairs once": of("chunk", "list and sweep"),
+             "clusters": of("cluster", "list and sweep"), "tile": of("tile", "copy and sweep"),
+             "list": of("list", "sweep")}
+    return paragraph("neighbour words", n=n, swept=swept["clusters, pairs once"],
+                     pairs=of("chunk", "pairs"), clusters=swept["clusters"],
+                     pairs_2=of("cluster", "pairs"), tile=swept["tile"], list=swept["list"],
+                     build=of("list", "build"), entries=4 * of("list", "entries"),
+                     swept_2=min(swept, key=swept.get))
+
+
+def value_of(rows):
+    """value(what, variant, particles or None for any, threads, part), nan where there is none."""
+    def value(what, variant, particles, threads, part):
+        return next((float(row["median"]) for key, row in rows.items()
+                     if key[:2] + key[3:] == (what, variant, threads, part)
+                     and particles in (None, key[2])), float("nan"))
+    return value
+
+
+def sizes_of(rows, what="fluid"):
+    return sorted({key[2] for key in rows if key[0] == what})
+
+
+def sweep_tables(rows, value):
+    sizes, threads = sizes_of(rows), sorted({key[3] for key in rows})
+    variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
+    each = [(v, n, t) for v in variants for n in sizes for t in threads]
+
+    def cells(at, parts):
+        return [f"{value('fluid', *at, part):.1f}" for part in parts]
+
+    def whole(at, parts):
+        return [f"{value('fluid', *at, part):.0f}" for part in parts]
+    yield "Time in ns per fluid particle and force evaluation, by phase:\n\n" + table(
+        ["kernel", "particles", "threads", *PARTS, "bytes/particle"],
+        [(*at, *cells(at, PARTS), *whole(at, ["memory"])) for at in each])
+    yield "Time in ns per solid particle and step:\n\n" + table(
+        ["form", "threads", "ns"],
+        [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
+         if key[0] == "solid" and key[4] == "step"])
+    written = [(*at, *whole(at, ["snapshot", "checkpoint"])) for at in each
+               if ("fluid", *at, "snapshot") in rows]
+    if written:
+        yield "Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of " \
+            "files and folder:\n\n" + \
+            table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written)
+    counted = [f"{whole((v, n, t), ['instructions'])[0]} ({v}, {n} particles)" for v, n, t in each
+               if t == 1 and ("fluid", v, n, t, "instructions") in rows]
+    yield "Instructions a particle and evaluation: " + (", ".join(counted) or
+        "not measured, because this machine has no counter. [absence.md](absence.md) has counts by "
+        "valgrind") + "."
 
 
 def bench_tables(rows):
-    text = []
-    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
-    threads = sorted({key[3] for key in rows})
-    value = lambda *key: float(rows[key]["median"]) if key in rows else float("nan")
-    variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
-    parts = ["sort", "packed", "wall", "fluid", "update", "all"]
-    text.append("Time in ns per fluid particle and force evaluation, by phase:\n\n" + table(
-        ["kernel", "particles", "threads"] + parts + ["bytes/particle"],
-        [(v, n, t, *(f"{value('fluid', v, n, t, p):.1f}" for p in parts),
-          f"{value('fluid', v, n, t, 'memory'):.0f}")
-         for v in variants for n in sizes for t in threads]))
-    text.append("Time in ns per solid particle and step:\n\n" + table(
-        ["form", "threads", "ns"],
-        [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
-         if key[0] == "solid" and key[4] == "step"]))
-    written = [(v, n, t,
-                *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
-               for v in variants for n in sizes for t in threads
-               if ("fluid", v, n, t, "snapshot") in rows]
-    if written:
-        text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of "
-                    "files and folder:\n\n" +
-                    table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
-    counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)"
-               for v in variants
-               for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
-    text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
-                "not measured, because this machine has no counter. [absence.md](absence.md) has "
-                "counts by valgrind") + ".")
-    if any(key[0] == "neighbours" for key in rows):
-        text.append(neighbour_words(rows))
+    value, sizes, threads = value_of(rows), sizes_of(rows), sorted({key[3] for key in rows})
+    text = list(sweep_tables(rows, value))
+    if sizes_of(rows, "neighbours"):
+        text.append(neighbour_words(value, sizes_of(rows, "neighbours")[0]))
     peak = value("machine", "fma", 0, 1, "float")
-    rich = next((v for v in variants if v.startswith("dam_break (mixed")), None)
+    rich = next((key[1] for key in rows if key[1].startswith("dam_break (mixed")), None)
+    slots, step = (value("solid", "default (mixed)", None, 1, part) for part in ("slots", "step"))
+    n = sizes[-1]
     if rich:
-        n = sizes[-1]
-        met = value("fluid", rich, n, 1, "pairs")
-        rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
-        text.append(
-            paragraph("bench tables", peak=peak, rich=rich, n=n, rate=rate,
-                      rate_2=100 * rate / peak, met=met, operations=OPERATIONS))
-    slots = next((float(row["median"]) for key, row in rows.items()
-                  if key[:2] == ("solid", "default (mixed)") and key[4] == "slots"), None)
-    if slots:
-        ns = next(float(row["median"]) for key, row in rows.items()
-                  if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
-        rate = slots * SOLID_OPERATIONS / ns
+        met, ns, bytes_each, whole = (value("fluid", rich, n, 1, part)
+                                      for part in ("pairs", "fluid", "memory", "all"))
+        rate, copy = met * OPERATIONS / ns, value("machine", "copy", 0, 1, "read + write")
+        text.append(paragraph("bench tables", peak=peak, rich=rich, n=n, rate=rate,
+                              rate_2=100 * rate / peak, met=met, operations=OPERATIONS))
+    if slots == slots:
+        rate = slots * SOLID_OPERATIONS / step
         text.append(paragraph("bench tables 2", rate=rate, rate_2=100 * rate / peak, peak=peak,
                               slots=slots, solid_operations=SOLID_OPERATIONS))
     if rich:
-        bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
-        copy = value("machine", "copy", 0, 1, "read + write")
-        text.append(paragraph("bench tables 3", ns=bytes_each / ns,
-                              bytes_each=100 * bytes_each / ns / copy, copy=copy))
+        text.append(paragraph("bench tables 3", ns=bytes_each / whole,
+                              bytes_each=100 * bytes_each / whole / copy, copy=copy))
     if len(threads) > 1 and rich:
         one, many = threads[0], threads[-1]
         speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p)
-                 for p in parts}
+                 for p in PARTS}
         serial = max(0.0, (many / speed["all"] - 1) / (many - 1))
         text.append(f"Speed-up of {many} threads over one, {n} particles: " + ", ".join(
             f"{p} {s:.2f}" for p, s in speed.items()) +
@@ -252,20 +251,13 @@ def bench_tables(rows):
 
 def target_rows(rows, numbers, speed):
     """Rows of the table of targets."""
-    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
-
-    def value(what, variant, particles, threads, part):
-        return next((float(row["median"]) for key, row in rows.items()
-                     if key[:2] + key[3:] == (what, variant, threads, part)
-                     and particles in (None, key[2])), float("nan"))
-    shares = {words: numbers[words]["phases"] for words in numbers if words.startswith("gate")
-              and words.endswith("leapfrog")}
-    return [*run_rows(numbers), *bench_rows(value, sizes, shares, speed)]
+    shares = {words: of["phases"] for words, of in numbers.items()
+              if words.startswith("gate") and words.endswith("leapfrog")}
+    return [*run_rows(numbers), *bench_rows(value_of(rows), sizes_of(rows), shares, speed)]
 
 
-def summary(rows, numbers, speed):
+def summary(targets, numbers, speed):
     """Three sentences: targets met, the cost of a gate, the speed-up."""
-    targets = target_rows(rows, numbers, speed)
     missed = [row[0] for row in targets if row[-1] != "met"]
     gate = numbers.get("gate, dp = 0.5 mm, leapfrog")
     text = f"**How fast is it?** {len(targets) - len(missed)} of {len(targets)} targets are met" + \
@@ -275,32 +267,21 @@ def summary(rows, numbers, speed):
                  f"{gate['ms']:.3g} ms a step of the fluid and {gate['rate']:.3g} million particle "
                  "steps a second. ")
     return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one."
-                   if speed else
-                   "The speed-up by threads was not measured.")
-
-
-def target_words(rows, numbers, speed):
-    return "\n\n".join([
-        paragraph("target words"),
-        table(["work", "other programs", "target", "measured", ""],
-              target_rows(rows, numbers, speed))])
+                   if speed else "The speed-up by threads was not measured.")
 
 
 def other_processors(own):
     """Rows of what was measured elsewhere, or with an earlier program, from the committed files."""
-    rows = []
+    columns = [("machine", "fma", "float"), ("machine", "copy", "read + write"),
+               ("solid", "default (double)", "step"), ("fluid", "bare (mixed)", "fluid"),
+               ("fluid", "dam_break (mixed)", "fluid"), ("fluid", "dam_break (mixed)", "all")]
     for path in sorted((ROOT / "bench").glob("*.csv")):
-        if path == own:
-            continue
-        notes, found = parse(path.read_text())
-        median = {key[:2] + key[3:]: float(row["median"]) for key, row in found.items()}
-        rows.append((f"[{notes[0].split(',')[0]}](../bench/{path.name})", *(
-            f"{median[key]:.3g}" for key in (
-                ("machine", "fma", 1, "float"), ("machine", "copy", 1, "read + write"),
-                ("solid", "default (double)", 1, "step"), ("fluid", "bare (mixed)", 1, "fluid"),
-                ("fluid", "dam_break (mixed)", 1, "fluid"),
-                ("fluid", "dam_break (mixed)", 1, "all")))))
-    return rows
+        if path != own:
+            notes, rows = parse(path.read_text())
+            value, largest = value_of(rows), sizes_of(rows)[-1]
+            yield (f"[{notes[0].split(',')[0]}](../bench/{path.name})", *(
+                f"{value(what, variant, largest if what == 'fluid' else None, 1, part):.3g}"
+                for what, variant, part in columns))
 
 
 def main():
@@ -314,29 +295,26 @@ def main():
         return
     threads = max(key[3] for key in rows)
     print("longest steps:", flush=True)
-    steps = step_study()
+    steps = list(step_study())
     print("whole runs:", flush=True)
     whole, numbers = work_runs(threads)
     shared, speed = shared_work(threads) if threads > 1 else ("", {})
-    load = os.getloadavg()[0]
-    version = program_version()
-    report = fill(
-        "performance.md", summary=summary(rows, numbers, speed), version=version,
-        processor=notes[0],
-        note=notes[1], load=load, reps=args.reps, file=path.name, shared=shared,
-        targets=target_words(rows, numbers, speed), bench=bench_tables(rows),
-        steps=table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %",
-                     "ended"],
-                    steps),
-        work=table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
-                    "million particle steps a second", "displacement, mm", "share of phases, %"],
-                   whole),
-        others=table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns",
-                      "bare sweep, ns",
-                      "dam_break sweep, ns", "dam_break all, ns"], other_processors(path)))
-    (ROOT / "docs/performance.md").write_text(report)
-    print("wrote docs/performance.md and", path.relative_to(ROOT))
+    targets = target_rows(rows, numbers, speed)
+    write(ROOT / "docs/performance.md", "performance.md",
+          summary=summary(targets, numbers, speed), version=program_version(), processor=notes[0],
+          note=notes[1], load=os.getloadavg()[0], reps=args.reps, file=path.name, shared=shared,
+          targets=paragraph("target words") + "\n\n" + table(
+              ["work", "other programs", "target", "measured", ""], targets),
+          bench=bench_tables(rows),
+          steps=table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %",
+                       "ended"], steps),
+          work=table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
+                      "million particle steps a second", "displacement, mm",
+                      "share of phases, %"], whole),
+          others=table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns",
+                        "bare sweep, ns", "dam_break sweep, ns", "dam_break all, ns"],
+                       other_processors(path)))
 
 
 if __name__ == "__main__":
-    runfiles.run_tool(main)
+    run_tool(main)
