@@ -10,17 +10,14 @@ that fails is shown as that. Examples:
   tools/report/forecast.py --seconds 60 gate   longer, and only cases whose name begins like this
 """
 
-import argparse
-import json
 import os
 import re
-import subprocess
 import tempfile
 from pathlib import Path
 
 import study_report
-from common import PROGRAM, ROOT, BadFile, run_tool
-from runs import timed
+from common import PROGRAM, ROOT, BadFile, ask, load, options, run_tool, store_rows
+from runs import effective, timed
 from study import machine
 from study_tables import forecast_cells
 
@@ -28,8 +25,7 @@ UNITS = {"s": 1, "min": 60, "h": 3600}
 
 
 def arguments():
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("cases", nargs="*", help="beginnings of names; all without")
     parser.add_argument("--seconds", type=float, default=6, help="aimed at for a run, as foreseen")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
@@ -39,27 +35,19 @@ def arguments():
 
 
 def foreseen(case, threads, more):
-    """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does
-    not."""
-    done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
-                          capture_output=True, text=True, check=False)
-    steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)
-    solid = re.search(r"(?m)^ *about ([\d.e+]+) solid sub-steps", done.stdout)
-    cost = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", done.stdout)
-    if done.returncode or not steps or not cost:
-        lines = done.stderr.strip().splitlines()
-        raise BadFile(lines[-1] if lines else "no forecast")
+    """Steps, steps of the solid and seconds as --explain says."""
+    said = ask("--explain", case, "--threads", threads, *more)
+    steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", said)
+    solid = re.search(r"(?m)^ *about ([\d.e+]+) solid sub-steps", said)
+    cost = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", said)
+    if not steps or not cost:
+        raise BadFile("no forecast")
     return {"steps": float(steps[1]), "solid_steps": float(solid[1]) if solid else None,
             "seconds": float(cost[1]) * UNITS[cost[2]]}
 
 
 def end_time(case):
-    text = subprocess.run([str(PROGRAM), "--effective", str(case)], capture_output=True, text=True,
-                          check=False).stdout
-    found = re.search(r"(?m)^end_time = ([\d.e+-]+)", text)
-    if not found:
-        raise BadFile("has no end_time")
-    return float(found[1])
+    return float(re.search(r"(?m)^end_time = ([\d.e+-]+)", effective(str(case)))[1])
 
 
 def taken(case, threads, more, folder):
@@ -68,7 +56,7 @@ def taken(case, threads, more, folder):
     status, timing, said = timed(command, threads, 3600)
     if status != 0:
         raise BadFile(said.splitlines()[-1] if said else f"exit status {status}")
-    summary = json.loads((folder / "summary.json").read_text())
+    summary = load(folder / "summary.json")
     return {"steps": summary["steps"], "solid_steps": summary.get("solid_substeps"),
             "seconds": summary["wall_seconds"], "cpu": timing["cpu"], "load": timing["load"],
             "version": summary["version"]}
@@ -102,9 +90,7 @@ def main():
         for threads in all_threads:
             rows.append(compare(case, threads, args.seconds))
             print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
-    head = {"machine": machine(), "seconds": args.seconds}
-    lines = ",\n".join(json.dumps(row) for row in rows)
-    args.data.write_text(json.dumps(head)[:-1] + ', "rows": [\n' + lines + "\n]}\n")
+    store_rows(args.data, {"machine": machine(), "seconds": args.seconds}, "rows", rows)
     print(f"written {args.data}")
     results = args.data.with_name("accuracy.json")
     return 0 if args.no_report or not results.exists() else study_report.write(results,

@@ -4,6 +4,7 @@
 import csv
 import math
 
+import metrics
 from common import ROOT, np
 from sphfsi.snapshots import KINDS, Snapshots
 
@@ -18,27 +19,6 @@ def reference(name):
     return np.array(rows[1:], dtype=float).T
 
 
-class Near:
-    """Points in square cells, to find those near a place."""
-
-    def __init__(self, points, size):
-        self.points, self.size, self.cells = points, size, {}
-        for k, key in enumerate(map(tuple, np.floor(points / size).astype(int))):
-            self.cells.setdefault(key, []).append(k)
-
-    def around(self, place):
-        cx, cy = np.floor(place / self.size).astype(int)
-        return [k for dx in (-1, 0, 1) for dy in (-1, 0, 1)
-                for k in self.cells.get((cx + dx, cy + dy), ())]
-
-    def distance(self, place):
-        """To the nearest point, or the size of a cell where none is nearer."""
-        near = self.around(place)
-        if not near:
-            return self.size
-        return min(self.size, float(np.sqrt(((self.points[near] - place) ** 2).sum(axis=1).min())))
-
-
 def snapshots(run):
     shots = Snapshots(run.folder / "fields.vtkhdf")
     for step in range(len(shots.times)):
@@ -51,8 +31,7 @@ def entered(run):
     count, least, dp = 0, 1.0, run.dp
     for shots, step in snapshots(run):
         x, kind = shots.load(step, "Points")[:, :2], shots.load(step, "kind")
-        bodies = Near(x[kind != FLUID], dp)
-        distance = np.array([bodies.distance(place) for place in x[kind == FLUID]]) / dp
+        distance = metrics.nearest(x[kind == FLUID], x[kind != FLUID], dp) / dp
         count += int((distance < 0.5).sum())
         least = min(least, float(distance.min()))
     return count, least
@@ -68,16 +47,13 @@ def largest_group(points, reach):
     """The points of the largest group whose members are linked by distances within reach."""
     if len(points) == 0:
         return points
-    near, left, best = Near(points, reach), set(range(len(points))), []
-    while len(left) > len(best):
-        group = [left.pop()]
-        for k in group:  # grows as its neighbours join
-            linked = [j for j in near.around(points[k])
-                      if j in left and np.hypot(*(points[j] - points[k])) < reach]
-            left.difference_update(linked)
-            group += linked
-        best = max(best, group, key=len)
-    return points[best]
+    a, b = metrics.close_pairs(points, points, reach)
+    group, before = np.arange(len(points)), None
+    while before is None or (group != before).any():
+        before = group.copy()
+        np.minimum.at(group, a, before[b])  # the least number of a neighbour, and of its group
+        group = group[group]
+    return points[group == np.bincount(group).argmax()]
 
 
 def distances(water, bodies, sign):
