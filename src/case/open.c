@@ -102,65 +102,53 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
     return ERR_OK;
 }
 
-/* Where the guards would warn of the flow itself (time/guards.c), the user is warned before the
- * run. `largest`: of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0
- * c0^2) in Eq. 2. */
-static void warn_of_sound(struct reader *r, const struct scene_open *o, double largest)
+struct scene_open_range scene_open_range(const struct scene *scene, const struct scene_open *o)
 {
-    const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;
-    if (o->kind == OPEN_VELOCITY) r->scene->given_speed = max2(r->scene->given_speed, largest);
-    if (o->kind == OPEN_VELOCITY && c0 > 0 && largest > SPEED_WARNING * c0)
-        warn_at(r->diag, r->scene, o->common->line,
-                "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "
-                "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
-                "= %.3g or more",
-                o->word, o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
-    if (o->kind == OPEN_PRESSURE && stiffness > 0 && largest > DENS_WARNING * stiffness)
-        warn_at(r->diag, r->scene, o->common->line,
-                "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
-                "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
-                o->word, o->common->name, largest, 100 * largest / stiffness,
-                sqrt(largest / (0.01 * r->scene->rho0)));
+    struct scene_open_range range = {.forth = -HUGE_VAL, .back = -HUGE_VAL};
+    for (int n = 0; n < LINE_TIMES; n++) {
+        const double time = scene->top.end_time * n / (LINE_TIMES - 1);
+        for (int k = 0; k < LINE_POINTS; k++) {
+            double x[2], v[2] = {0, 0};
+            line_point(o, k, x);
+            if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
+            if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
+            const double along = o->sense * (v[0] * o->inward[0] + v[1] * o->inward[1]);
+            range.forth = max2(range.forth, along);
+            range.back = max2(range.back, -along);
+            range.largest = max2(range.largest, elementary_hypot(v[0], v[1]));
+            range.time = time;
+            for (int c = 0; c < 2; c++) range.x[c] = x[c];
+            range.infinite = !isfinite(v[0] + v[1]);
+            if (range.infinite) return range;
+        }
+    }
+    return range;
 }
 
 /* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow at some
  * time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
-    double forth = -HUGE_VAL, back = -HUGE_VAL, largest = 0; /* along `sense`, against it, m/s */
-    for (int n = 0; n < LINE_TIMES; n++) {
-        const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
-        for (int k = 0; k < LINE_POINTS; k++) {
-            double x[2], v[2] = {0, 0};
-            line_point(o, k, x);
-            if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
-            if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
-            if (!isfinite(v[0] + v[1]))
-                return bad_section(
-                    r, o->common, NULL,
-                    "%s is not finite at (%g, %g) m and t = %g s; change the expression",
-                    o->pressure ? "pressure"
-                    : o->speed  ? "speed"
-                                : "velocity",
-                    x[0], x[1], time);
-            const double along = o->sense * (v[0] * o->inward[0] + v[1] * o->inward[1]);
-            forth = max2(forth, along);
-            back = max2(back, -along);
-            largest = max2(largest, elementary_hypot(v[0], v[1]));
-        }
-    }
-    warn_of_sound(r, o, largest);
+    const struct scene_open_range range = scene_open_range(r->scene, o);
+    if (range.infinite)
+        return bad_section(r, o->common, NULL,
+                           "%s is not finite at (%g, %g) m and t = %g s; change the expression",
+                           o->pressure ? "pressure"
+                           : o->speed  ? "speed"
+                                       : "velocity",
+                           range.x[0], range.x[1], range.time);
     if (o->kind == OPEN_PRESSURE) return ERR_OK;
-    if (largest > 0 && max2(forth, back) < 1e-9 * largest)
+    if (range.largest > 0 && max2(range.forth, range.back) < 1e-9 * range.largest)
         return bad_section(r, o->common, NULL,
                            "its velocity is along the line everywhere and at all times, so no "
                            "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
                            o->inward[0], o->inward[1]);
-    if (forth <= 0 && back > 0)
+    if (range.forth <= 0 && range.back > 0)
         return bad_section(r, o->common, NULL,
                            "its velocity points %s the fluid everywhere and at all times, by up "
                            "to %g m/s: change its sign or `side`, or call it [%s]",
-                           o->inflow ? "out of" : "into", back, o->inflow ? "outflow" : "inflow");
+                           o->inflow ? "out of" : "into", range.back,
+                           o->inflow ? "outflow" : "inflow");
     return ERR_OK;
 }
 

@@ -108,19 +108,6 @@ static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
     if (find_entry(r, section, "pressure")) f->surface = (double)NAN;
 }
 
-/* `like` copies no regions: a copy of a clamped body that has neither a clamp of its own nor a bond
- * moves freely. */
-static void warn_of_lost_clamp(struct reader *r, const struct scene_solid *copy, const char *like)
-{
-    for (const struct scene_solid *from = r->scene->solid; from < copy; from++)
-        if (strcmp(from->common.name, like) == 0 && from->clamp.n > 0 && copy->clamp.n == 0 &&
-            !copy->joined[0])
-            warn_at(r->diag, r->scene, copy->common.line,
-                    "[solid %s] is like [solid %s] but has no `clamp`, because `like` does "
-                    "not copy regions, so it moves freely; give it a `clamp`",
-                    copy->common.name, like);
-}
-
 /* --- keys --- */
 
 static enum err unknown_key(struct reader *r, const struct entry *e, int id)
@@ -162,7 +149,6 @@ static enum err read_section(struct reader *r, int section)
             (struct scene_given){(int)id, r->sections[section].index, param->key, e->line};
         if (param != like) TRY(case_go_on(r, case_value(r, e, param, target)));
     }
-    if (id == SECTION_solid && as) warn_of_lost_clamp(r, target, as->value);
     return ERR_OK;
 }
 

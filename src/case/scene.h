@@ -273,6 +273,14 @@ SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2
 /* The given velocity at a point of the line and a time, m/s. */
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2]);
 
+/* The velocity or pressure that a boundary gives, over its line and the run: the largest part along
+ * `sense` and against it, m/s; the largest amount, m/s or Pa; where and when it is infinite. */
+struct scene_open_range {
+    double forth, back, largest, x[2], time;
+    bool infinite;
+};
+struct scene_open_range scene_open_range(const struct scene *scene, const struct scene_open *o);
+
 /* The flow that a given velocity brings into the fluid at a time, per depth, m^2/s. */
 double scene_open_flow(const struct scene_open *o, double time);
 

@@ -54,6 +54,9 @@ double extent_along(const struct scene *scene, enum kind kind, int section, cons
 double start_speed(const struct scene *scene, enum kind kind, int section,
                    const struct scene_expr *velocity);
 
+/* Takes note of a speed that the case gives the fluid, and warns if it is near that of sound. */
+void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
+    SPHFSI_PRINTF(4, 5);
 void warn_of_values(struct check *check);
 enum err warn_of_shapes(struct check *check) SPHFSI_CHECKED;
 enum err warn_of_fluid(struct check *check) SPHFSI_CHECKED;

@@ -247,19 +247,6 @@ static void warn_of_start_gap(struct check *check, int fluid)
 
 /* --- speeds near that of sound --- */
 
-static void warn_of_start(struct check *check, int f)
-{
-    struct scene *const scene = check->scene;
-    const double speed = start_speed(scene, KIND_FLUID, f, &scene->fluid[f].velocity);
-    scene->given_speed = max2(scene->given_speed, speed);
-    if (speed > SPEED_WARNING * scene->c0)
-        warn_at(check->diag, scene, scene_line(scene, SECTION_fluid, f, "velocity"),
-                "[fluid %s] begins with up to %.4g m/s, above %g of the speed of sound, %.4g "
-                "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
-                "= %.3g or more",
-                scene->fluid[f].common.name, speed, SPEED_WARNING, scene->c0, 10 * speed);
-}
-
 /* The largest speed of the corners of the box around a wall or a body's clamps. */
 static void warn_of_motion(struct check *check, enum kind kind, int section,
                            const struct scene_section_common *common, const char *name)
@@ -269,7 +256,7 @@ static void warn_of_motion(struct check *check, enum kind kind, int section,
     const struct scene_points *const p = &scene->points[kind];
     const int motion = *name ? scene_find_motion(scene, name) : -1;
     struct box2 box = box2_empty();
-    double largest = 0, time = 0;
+    double largest = 0;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == section && (kind != KIND_SOLID || p->clamped[k]))
             box2_include(&box, p->x[k], p->y[k]);
@@ -281,19 +268,11 @@ static void warn_of_motion(struct check *check, enum kind kind, int section,
             double at[2];
             box2_corner(&box, corner, at);
             const struct motion_point moved = motion_of_point(&m, at[0], at[1]);
-            const double speed = elementary_hypot(moved.v[0], moved.v[1]);
-            if (speed > largest) largest = speed, time = t;
+            largest = max2(largest, elementary_hypot(moved.v[0], moved.v[1]));
         }
     }
-    scene->given_speed = max2(scene->given_speed, largest);
-    if (largest > SPEED_WARNING * scene->c0)
-        warn_at(check->diag, scene, scene->motion[motion].common.line,
-                "[motion %s] moves [%s %s] at up to %.3g m/s at t = %.3g s, above %g of the "
-                "fluid's speed of sound, %.3g m/s: fluid in its way is compressed, and a guard may "
-                "stop the run; check the unit (angles are in radians), or use sound_speed = %.3g "
-                "or more",
-                scene->motion[motion].common.name, kind_names[kind], common->name, largest, time,
-                SPEED_WARNING, scene->c0, 10 * largest);
+    warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves [%s %s] at",
+                  scene->motion[motion].common.name, kind_names[kind], common->name);
 }
 
 /* --- open boundaries --- */
@@ -568,7 +547,9 @@ enum err warn_of_fluid(struct check *check)
         warn_of_density(check, f);
         warn_of_start_gap(check, f);
         warn_of_weight(check, f);
-        warn_of_start(check, f);
+        warn_of_speed(check, scene_line(scene, SECTION_fluid, f, "velocity"),
+                      start_speed(scene, KIND_FLUID, f, &scene->fluid[f].velocity),
+                      "[fluid %s] begins with", scene->fluid[f].common.name);
     }
     for (int k = 0; k < scene->n_wall; k++)
         warn_of_motion(check, KIND_WALL, k, &scene->wall[k].common, scene->wall[k].motion);

@@ -52,25 +52,26 @@ static enum err warn_of_loose_bodies(struct check *check)
     for (int k = 0; k < scene->n_solid; k++) {
         const struct scene_solid *const b = &scene->solid[k];
         const bool falls = b->gravity && effects & FX_GRAVITY;
-        bool loaded = false;
-        if (hold[k] == HELD || b->joined[0] || b->velocity.e[0]) continue;
+        bool loaded = false, lost = false; /* `like` copies no regions */
+        if (hold[k] == HELD || b->joined[0]) continue;
+        for (int m = 0; m < k; m++)
+            lost |=
+                strcmp(scene->solid[m].common.name, b->like) == 0 && scene->solid[m].clamp.n > 0;
         for (int m = 0; m < scene->n_load; m++)
             loaded |= scene_find_solid(scene, scene->load[m].body) == k;
-        if (falls && hold[k] == LOOSE)
+        const char *const why =
+            lost                        ? "`like` does not copy one, so it moves freely"
+            : b->velocity.e[0]          ? NULL
+            : falls && hold[k] == LOOSE ? "gravity acts on it, so it falls unless fluid carries it"
+            : falls && scene->n_fluid > 0
+                ? "it only stands on what is below it, so fluid may move it"
+            : loaded && hold[k] == LOOSE
+                ? "a [load] acts on it, so it is driven away unless something stops it"
+                : NULL;
+        if (why)
             warn_at(check->diag, scene, b->common.line,
-                    "[solid %s] has no clamp, and gravity acts on it, so it falls unless fluid "
-                    "carries it; give it a `clamp`, or gravity = off",
-                    b->common.name);
-        else if (falls && scene->n_fluid > 0)
-            warn_at(check->diag, scene, b->common.line,
-                    "[solid %s] has no clamp and only stands on what is below it, so fluid may "
-                    "move it; give it a `clamp` if it is fixed",
-                    b->common.name);
-        else if (loaded && hold[k] == LOOSE)
-            warn_at(check->diag, scene, b->common.line,
-                    "[solid %s] has no clamp, and a [load] acts on it, so it is driven away unless "
-                    "something stops it; give it a `clamp`",
-                    b->common.name);
+                    "[solid %s] has no clamp, and %s; give it a `clamp` if it is fixed%s",
+                    b->common.name, why, falls ? ", or gravity = off" : "");
     }
     return ERR_OK;
 }
@@ -117,23 +118,14 @@ static enum err warn_of_full_clamps(struct check *check)
         if (held == 0) continue;
         const int rows = free_rows(scene, &clamped, body);
         if (rows >= RESOLVED_ROWS || (rows > 0 && scene_is_bonded(scene, body))) continue;
-        if (rows == 0)
-            warn_at(check->diag, scene, line,
-                    "`clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
-                    "the clamp smaller, or use a [wall], which is faster",
-                    all, name);
-        else if (rows == 1)
-            warn_at(check->diag, scene, line,
-                    "`clamp` leaves only %lld of %lld particles of [solid %s] free, all of them "
-                    "beside clamped ones: they move, but the body can neither bend nor stretch as "
-                    "drawn; make the clamp smaller, or use a finer dp",
-                    all - held, all, name);
-        else
-            warn_at(check->diag, scene, line,
-                    "`clamp` leaves only %d rows of particles of [solid %s] free, so what bends "
-                    "or stretches there is inaccurate; make the clamp smaller, or use a finer dp, "
-                    "for %d rows or more",
-                    rows, name, RESOLVED_ROWS);
+        warn_at(check->diag, scene, line,
+                "`clamp` leaves %d row%s of particles of [solid %s] free, %lld of %lld particles, "
+                "so %s; make the clamp smaller, or use %s",
+                rows, rows == 1 ? "" : "s", name, all - held, all,
+                rows == 0   ? "it cannot deform"
+                : rows == 1 ? "they move, but the body can neither bend nor stretch as drawn"
+                            : "what bends or stretches there is inaccurate",
+                rows == 0 ? "a [wall], which is faster" : "a finer dp, for 4 rows or more");
     }
     return ERR_OK;
 }

@@ -5,6 +5,7 @@
 #include "case/params.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -138,16 +139,46 @@ static void warn_of_gravity_table(struct check *check)
                 name, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
 }
 
-/* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within
- * `absorb`. */
-static void warn_of_absorb(struct check *check, const struct scene_open *open)
+void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
+{
+    struct scene *const scene = check->scene;
+    char what[4 * SCENE_NAME];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(what, sizeof what, format, list);
+    va_end(list);
+    scene->given_speed = max2(scene->given_speed, speed);
+    if (scene->n_fluid > 0 && speed > SPEED_WARNING * scene->c0)
+        warn_at(check->diag, scene, line,
+                "%s up to %.3g m/s, above %g of the fluid's speed of sound, %.3g m/s. It is not "
+                "weakly compressible then, and a guard may stop the run; check the units (angles "
+                "are in radians), or use "
+                "sound_speed = %.3g or more",
+                what, speed, SPEED_WARNING, scene->c0, 10 * speed);
+}
+
+/* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs:
+ * a pressure P changes the density by P/(rho0 c0^2) in Eq. 2. T-53 lets sound out up to a
+ * wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
+static void warn_of_open(struct check *check, const struct scene_open *open)
 {
     const struct scene *const scene = check->scene;
-    const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h;
-    const int line =
-        scene_line(scene, (enum section_id)open->common->section, open->common->index, "absorb");
-    if (!(open->absorb > 0) || open->kind != OPEN_PRESSURE) return;
-    if (wave < reach)
+    const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h,
+                 largest = scene_open_range(scene, open).largest,
+                 stiffness = scene->rho0 * square(scene->c0);
+    const int line = scene_line(scene, open->common->section, open->common->index, "absorb");
+    if (open->kind == OPEN_VELOCITY) {
+        warn_of_speed(check, open->common->line, largest, "[%s %s] gives the fluid", open->word,
+                      open->common->name);
+        return;
+    }
+    if (largest > DENS_WARNING * stiffness)
+        warn_at(check->diag, scene, open->common->line,
+                "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
+                "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
+                open->word, open->common->name, largest, 100 * largest / stiffness,
+                sqrt(largest / (0.01 * scene->rho0)));
+    if (open->absorb > 0 && wave < reach)
         warn_at(check->diag, scene, line,
                 "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The fluid "
                 "resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out waves of "
@@ -180,6 +211,6 @@ void warn_of_values(struct check *check)
                     "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
                     "this boundary; use density_diffusion = 0.1",
                     open.word, open.common->name);
-        warn_of_absorb(check, &open);
+        warn_of_open(check, &open);
     }
 }

@@ -63,11 +63,8 @@ static void join_bodies(struct solid *solid, const struct scene *scene)
 /* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
  * smaller. Without damping the effect on the motion accumulates: a steel strip without viscosity
  * gained 4e-4 of its energy in 0.14 s. With alpha_s = 0.001 it gained as much as in double. */
-#define DAMPED 0.01
-
-/* The name of a body for which float is not sufficient; NULL: none. */
-static const char *needs_double(const struct solid *solid, const struct scene *scene,
-                                const struct particles *particles)
+const char *solid_needs_double(const struct solid *solid, const struct scene *scene,
+                               const struct particles *particles)
 {
     /* NOLINTNEXTLINE(clang-analyzer-core.VLASize): a solid has bodies */
     bool held[solid->n_bodies];
@@ -78,29 +75,21 @@ static const char *needs_double(const struct solid *solid, const struct scene *s
             held[solid->body[k].bond] = true;
     }
     for (int k = 0; k < solid->n_bodies; k++)
-        if (!held[solid->body[k].bond] || scene->solid[k].artificial_viscosity < DAMPED)
+        if (!held[solid->body[k].bond] || scene->solid[k].artificial_viscosity < SOLID_DAMPED)
             return scene->solid[k].common.name;
     return NULL;
 }
 
 static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
                                                 const struct scene *scene,
-                                                const struct particles *particles, struct diag *d)
+                                                const struct particles *particles)
 {
     const int choice = scene->numerics.solid_precision;
     if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE ||
         scene->numerics.solid_steps == SOLID_STEPS_IMPLICIT)
         return &solid_sweeps_double;
-    const char *const name = needs_double(solid, scene, particles);
-    if (!name) return &solid_sweeps_mixed;
-    if (choice == SOLID_PRECISION_AUTO) return &solid_sweeps_double;
-    char place[LOCATION_TEXT];
-    scene_location(scene, scene_line(scene, SECTION_numerics, 0, "solid_precision"), place);
-    diag_warn(d,
-              "%s: [numerics] solid_precision = single, but [solid %s] can turn freely or has an "
-              "artificial_viscosity below %g: its stress may have an error of 1e-6 of Young's "
-              "modulus, and it may gain energy; use auto",
-              place, name, DAMPED);
+    if (choice == SOLID_PRECISION_AUTO && solid_needs_double(solid, scene, particles))
+        return &solid_sweeps_double;
     return &solid_sweeps_mixed;
 }
 
@@ -125,7 +114,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
-    solid->sweeps = choose_sweeps(solid, scene, particles, d);
+    solid->sweeps = choose_sweeps(solid, scene, particles);
     TRY(solid_packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {

@@ -6,6 +6,12 @@
 
 #include "solid/types.h"
 
+/* The name of a body that can turn freely, or has less artificial viscosity than SOLID_DAMPED, so
+ * that float is not sufficient for it; NULL: none. */
+#define SOLID_DAMPED 0.01
+const char *solid_needs_double(const struct solid *solid, const struct scene *scene,
+                               const struct particles *particles);
+
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
  * are set). */
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,

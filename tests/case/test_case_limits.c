@@ -136,7 +136,7 @@ static void test_fast_open_boundaries_are_warned_of(void)
 {
     const char *const text = TOP WATER "[inflow i]\nfrom = 0, 20 mm\nto = 0, 0\n%s\n";
     static const char *const row[][2] = {
-        {"speed = 7", "gives the fluid up to 7 m/s, above 0.3 of the speed of sound"},
+        {"speed = 7", "gives the fluid up to 7 m/s, above 0.3 of the fluid's speed of sound"},
         {"speed = 5", NULL},
         {"pressure = -1e5", "gives the fluid up to 1e+05 Pa, which changes its density"},
         {"pressure = 1e4", NULL},

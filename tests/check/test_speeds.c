@@ -29,7 +29,7 @@ static void warns(const char *text, const char *words)
 static void test_walls(void)
 {
     warns(BASIN "kind = expression\nx = 0.4*sin(10*t)\n",
-          "fast.cfg:12: [motion m] moves [wall paddle] at up to 4 m/s at t = 0 s");
+          "fast.cfg:12: [motion m] moves [wall paddle] at up to 4 m/s, above 0.3 of");
     TEST_ASSERT_EQUAL_DOUBLE(4, scene.given_speed);
     warns(BASIN "velocity = 0, 2.9\n", NULL);
 }
