@@ -50,9 +50,11 @@ enum {
 /* Four doubles or floats (the particles of a group) and eight floats or words, on any register
  * width. Types that end in _at may be at any address and alias the arrays that they load from. */
 typedef double four_double __attribute__((vector_size(32)));
+typedef int64_t four_long __attribute__((vector_size(32))); /* its comparisons */
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
 typedef float four_float_at __attribute__((vector_size(16), aligned(4), may_alias));
+#define FOUR(field, i) ((four_double) * (const four_double_at *)&(field)[i])
 typedef float eight_float_at __attribute__((vector_size(32), aligned(4), may_alias));
 typedef uint32_t eight_word __attribute__((vector_size(32)));
 typedef uint32_t eight_word_at __attribute__((vector_size(32), aligned(4), may_alias));
@@ -263,6 +265,16 @@ SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 }
 #undef SIMD_LANEWISE
 #endif
+
+SPHFSI_INLINE four_double four_sqrt(four_double a)
+{
+#ifdef SIMD_AVX2
+    return (four_double)_mm256_sqrt_pd((__m256d)a);
+#else
+    for (int l = 0; l < GROUP; l++) a[l] = __builtin_sqrt(a[l]);
+    return a;
+#endif
+}
 
 /* Sum of the lanes by halving: lane k + lane k + n/2, until one remains. vtop: the largest lane. */
 SPHFSI_INLINE double vsum_double(vdouble a)

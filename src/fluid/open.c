@@ -3,8 +3,8 @@
 
 #include "base/hash.h"
 #include "expr/expr.h"
+#include "fluid/across.h"
 #include "fluid/eos.h"
-#include "particles/kernel.h"
 
 #include <math.h>
 
@@ -93,65 +93,6 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
         o->sum[k][OPEN_MEAN_FLOW] = (double)NAN;
     }
     return ERR_OK;
-}
-
-/* --- the fluid across the line --- */
-
-/* Sums of the kernel over the fluid around a point: of its fields and of the vector to it. */
-struct across {
-    const struct fluid_constants *k;
-    const struct particles *p;
-    double w, p_w, u, v;
-    double x, y, xx, xy, yy; /* of the vector from the point to the particles */
-    double ux, uy, vx, vy;
-    double mass_x, mass_y; /* of rho/rho0 times the vector back */
-};
-
-static void add_across(void *context, int64_t i, double x, double y, double r)
-{
-    struct across *const s = context;
-    const struct fluid_constants *const k = s->k;
-    const struct particles *const particles = s->p;
-    if (particles->open[i]) return;
-    const double w = kernel_w(r, k->h);
-    const double u = particles->vx[i], v = particles->vy[i], mass = w * (1 + particles->dens[i]);
-    s->w += w;
-    s->p_w += w * eos_pressure(particles->dens[i], k->rho0, k->c0);
-    s->u += w * u;
-    s->v += w * v;
-    s->x += w * x;
-    s->y += w * y;
-    s->xx += w * x * x;
-    s->xy += w * x * y;
-    s->yy += w * y * y;
-    s->ux += w * u * x;
-    s->uy += w * u * y;
-    s->vx += w * v * x;
-    s->vy += w * v * y;
-    s->mass_x -= mass * x;
-    s->mass_y -= mass * y;
-}
-
-/* The fluid within reach of a point, without the buffers. */
-static struct across state_across(const struct fluid_constants *k,
-                                  const struct particles *particles, const struct cells *cells,
-                                  const double at[2])
-{
-    struct across sums = {.k = k, .p = particles};
-    cells_each_near(cells, KIND_FLUID, particles, at, KERNEL_REACH * k->h, add_across, &sums);
-    return sums;
-}
-
-/* T-51: the value at the point of the linear field fitted to the sums; their mean if the particles
- * span no plane. */
-static double linear_value(const struct across *s, double mean, double with_x, double with_y)
-{
-    const double x = s->x / s->w, y = s->y / s->w;
-    const double xx = s->xx / s->w - x * x, xy = s->xy / s->w - x * y, yy = s->yy / s->w - y * y;
-    const double det = xx * yy - xy * xy, value = mean / s->w;
-    if (!(det > 0.01 * square(xx + yy))) return value;
-    const double cx = with_x / s->w - x * value, cy = with_y / s->w - y * value;
-    return value - ((yy * x - xy * y) * cx + (xx * y - xy * x) * cy) / det;
 }
 
 /* --- fields of the buffers --- */
@@ -311,6 +252,9 @@ void open_set(struct open *o, const struct fluid_constants *k, struct particles 
               const struct cells *cells, double time, bool book)
 {
     fix_times(o, k, time);
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < particles->n; i++)
+        particles->p[i] = eos_pressure(particles->dens[i], k->rho0, k->c0);
 #pragma omp parallel for schedule(static)
     for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, particles, cells, time);
     find_flow(o, k, particles, cells);

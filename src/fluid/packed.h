@@ -32,9 +32,6 @@ SPHFSI_INLINE void cluster_box(const struct cluster_boxes *boxes, size_t cluster
     boxes->side[BOX_UP][cluster] = (float)high[1];
 }
 
-/* Four values of a field. */
-#define FOUR(field, i) ((four_double) * (const four_double_at *)&(field)[i])
-
 SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
 {
     *(four_real *)(void *)(packed + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);

@@ -142,27 +142,45 @@ SPHFSI_INLINE bool cells_is_near(const struct cells *cells, int32_t cell, double
     return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
+/* The cells, n[0] x n[1] from `first` on, of particles nearer to a point than `distance`, although
+ * they may have moved by the skin since they were sorted. */
+struct cell_window {
+    int first[2], n[2];
+};
+
+SPHFSI_INLINE struct cell_window cells_window(const struct cells *cells, const double at[2],
+                                              double distance)
+{
+    struct cell_window w;
+    for (int axis = 0; axis < 2; axis++) {
+        const int count = axis ? cells->ny : cells->nx;
+        const double place = (at[axis] - cells->lower[axis]) / cells->side[axis],
+                     part = (distance + cells->skin) / cells->side[axis];
+        w.first[axis] = (int)max2(-1, min2(count, __builtin_floor(place - part)));
+        w.n[axis] = (int)max2(-1, min2(count, __builtin_floor(place + part))) - w.first[axis] + 1;
+        if (cells->periodic[axis] && w.n[axis] > count) w.n[axis] = count;
+    }
+    return w;
+}
+
+/* Its m-th cell; -1: outside the grid. */
+SPHFSI_INLINE int32_t window_cell(const struct cells *cells, const struct cell_window *w, int m)
+{
+    return cell_at(cells, w->first[0] + m % w->n[0], w->first[1] + m / w->n[0]);
+}
+
 /* Called for particle i at the vector (x, y) from a point, r long, m. */
 typedef void cells_visitor(void *context, int64_t i, double x, double y, double r);
 
-/* Visits the particles p of a kind that are nearer to a point than `distance`, although they may
- * have moved by the skin since they were sorted. */
+/* Visits the particles p of a kind that are nearer to a point than `distance`. */
 SPHFSI_INLINE void cells_each_near(const struct cells *cells, enum kind kind,
                                    const struct particles *particles, const double at[2],
                                    double distance, cells_visitor *visit, void *context)
 {
     const struct cell_list *const list = &cells->kind[kind];
-    int first[2], n[2];
-    for (int axis = 0; axis < 2; axis++) {
-        const int count = axis ? cells->ny : cells->nx;
-        const double place = (at[axis] - cells->lower[axis]) / cells->side[axis],
-                     part = (distance + cells->skin) / cells->side[axis];
-        first[axis] = (int)max2(-1, min2(count, __builtin_floor(place - part)));
-        n[axis] = (int)max2(-1, min2(count, __builtin_floor(place + part))) - first[axis] + 1;
-        if (cells->periodic[axis] && n[axis] > count) n[axis] = count;
-    }
-    for (int m = 0; m < n[0] * n[1]; m++) {
-        const int32_t cell = cell_at(cells, first[0] + m % n[0], first[1] + m / n[0]);
+    const struct cell_window window = cells_window(cells, at, distance);
+    for (int m = 0; m < window.n[0] * window.n[1]; m++) {
+        const int32_t cell = window_cell(cells, &window, m);
         if (cell < 0) continue;
         for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
             const int64_t i = list->order ? list->order[k] : k;

@@ -23,28 +23,64 @@ static const char scene[] =
 /* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel.
  */
 static const struct {
-    const char *name, *alpha, *delta, *set, *another, *third, *fourth, *mass;
+    const char *name, *alpha, *delta, *set[8], *mass;
     effect_set effects;
 } sets[] = {
-    {"bare", "0", "0", NULL, NULL, NULL, NULL, "equal", 0},
-    {"viscous", "0.05", "0", NULL, NULL, NULL, NULL, "equal", FX_VISCOSITY},
-    {"dam_break", "0.05", "0.1", NULL, NULL, NULL, NULL, "equal", FX_VISCOSITY | FX_DIFFUSION},
-    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL, NULL, NULL, "equal",
+    {"bare", "0", "0", {NULL}, "equal", 0},
+    {"viscous", "0.05", "0", {NULL}, "equal", FX_VISCOSITY},
+    {"dam_break", "0.05", "0.1", {NULL}, "equal", FX_VISCOSITY | FX_DIFFUSION},
+    {"sluice",
+     "0.05",
+     "0.1",
+     {"water.wall_repulsion=0.1"},
+     "equal",
      FX_VISCOSITY | FX_DIFFUSION | FX_REPULSION},
-    {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL, NULL, NULL, "equal",
+    {"hydrostatic",
+     "0.05",
+     "0.1",
+     {"water.diffusion_form=fourtakas"},
+     "equal",
      FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS},
-    {"standard", "0.05", "0.1", STANDARD, "hydrostatic",
+    {"standard",
+     "0.05",
+     "0.1",
+     {STANDARD},
+     "hydrostatic",
      FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING |
          FX_MASSES},
-    {"standard_inviscid", "0", "0.1", STANDARD, "hydrostatic",
+    {"standard_inviscid",
+     "0",
+     "0.1",
+     {STANDARD},
+     "hydrostatic",
      FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING | FX_MASSES},
-    {"standard_equal", "0.05", "0.1", STANDARD, "equal",
+    {"standard_equal",
+     "0.05",
+     "0.1",
+     {STANDARD},
+     "equal",
      FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING},
-    {"standard_inviscid_equal", "0", "0.1", STANDARD, "equal",
+    {"standard_inviscid_equal",
+     "0",
+     "0.1",
+     {STANDARD},
+     "equal",
      FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING},
-    {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none", NULL, NULL, "equal",
+    {"channel",
+     "0",
+     "0",
+     {"water.laminar_viscosity=1e-3", "tank.slip=none"},
+     "equal",
      FX_LAMINAR | FX_NO_SLIP},
-    {"any", "0", "0.1", NULL, NULL, NULL, NULL, "hydrostatic", ANY_EFFECTS},
+    {"body_in_flow",
+     "0",
+     "0.1",
+     {STANDARD, "water.laminar_viscosity=1e-3", "tank.slip=none", "water.shifting=2",
+      "numerics.sides=one"},
+     "equal",
+     FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_LAMINAR | FX_NO_SLIP | FX_REPULSION |
+         FX_WALL_DAMPING | FX_SHIFTING | FX_ONE_SIDED},
+    {"any", "0", "0.1", {NULL}, "hydrostatic", ANY_EFFECTS},
 };
 
 static struct rig rig;
@@ -59,8 +95,9 @@ static uint64_t run(int set, const char *precision, bool generic)
     snprintf(delta, sizeof delta, "water.density_diffusion=%s", sets[set].delta);
     snprintf(mass, sizeof mass, "water.particle_mass=%s", sets[set].mass);
     rig_switches.generic_kernel = generic;
-    rig_open(&rig, scene, precision, alpha, delta, mass, sets[set].set, sets[set].another,
-             sets[set].third, sets[set].fourth, NULL);
+    rig_open(&rig, scene, precision, alpha, delta, mass, sets[set].set[0], sets[set].set[1],
+             sets[set].set[2], sets[set].set[3], sets[set].set[4], sets[set].set[5],
+             sets[set].set[6], sets[set].set[7], NULL);
     rig_switches.generic_kernel = false;
     rig_steps(&rig, 40, 1);
     return simulation_hash(&rig.sim);
