@@ -8,11 +8,10 @@
 
 #define EOS_GAMMA 7.0
 
-/* (1 + d)^7 - 1, without cancellation for small d. */
-SPHFSI_INLINE double eos_power(double d)
-{
-    return d * (7 + d * (21 + d * (35 + d * (35 + d * (21 + d * (7 + d))))));
-}
+/* (1 + d)^7 - 1, without cancellation for small d, of a number or a vector. */
+#define EOS_POWER(d) \
+    ((d) * (7 + (d) * (21 + (d) * (35 + (d) * (35 + (d) * (21 + (d) * (7 + (d))))))))
+SPHFSI_INLINE double eos_power(double d) { return EOS_POWER(d); }
 
 /* Eq. 2: pressure, Pa. */
 SPHFSI_INLINE double eos_pressure(double dens, double rho0, double c0)
@@ -86,5 +85,8 @@ SPHFSI_INLINE double eos_energy(double d, double c0)
     const double sixth = d * d * (5.0 / 2 + d * (10.0 / 3 + d * (5.0 / 2 + d * (1 + d / 6))));
     return c0 * c0 / EOS_GAMMA * (sixth + d * d / (1 + d));
 }
+
+/* P rho0/rho^2, m^2/s^2: the rate at which that energy changes with dens. */
+#define EOS_ENERGY_RATE(d, c0) ((c0) * (c0) / EOS_GAMMA * EOS_POWER(d) / ((1 + (d)) * (1 + (d))))
 
 #endif

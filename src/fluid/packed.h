@@ -40,10 +40,7 @@ SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
 /* Tait's pressure of four. */
 SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_constants *k)
 {
-    four_double pressure;
-    /* cppcheck-suppress uninitvar ; all of its items are set here */
-    for (int r = 0; r < 4; r++) pressure[r] = eos_pressure(dens[r], k->rho0, k->c0);
-    return pressure;
+    return k->c0 * k->c0 * k->rho0 / EOS_GAMMA * EOS_POWER(dens);
 }
 
 /* Acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a): the pressure psi of four, where

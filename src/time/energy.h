@@ -43,10 +43,8 @@ void energy_of_restart(struct simulation *sim);
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
 
-/* Energy of position and compression of each fluid section, J/m: what a shift of its particles
- * changes is dissipated. */
-void energy_before_shift(const struct simulation *sim, double energy[SCENE_MAX_SECTIONS]);
-void energy_after_shift(struct simulation *sim, const double energy[SCENE_MAX_SECTIONS]);
+/* What a shift of particles adds to the energy of each fluid section is dissipated, J/m. */
+void energy_of_shift(struct simulation *sim, const double gain[SCENE_MAX_SECTIONS]);
 
 /* T-45: the compression energy of fluid particle i, whose density is about to be set to zero, is
  * dissipated. */

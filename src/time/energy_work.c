@@ -15,91 +15,14 @@ static struct energy_entry *entry_of(struct simulation *sim, enum kind kind, int
 
 static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
 
-/* --- sums over the fluid --- */
-
-/* Power of all rates on a particle (T-46a); that of walls and structures; energy of position and
- * compression. */
-enum energy_kind { POWER, BODY_POWER, STATIC_ENERGY };
-
-/* Eight particles abreast, over a fixed number of slices: the order of the sums is the same on
- * every machine and with any number of threads. */
-enum { ABREAST = 8, BLOCK = 64, SLICES = 16 };
-
-/* P/rho^2 rho0, m^2/s^2: the rate at which the energy of compression changes with the density. */
-SPHFSI_INLINE double compression_rate(double dens, double c0)
-{
-    return c0 * c0 / EOS_GAMMA * eos_power(dens) / ((1 + dens) * (1 + dens));
-}
-
-/* The quantity of `count` particles from i on. */
-static void find_values(const struct simulation *sim, enum energy_kind quantity, int64_t i,
-                        int count, double *value)
-{
-    const struct particles particles = sim->kind[KIND_FLUID];
-    const double c0 = sim->fluid.k.c0, mass = sim->fluid.k.mass;
-    const double gx = sim->scene->top.gravity[0], gy = sim->scene->top.gravity[1];
-    if (quantity == BODY_POWER) {
-#pragma omp simd
-        for (int r = 0; r < count; r++) value[r] = particles.body_power[i + r];
-        return;
-    }
-    if (quantity == POWER) {
-#pragma omp simd
-        for (int64_t k = i; k < i + count; k++)
-            value[k - i] = mass * (particles.vx[k] * (particles.ax[k] - gx) +
-                                   particles.vy[k] * (particles.ay[k] - gy) +
-                                   compression_rate(particles.dens[k], c0) * particles.ddens[k]);
-    } else {
-#pragma omp simd
-        for (int64_t k = i; k < i + count; k++)
-            value[k - i] = mass * (eos_energy(particles.dens[k], c0) - gx * particles.x[k] -
-                                   gy * particles.y[k]);
-    }
-    if (!particles.m) return;
-#pragma omp simd
-    for (int r = 0; r < count; r++) value[r] *= particles.m[i + r];
-}
-
-static void sum_slice(const struct simulation *sim, enum energy_kind quantity, int64_t from,
-                      int64_t end, double of[SCENE_MAX_SECTIONS])
-{
-    const int32_t *const section = sim->kind[KIND_FLUID].body;
-    const bool one = sim->scene->n_fluid == 1;
-    double value[BLOCK], sum[ABREAST] = {0};
-    for (int64_t i = from; i < end; i += BLOCK) {
-        const int count = end - i < BLOCK ? (int)(end - i) : BLOCK;
-        const int whole = one ? count / ABREAST * ABREAST : 0;
-        find_values(sim, quantity, i, count, value);
-        for (int r = 0; r < whole; r += ABREAST)
-            for (int lane = 0; lane < ABREAST; lane++) sum[lane] += value[r + lane];
-        for (int r = whole; r < count; r++) of[section[i + r]] += value[r];
-    }
-    for (int lane = 0; lane < ABREAST; lane++) of[0] += sum[lane];
-}
-
-static void sum_fluid(const struct simulation *sim, enum energy_kind quantity,
-                      double of[SCENE_MAX_SECTIONS])
-{
-    const int64_t n = sim->kind[KIND_FLUID].n;
-    double part[SLICES][SCENE_MAX_SECTIONS];
-    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-#pragma omp parallel for schedule(static) num_threads(sim->fluid.threads)
-    for (int m = 0; m < SLICES; m++) {
-        memset(part[m], 0, (size_t)sim->scene->n_fluid * sizeof part[m][0]);
-        sum_slice(sim, quantity, n * m / SLICES, n * (m + 1) / SLICES, part[m]);
-    }
-    for (int m = 0; m < SLICES; m++)
-        for (int k = 0; k < sim->scene->n_fluid; k++) of[k] += part[m][k];
-}
-
 /* --- rates --- */
 
-/* Power of the rates of the last evaluation, W/m: of all rates on a fluid, of walls and structures
+/* Power of the rates of the last evaluation, W/m: of all pairs on a fluid, of walls and structures
  * on it, and of sources outside the scene; of the fluid's force on structures at the velocity that
  * it uses. */
 struct powers {
-    double total[SCENE_MAX_SECTIONS], bodies[SCENE_MAX_SECTIONS], outside[SCENE_MAX_SECTIONS];
-    double on_structure[SCENE_MAX_SECTIONS];
+    const double *pairs, *bodies;
+    double outside[SCENE_MAX_SECTIONS], on_structure[SCENE_MAX_SECTIONS];
 };
 
 /* Of a program, of gravity beyond its value at t = 0, and of the constraint at open boundaries. */
@@ -125,8 +48,8 @@ static void find_powers(const struct simulation *sim, struct powers *power)
 {
     const struct particles *const solid = &sim->kind[KIND_SOLID];
     memset(power, 0, sizeof *power);
-    sum_fluid(sim, POWER, power->total);
-    if (sim->effects & (FX_WALL | FX_COUPLING)) sum_fluid(sim, BODY_POWER, power->bodies);
+    power->pairs = sim->fluid.power + POWER_OF_PAIRS * sim->fluid.sections;
+    power->bodies = sim->fluid.power + POWER_OF_BODIES * sim->fluid.sections;
     find_outside_power(sim, power->outside);
     for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
         power->on_structure[solid->body[i]] +=
@@ -137,8 +60,8 @@ static void integrate(struct simulation *sim, const struct powers *power, double
 {
     for (int k = 0; k < sim->scene->n_fluid; k++) {
         struct energy_entry *const e = entry_of(sim, KIND_FLUID, k);
-        e->supplied += dt * power->total[k];
-        e->dissipated += dt * (power->total[k] - power->bodies[k] - power->outside[k]);
+        e->supplied += dt * (power->pairs[k] + power->outside[k]);
+        e->dissipated += dt * (power->pairs[k] - power->bodies[k]);
         e->dummies += dt * power->bodies[k];
     }
     for (int k = 0; k < sim->scene->n_solid; k++) {
@@ -163,7 +86,8 @@ static void note_work(struct energy_entry *e, enum work_source source, double wo
 static void note_fluid_work(struct simulation *sim, const struct powers *power, double dt)
 {
     for (int k = 0; k < sim->scene->n_fluid; k++)
-        note_work(entry_of(sim, KIND_FLUID, k), WORK_OF_FLUID, dt * power->total[k]);
+        note_work(entry_of(sim, KIND_FLUID, k), WORK_OF_FLUID,
+                  dt * (power->pairs[k] + power->outside[k]));
 }
 
 void energy_of_step(struct simulation *sim, double dt)
@@ -211,17 +135,9 @@ static void dissipate(struct simulation *sim, int section, double loss)
     e->dissipated -= loss;
 }
 
-void energy_before_shift(const struct simulation *sim, double energy[SCENE_MAX_SECTIONS])
+void energy_of_shift(struct simulation *sim, const double gain[SCENE_MAX_SECTIONS])
 {
-    if (keeps_account(sim)) sum_fluid(sim, STATIC_ENERGY, energy);
-}
-
-void energy_after_shift(struct simulation *sim, const double energy[SCENE_MAX_SECTIONS])
-{
-    double after[SCENE_MAX_SECTIONS];
-    if (!keeps_account(sim)) return;
-    sum_fluid(sim, STATIC_ENERGY, after);
-    for (int k = 0; k < sim->scene->n_fluid; k++) dissipate(sim, k, energy[k] - after[k]);
+    for (int k = 0; k < sim->scene->n_fluid; k++) dissipate(sim, k, -gain[k]);
 }
 
 /* The rates of the last step have changed the density over the whole step, and half of this is
@@ -233,7 +149,7 @@ void energy_drop_density(struct simulation *sim, int64_t i)
     const double c0 = sim->fluid.k.c0, d = particles->dens[i];
     if (!keeps_account(sim)) return;
     const double rate = particles->ddens_old ? particles->ddens_old[i] : particles->ddens[i];
-    const double half = sim->state.energy.pending * rate * compression_rate(d, c0);
+    const double half = sim->state.energy.pending * rate * EOS_ENERGY_RATE(d, c0);
     const double held = particles->dens_old
                             ? 0.5 * (eos_energy(d, c0) + eos_energy(particles->dens_old[i], c0))
                             : eos_energy(d, c0) - half;

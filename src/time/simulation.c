@@ -65,10 +65,11 @@ void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 /* Moves fluid particles towards lower concentration. */
 static double shift_fluid(struct simulation *sim, double clock)
 {
-    double energy[SCENE_MAX_SECTIONS];
-    energy_before_shift(sim, energy);
-    sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
-    energy_after_shift(sim, energy);
+    double gain[SCENE_MAX_SECTIONS];
+    const bool counts = sim->effects & FX_ENERGY_ACCOUNT;
+    sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt,
+                               sim->scene->top.gravity, counts ? gain : NULL);
+    if (counts) energy_of_shift(sim, gain);
     return phase_add(sim, PHASE_shift, clock);
 }
 
