@@ -198,7 +198,7 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
 
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
  * than the fluid. */
-SPHFSI_INLINE void dummies_state(const struct fluid *fluid, struct particles *particles,
+SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
                                  const struct dummies *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER], effect_set fx)
 {
@@ -212,8 +212,6 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, struct particles *pa
     for (int r = 0; r < d->count; r++)
         volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
     for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
-    scatter(d, pressure, particles->p);
-    scatter(d, dens, particles->dens);
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
@@ -231,7 +229,9 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct parti
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
+    const bool rests = kind == KIND_WALL && !(fx & FX_MOTION);
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
+    bool wet[CELL_CAPACITY / CLUSTER];
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
@@ -240,13 +240,18 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct parti
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[m * CLUSTER]);
+        wet[m] = neighbours.n > 0;
     }
     for (int32_t m = clusters * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
     for (int32_t m = 0; m < clusters * CLUSTER; m += EOS_BLOCK)
         eos_dens_of_block(&pressure[m], fluid->k.rho0, fluid->k.c0, &dens[m]);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
-        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
+        scatter(&d, &pressure[m * CLUSTER], particles->p);
+        scatter(&d, &dens[m * CLUSTER], particles->dens);
+        /* No fluid reads a cluster that none is near to; at rest none of it changes anyway. */
+        if (wet[m] || !rests)
+            dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
     }
 }
 

@@ -28,6 +28,7 @@ static struct fluid_constants constants_of(const struct scene *scene)
 static int packed_count(enum kind kind, effect_set effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
+    if (kind == KIND_FLUID && effects & FX_VISCOSITY) return PACKED_VISCOUS_FIELDS;
     if (kind != KIND_FLUID && effects & FX_REPULSION) return PACKED_REPULSION_FIELDS;
     if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return PACKED_ONE_SIDED_FIELDS;
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? PACKED_NO_SLIP_FIELDS : PACKED_FIELDS;

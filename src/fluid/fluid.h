@@ -73,9 +73,11 @@ enum packed_field {
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
-    /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times
-     * h. */
-    PACKED_SLOPE_X = PACKED_FIELDS,
+    /* Of the fluid, with artificial viscosity: rho0/rho; where density diffuses by Antuono et al.
+     * 2010: the gradient of dens, times h. */
+    PACKED_SPECIFIC = PACKED_FIELDS,
+    PACKED_VISCOUS_FIELDS,
+    PACKED_SLOPE_X = PACKED_VISCOUS_FIELDS,
     PACKED_SLOPE_Y,
     PACKED_SLOPE_FIELDS,
     PACKED_MOST = PACKED_REPULSION_FIELDS

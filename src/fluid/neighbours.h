@@ -93,7 +93,7 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const s
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
     vreal slope_x, slope_y; /* h times the gradient of dens, if it is used */
-    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, in its unit */
+    vreal specific;         /* rho0/rho, with artificial viscosity */
 };
 
 /* Pairs of each a with the candidates b, one in each lane of a group. */

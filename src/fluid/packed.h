@@ -71,9 +71,9 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *fluid, const struct particle
     put_four(out, PACKED_Y, (FOUR(particles->y, i) - centre[1]) * inv_h);
     put_four(out, PACKED_U, FOUR(particles->vx, i));
     put_four(out, PACKED_V, FOUR(particles->vy, i));
-    four_double own = volume / (1 + dens);
-    if (fx & FX_MASSES) own = FOUR(particles->m, i) * own;
-    put_four(out, PACKED_VOLUME, own);
+    const four_double specific = 1 / (1 + dens), own = volume * specific;
+    put_four(out, PACKED_VOLUME, fx & FX_MASSES ? FOUR(particles->m, i) * own : own);
+    if (fluid->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
     put_four(out, PACKED_P, acting_pressure(fluid, particles, i, fx));
     put_four(out, PACKED_DENS, dens);
 }
@@ -91,6 +91,8 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *
         real *const out = cluster_packed(packed, cluster);
         pack_cluster(fluid, particles, list->start[cell] + first, centre, fx, out);
         if (own < CLUSTER) cluster_close(out, packed->n, own);
+        for (int32_t r = own; r < CLUSTER && fluid->effects & FX_VISCOSITY; r++)
+            out[PACKED_SPECIFIC * CLUSTER + r] = 1; /* the sum of two is a divisor */
         cluster_box(&packed->boxes, cluster, out, own);
     }
 }
@@ -207,18 +209,18 @@ static void slopes_of_cell(const struct fluid *fluid, struct particles *particle
     }
 }
 
-/* Packs the gradients, now that no other cell reads those fields. */
+/* Packs the gradients, now that no other cell reads those fields. What the places behind a cell's
+ * last particle get does not matter: they have no volume. */
 SPHFSI_INLINE void pack_slopes(const struct fluid *fluid, const struct particles *particles,
                                const struct cells *cells, int32_t cell)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
-    for (int32_t m = 0; m < list->count[cell]; m++) {
-        const int32_t i = list->start[cell] + m;
-        real *const own = cluster_packed(&fluid->packed[KIND_FLUID],
-                                         (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
-                          m % CLUSTER;
-        own[PACKED_SLOPE_X * CLUSTER] = (real)(particles->slope_x[i] * fluid->k.h);
-        own[PACKED_SLOPE_Y * CLUSTER] = (real)(particles->slope_y[i] * fluid->k.h);
+    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+        const int32_t i = list->start[cell] + m * CLUSTER;
+        real *const own =
+            cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m));
+        put_four(own, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * fluid->k.h);
+        put_four(own, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * fluid->k.h);
     }
 }
 

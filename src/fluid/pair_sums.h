@@ -46,22 +46,22 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     struct pair *const q = &e.pair;
     e.rate = fx_continuity(q);
     vreal stress = fx_pressure(a, q), inv;
-    if (PAIR_HAS(fx, VISCOSITY) || PAIR_HAS(fx, DIFFUSION)) {
+    if (PAIR_HAS(fx, VISCOSITY)) {
+        const vreal both = a->specific + lane(b, PACKED_SPECIFIC);
+        const vreal damping = pair_damping(q, both, k);
+        inv = damping * both;
+        stress = fx_viscosity(q, damping, k, stress);
+    } else {
+        inv = vset(1) / (q->r2 + k->eta2);
+    }
+    if (PAIR_HAS(fx, DIFFUSION)) {
         q->dens = lane(b, PACKED_DENS);
         if (PAIR_HAS(fx, ANTUONO)) {
             q->slope_x = lane(b, PACKED_SLOPE_X);
             q->slope_y = lane(b, PACKED_SLOPE_Y);
         }
-        vreal both;
-        const vreal damping = pair_damping(a, q, k, &both);
-        inv = damping * both;
-        if (PAIR_HAS(fx, VISCOSITY)) stress = fx_viscosity(a, q, damping, k, stress);
-        if (PAIR_HAS(fx, DIFFUSION)) {
-            e.step = fx_diffused(a, q, k, fx);
-            e.mixing = fx_diffusion(q, inv, k, fx);
-        }
-    } else {
-        inv = vset(1) / (q->r2 + k->eta2);
+        e.step = fx_diffused(a, q, k, fx);
+        e.mixing = fx_diffusion(q, inv, k, fx);
     }
     if (PAIR_HAS(fx, TENSILE)) stress = stress + fx_tensile(a, q, k);
     e.radial = q->slope * stress;

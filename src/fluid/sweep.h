@@ -145,7 +145,7 @@ SPHFSI_INLINE void sum_bodies(const struct fluid *fluid, const struct particles 
 
 /* Receivers of the fluid from their packed fields. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
-                                       const struct vector_constants *k, struct pair_set fx)
+                                       struct pair_set fx)
 {
     struct receiver a = receiver_at(sides, own);
     a.u = vspread(own + PACKED_U * CLUSTER);
@@ -153,7 +153,7 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.p = vspread(own + PACKED_P * CLUSTER);
     a.dens = vspread(own + PACKED_DENS * CLUSTER);
     a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
-    if (PAIR_HAS(fx, VISCOSITY)) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
+    if (PAIR_HAS(fx, VISCOSITY)) a.specific = vspread(own + PACKED_SPECIFIC * CLUSTER);
     if (PAIR_HAS(fx, ANTUONO)) {
         a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
         a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
@@ -171,7 +171,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
 {
     const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
-    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
+    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
     sum_bodies(fluid, particles, i, count, neighbours, a, k, fx, power, &s, top);
