@@ -29,7 +29,7 @@ for row in "0.5 s 1" "2000 min 60" "2e5 h 3600"; do
     read -r until unit of <<<"$row"
     explain --until "$until"
     says "cost with 1 thread, measured in 0.3 s"
-    cost=$(sed -n 's/^  \([0-9.]*\) ns per fluid particle.*/\1e-9/p' "$dir/said")
+    cost=$(sed -n 's/^  \([0-9.e+]*\) ns per fluid particle.*/1e-9 * \1/p' "$dir/said")
     particles=$(sed -n 's/^  fluid *\([0-9]*\) particles.*/\1/p' "$dir/said")
     steps=$(sed -n 's/^  about \([0-9.e+]*\) steps.*/\1/p' "$dir/said")
     rows=$("$sphfsi" --effective "${still[@]}" --until "$until" | awk '
