@@ -239,7 +239,6 @@ static enum err unknown_in_set(struct reader *r, const struct entry *e, const ch
                                struct nearest *near)
 {
     char hint[PARAM_HINT];
-    if (near->name) return bad_entry(r, e, "unknown key `%.60s`%s", e->key, nearest_hint(near));
     for (int k = 0; k < r->n_sections && !*prefix; k++) {
         const struct case_section *const s = &r->sections[k];
         struct nearest key = {0};
@@ -247,8 +246,9 @@ static enum err unknown_in_set(struct reader *r, const struct entry *e, const ch
             return bad_entry(r, e, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
                              *s->name ? s->name : section_word(s->id), e->key);
     }
-    return bad_entry(r, e, "unknown %s `%.60s`%s", *prefix ? "key" : "key or constant", e->key,
-                     param_hint(id, e->key, hint));
+    param_hint((enum section_id)id, e->key, near, hint);
+    return bad_entry(r, e, "unknown %s `%.60s`%s", *prefix || *hint ? "key" : "key or constant",
+                     e->key, hint);
 }
 
 /* Of the sections that the prefix of --set means, the only one that has the key. */

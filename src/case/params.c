@@ -233,10 +233,10 @@ bool has_usual_name(const char *key, const char *word)
     return false;
 }
 
-const char *param_hint(enum section_id section, const char *word, char hint[PARAM_HINT])
+const char *param_hint(enum section_id section, const char *word, struct nearest *near,
+                       char hint[PARAM_HINT])
 {
     const struct param *named = NULL, *elsewhere = NULL;
-    struct nearest near = {0};
     size_t used = 0;
     for (int k = 0; k < PARAM_COUNT && used + SCENE_NAME < PARAM_HINT; k++) {
         const struct param *const param = &param_table[k];
@@ -244,7 +244,7 @@ const char *param_hint(enum section_id section, const char *word, char hint[PARA
         if (usual && !named) named = param;
         if (strcmp(param->key, word) == 0 && !elsewhere) elsewhere = param;
         if (param->section != section) continue;
-        nearest_offer(&near, word, param->key);
+        nearest_offer(near, word, param->key);
         if (usual || lists(param->key, "_", word))
             used += (size_t)snprintf(hint + used, PARAM_HINT - used, "%s`%s`",
                                      used ? " or " : "; did you mean ", param->key);
@@ -254,7 +254,7 @@ const char *param_hint(enum section_id section, const char *word, char hint[PARA
     if (used)
         strcat(hint, "?");
     else if (!other)
-        snprintf(hint, PARAM_HINT, "%s", nearest_hint(&near));
+        snprintf(hint, PARAM_HINT, "%s", nearest_hint(near));
     else if (named)
         snprintf(hint, PARAM_HINT, "; did you mean `%s` %s%s%s?", other->key,
                  top ? "at the top" : "in [", top ? "" : section_table[other->section].word,

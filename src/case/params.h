@@ -124,8 +124,9 @@ bool has_usual_name(const char *key, const char *word);
 
 /* What an unknown key of a section may mean, for the end of a message: the keys of which the word
  * is a part, as viscosity of artificial_viscosity, or a usual name; the section it belongs to; or
- * the nearest. Returns `hint`, which may be "". */
+ * the nearest, to which `near` may bring other candidates. Returns `hint`, which may be "". */
 enum { PARAM_HINT = 300 };
-const char *param_hint(enum section_id section, const char *word, char hint[PARAM_HINT]);
+const char *param_hint(enum section_id section, const char *word, struct nearest *near,
+                       char hint[PARAM_HINT]);
 
 #endif

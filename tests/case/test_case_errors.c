@@ -407,6 +407,10 @@ static const struct {
      "--set a.shape=circle 0, 0, 1: [solid a] and [wall a] both have `shape`; write for "
      "example \"solid a.shape\""},
     {TOP SOLID, "numerics.clf=1", "--set numerics.clf=1: unknown key `clf`; did you mean `cfl`?"},
+    {TOP SOLID, "friction=1", "--set friction=1: unknown key `friction`; it belongs in [contact]"},
+    {TOP SOLID, "output.young=1",
+     "--set output.young=1: unknown key `young`; it belongs in [solid]"},
+    {TOP SOLID, "a.E=1 MPa", "--set a.E=1 MPa: unknown key `E`; did you mean `young`?"},
 };
 
 void setUp(void) {}

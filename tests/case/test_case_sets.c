@@ -39,7 +39,7 @@ static const struct {
     {TOP SOLID, "a.zzzzzzzzzzz=1e6", "unknown key `zzzzzzzzzzz`"},
     {TOP SOLID, "zzzzzzzzzzz=1e6", "unknown key or constant `zzzzzzzzzzz`"},
     {TOP SOLID, "yield=1e6", "did you mean `title`?"},
-    {TOP SOLID, "a.viscosity=1", "did you mean `velocity`?"},
+    {TOP SOLID, "a.viscosity=1", "did you mean `artificial_viscosity` or `viscosity_form`?"},
     {TOP SOLID WATER, "artificial_viscosity=1", "write `a.artificial_viscosity`"},
     {TOP SOLID, ".young=1e6", "write key=value or section.key=value"},
     {TOP SOLID, LONG "=1", "write key=value or section.key=value"},
