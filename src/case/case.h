@@ -80,22 +80,23 @@ struct reader {
 
 /* Where a problem is: a line, an entry, or a section, there the line of `key` if it is not NULL.
  * The message begins with FILE:LINE or --set, then [section] or, with `value`, key = value. */
-struct place {
+struct problem_place {
     int line;
     const struct entry *entry;
     const void *section;
     const char *key, *value;
 };
 /* Stores a problem; returns ERR_INPUT. */
-enum err problem(struct reader *r, struct place at, const char *format, ...) SPHFSI_PRINTF(3, 4);
-#define bad_line(r, n, ...) problem(r, (struct place){.line = (n)}, __VA_ARGS__)
-#define bad_entry(r, e, ...) problem(r, (struct place){.entry = (e)}, __VA_ARGS__)
+enum err problem(struct reader *r, struct problem_place at, const char *format, ...)
+    SPHFSI_PRINTF(3, 4);
+#define bad_line(r, n, ...) problem(r, (struct problem_place){.line = (n)}, __VA_ARGS__)
+#define bad_entry(r, e, ...) problem(r, (struct problem_place){.entry = (e)}, __VA_ARGS__)
 #define bad_value(r, e, ...) \
-    problem(r, (struct place){.entry = (e), .value = (e)->value}, __VA_ARGS__)
+    problem(r, (struct problem_place){.entry = (e), .value = (e)->value}, __VA_ARGS__)
 #define bad_section(r, s, k, ...) \
-    problem(r, (struct place){.section = (s), .key = (k)}, __VA_ARGS__)
+    problem(r, (struct problem_place){.section = (s), .key = (k)}, __VA_ARGS__)
 #define bad_key(r, s, k, v, ...) \
-    problem(r, (struct place){.section = (s), .key = (k), .value = (v)}, __VA_ARGS__)
+    problem(r, (struct problem_place){.section = (s), .key = (k), .value = (v)}, __VA_ARGS__)
 
 /* Replaces the error of a stored problem by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;

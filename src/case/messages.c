@@ -17,7 +17,7 @@ static void store(struct reader *r, const struct problem *p)
     r->problems[n] = *p;
 }
 
-enum err problem(struct reader *r, struct place at, const char *format, ...)
+enum err problem(struct reader *r, struct problem_place at, const char *format, ...)
 {
     char place[LOCATION_TEXT], head[200] = "", text[700];
     const struct entry *const e = at.entry;
