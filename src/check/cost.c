@@ -58,29 +58,19 @@ static void warn_of_uneven_steps(const struct simulation *sim, struct diag *d)
             own.key, own.interval, other.key, other.interval);
 }
 
-static void warn_of_interval(const struct simulation *sim, enum section_id section, int index,
-                             const char *key, double interval, struct diag *d)
-{
-    const struct scene *const scene = sim->scene;
-    const bool given = scene_given(scene, section, index, key) != NULL;
-    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
-    if (!(interval > 0 && interval < 0.5 * step)) return;
-    warn_at(d, scene, scene_line(scene, section, index, key),
-            "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, so "
-            "the run needs about %.3g times as many steps; use a longer interval",
-            given ? "" : "the default of output.", key, interval, step, step / interval);
-}
-
 static void warn_of_intervals(const struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
-    const struct scene_output *const out = &scene->output;
-    if (scene->n_probe > 0)
-        warn_of_interval(sim, SECTION_output, 0, "probe_interval", out->probe_interval, d);
-    warn_of_interval(sim, SECTION_output, 0, "ledger_interval", out->ledger_interval, d);
-    warn_of_interval(sim, SECTION_output, 0, "snapshot_interval", out->snapshot_interval, d);
-    for (int k = 0; k < scene->n_probe; k++)
-        warn_of_interval(sim, SECTION_probe, k, "interval", scene->probe[k].interval, d);
+    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
+    struct output_interval out;
+    for (int k = 0; timestep_output(scene, k, &out); k++)
+        if (out.interval > 0 && out.interval < 0.5 * step)
+            warn_at(
+                d, scene, scene_line(scene, out.section, out.index, out.key),
+                "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, "
+                "so the run needs about %.3g times as many steps; use a longer interval",
+                scene_given(scene, out.section, out.index, out.key) ? "" : "the default of output.",
+                out.key, out.interval, step, step / out.interval);
 }
 
 static void warn_of_damping(const struct simulation *sim, struct diag *d)

@@ -8,6 +8,7 @@
 #include "case/params.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static double dot(const double a[2], double x, double y) { return a[0] * x + a[1] * y; }
 
@@ -49,7 +50,7 @@ static enum err warn_of_missing_floor(struct check *check)
             all += fluid;
         }
     if (falling > 0)
-        warn_at(check->diag, scene, scene->fluid[p->section[first]].common.line,
+        warn_at(check->diag, check->scene, scene->fluid[p->section[first]].common.line,
                 "%lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall or body "
                 "below them and will fall out of the domain; add a [wall] below them",
                 falling, all, p->x[first], p->y[first]);
@@ -59,40 +60,35 @@ static enum err warn_of_missing_floor(struct check *check)
 /* --- `surface`: gravity along -y, and water up to that height --- */
 
 /* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank
- * may be shaken. The mean over the run is by the midpoint rule. */
-static void warn_of_upward_gravity(struct check *check, const struct scene_fluid *fluid)
+ * may be shaken. The mean over the run is by the midpoint rule. Fluid with nothing above it, more
+ * than one spacing below the surface, begins under pressure. */
+static void warn_of_surface(struct check *check, int f)
 {
     enum { TIMES = 1000 };
     const struct scene *const scene = check->scene;
-    double mean = scene->top.gravity[1], sum = 0, gravity[2];
-    for (int n = 0; n < TIMES && scene_gravity_varies(scene); n++) {
-        scene_gravity_at(scene, scene->top.end_time * (n + 0.5) / TIMES, gravity);
-        sum += gravity[1];
-        mean = sum / TIMES;
-    }
-    if (scene->top.gravity[1] > 0)
-        warn_at(check->diag, scene, fluid->common.line,
-                "`surface` with upward gravity: the initial pressure decreases with depth, and "
-                "the water will be torn apart; for gravity that points down, use gravity = 0, "
-                "-9.81");
-    else if (mean > 0)
-        warn_at(check->diag, scene, fluid->common.line,
-                "`surface`, but gravity points upwards on average, by %.3g m/s^2 over the run: "
-                "the water will rise from its tank; gravity that points down has a negative "
-                "second component",
-                mean);
-}
-
-static void warn_of_low_surface(struct check *check, int f)
-{
-    const struct scene_points *const p = &check->scene->points[KIND_FLUID];
-    const struct scene_fluid *const fluid = &check->scene->fluid[f];
+    const struct points *const p = &check->points;
+    const struct scene_fluid *const fluid = &scene->fluid[f];
+    const double dp = scene->top.dp, up[2] = {0, 0.9};
+    double mean = 0, gravity[2], top = -HUGE_VAL, lowest = HUGE_VAL;
     int64_t above = 0;
-    double top = -HUGE_VAL;
+    for (int n = 0; n < TIMES; n++) {
+        scene_gravity_at(scene, scene->top.end_time * (n + 0.5) / TIMES, gravity);
+        mean += gravity[1] / TIMES;
+    }
+    if (max2(scene->top.gravity[1], mean) > 1e-9)
+        warn_at(
+            check->diag, check->scene, fluid->common.line,
+            "`surface`, but gravity points upwards, by %.3g m/s^2 at t = 0 and %.3g on average: "
+            "the water will rise from its tank; gravity that points down has a negative second "
+            "component",
+            scene->top.gravity[1], mean);
     for (int64_t k = 0; k < p->n; k++) {
-        if (p->body[k] != f || (p->open && p->open[k] > 0)) continue;
+        if (p->bit[k] != POINT_FLUID || p->section[k] != f) continue;
         above += p->y[k] > fluid->surface;
-        top = max2(top, p->y[k] + 0.5 * check->scene->top.dp);
+        top = max2(top, p->y[k] + 0.5 * dp);
+        if (p->y[k] + 1.5 * dp < min2(fluid->surface, lowest + dp) &&
+            point_beside(check, k, up, 0.75, POINT_ANY) < 0)
+            lowest = p->y[k] + 0.5 * dp;
     }
     if (above > 0)
         warn_at(check->diag, check->scene, fluid->common.line,
@@ -100,47 +96,13 @@ static void warn_of_low_surface(struct check *check, int f)
                 "particles begin with a pressure below zero; `surface` is the height of the free "
                 "surface",
                 fluid->common.name, top, fluid->surface, (long long)above);
-}
-
-/* Fluid whose column of width dp ends more than one spacing below its `surface`, with nothing
- * above it. */
-static enum err warn_of_high_surface(struct check *check, int f)
-{
-    const struct scene *const scene = check->scene;
-    const struct scene_points *const p = &scene->points[KIND_FLUID];
-    const struct scene_fluid *const fluid = &scene->fluid[f];
-    const double dp = scene->top.dp;
-    double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL;
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->body[k] == f) low = min2(low, p->x[k]), high = max2(high, p->x[k]);
-    if (low > high || !(scene->top.gravity[1] < 0)) return ERR_OK;
-    const int64_t n = (int64_t)((high - low) / dp) + 2;
-    double *const top =
-        arena_alloc(&check->shapes.temp, (size_t)n, sizeof *top, "check", check->diag);
-    if (!top) return ERR_MEMORY;
-    for (int64_t m = 0; m < n; m++) top[m] = -HUGE_VAL;
-    for (int64_t k = 0; k < p->n; k++) {
-        const int64_t m = (int64_t)((p->x[k] - low) / dp + 0.5);
-        if (p->body[k] == f) top[m] = max2(top[m], p->y[k]);
-    }
-    for (int64_t k = 0; k < check->points.n; k++) {
-        const double over = check->points.y[k], at = (check->points.x[k] - low) / dp + 0.5;
-        if (at < -1 || at > (double)n) continue;
-        for (int64_t m = (int64_t)floor(at - 0.25); m <= (int64_t)floor(at + 0.25); m++)
-            if (m >= 0 && m < n && over > top[m] && over < top[m] + 1.6 * dp)
-                top[m] = HUGE_VAL; /* covered */
-    }
-    for (int64_t m = 0; m < n; m++)
-        if (top[m] > -HUGE_VAL && top[m] + 1.5 * dp < fluid->surface)
-            lowest = min2(lowest, top[m] + 0.5 * dp);
-    if (isfinite(lowest))
-        warn_at(check->diag, scene, fluid->common.line,
+    if (isfinite(lowest) && scene->top.gravity[1] < 0)
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] has a free surface at y = %.4g m, below its `surface = %.4g m`: it "
                 "begins there with a pressure of %.3g Pa and will spout; `surface` is the height "
                 "of the free surface, and a [fluid] for each height has its own",
                 fluid->common.name, lowest, fluid->surface,
                 -fluid->density * scene->top.gravity[1] * (fluid->surface - lowest));
-    return ERR_OK;
 }
 
 /* --- density, weight --- */
@@ -157,7 +119,7 @@ static void warn_of_density(struct check *check, int f)
     const struct scene *const scene = check->scene;
     const struct scene_fluid *const fluid = &scene->fluid[f];
     if (fluid->density < LIGHTEST_LIQUID)
-        warn_at(check->diag, scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] has a density of %.4g kg/m^3, less than any liquid, so its "
                 "forces will be small; water has 1000 kg/m^3",
                 fluid->common.name, fluid->density);
@@ -165,7 +127,7 @@ static void warn_of_density(struct check *check, int f)
         if (scene_periodic(scene, axis) && scene->top.gravity[axis] != 0) return;
     const double fall = extent_along(scene, KIND_FLUID, f, scene->top.gravity);
     if (fall > 0.01 * square(scene->c0))
-        warn_at(check->diag, scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] is compressed by %.2g %% under its own weight, because its speed "
                 "of sound is only %.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
                 fluid->common.name, 100 * fall / square(scene->c0), scene->c0, sqrt(fall));
@@ -199,7 +161,7 @@ static void warn_of_weight(struct check *check, int fluid)
     const double depth = extent_along(scene, KIND_FLUID, fluid, down) + scene->top.dp;
     const double pressure = f->density * size * depth;
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
-        warn_at(check->diag, scene, f->common.line,
+        warn_at(check->diag, check->scene, f->common.line,
                 "[fluid %s] has a `surface`, but stands on nothing: it begins with up to "
                 "%.3g Pa at its lower end and will spout there; move it to the floor, or leave "
                 "out `surface`",
@@ -207,7 +169,7 @@ static void warn_of_weight(struct check *check, int fluid)
     const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
-        warn_at(check->diag, scene, f->common.line,
+        warn_at(check->diag, check->scene, f->common.line,
                 "[fluid %s] begins without the pressure of its weight, so it collapses onto "
                 "its floor and its pressure swings between 0 and twice its %.3g Pa; give it its %s",
                 f->common.name, pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
@@ -343,7 +305,7 @@ static void warn_of_balance(struct check *check)
         }
     if (fabs(more) <= 0.01 * volume) return;
     const struct scene_open o = scene_open_at(scene, n_open - 1);
-    warn_at(check->diag, scene, o.common->line,
+    warn_at(check->diag, check->scene, o.common->line,
             "[%s %s]: the open boundaries give velocities only, which let %.3g m^2 more %s "
             "than %s by t = %.3g s, %.2g %% of the fluid. It has no free surface, so %s; give one "
             "of them a `pressure` instead of its velocity",
@@ -410,12 +372,12 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
         if (probe->quantity != PROBE_LEVEL)
             snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
                      quantity, 2 * scene->h);
-        warn_at(check->diag, scene, probe->common.line,
+        warn_at(check->diag, check->scene, probe->common.line,
                 "[probe %s] point = %g, %g lies inside a wall or solid, where there is no "
                 "fluid, so %s; move it to the face",
                 probe->common.name, at[0], at[1], value);
     } else if (probe->quantity == PROBE_PRESSURE && is_in_air(scene, at))
-        warn_at(check->diag, scene, probe->common.line,
+        warn_at(check->diag, check->scene, probe->common.line,
                 "[probe %s] point = %g, %g lies in the air, above all fluid, so its "
                 "pressure is 0 unless a splash reaches it; move it into the fluid",
                 probe->common.name, at[0], at[1]);
@@ -492,26 +454,32 @@ static void warn_of_fixed_probe(struct check *check, const struct scene_probe *p
 }
 
 /* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and
- * sticks. */
-static void warn_of_moment(struct check *check, const struct scene_probe *probe)
+ * sticks. At low Reynolds numbers a free body turns twice as fast in a shear as it should. */
+static void warn_of_turning(struct check *check)
 {
     const struct scene *const scene = check->scene;
-    char name[SCENE_TEXT];
     double nu = 0;
     for (int k = 0; k < scene->n_fluid; k++) nu = max2(nu, scene->fluid[k].laminar_viscosity);
-    if (nu == 0 || probe->quantity != PROBE_FORCE) return;
-    for (int k = 0; scene_listed(probe->body, k, name); k++) {
-        const int wall = scene_find_wall(scene, name);
-        const int motion = wall < 0 ? -1 : scene_find_motion(scene, scene->wall[wall].motion);
-        bool turns = false;
+    for (int k = 0; k < scene->n_solid + scene->n_wall && nu > 0; k++) {
+        const struct scene_solid *const b = k < scene->n_solid ? &scene->solid[k] : NULL;
+        const struct scene_wall *const w = b ? NULL : &scene->wall[k - scene->n_solid];
+        const struct scene_section_common *const common = b ? &b->common : &w->common;
+        const int motion = b ? -1 : scene_find_motion(scene, w->motion);
+        bool turns = b && b->clamp.n == 0, asked = b;
+        char name[SCENE_TEXT];
         for (int n = 1; n <= TIMES_IN_RUN && motion >= 0; n++)
             turns |= motion_at(scene, motion, time_in_run(scene, n)).angle != 0;
-        if (!turns || scene->wall[wall].slip != SLIP_NONE) continue;
-        warn_at(check->diag, scene, probe->common.line,
-                "[probe %s] the moment on [wall %s], which turns with slip = none, is off by "
-                "2 mu A times its rate of turning: mu = %.3g Pa s, A = the area that it "
-                "encloses. The moment needs this correction; forces are right",
-                probe->common.name, name, nu * scene->rho0);
+        for (int m = 0; m < scene->n_probe && !b; m++)
+            for (int n = 0; scene_listed(scene->probe[m].body, n, name); n++)
+                asked |= scene->probe[m].quantity == PROBE_FORCE && strcmp(name, common->name) == 0;
+        if (turns && asked && (b ? b->slip : w->slip) == SLIP_NONE)
+            warn_at(check->diag, check->scene, common->line,
+                    "[%s %s] %s with slip = none: the viscous moment on it is off by 2 mu A times "
+                    "its rate of turning (mu = %.3g Pa s, A: the area that it encloses); forces "
+                    "are right%s",
+                    kind_names[b ? KIND_SOLID : KIND_WALL], common->name,
+                    b ? "is free to turn" : "turns", nu * scene->rho0,
+                    b ? ", but at low Reynolds numbers it turns up to twice too fast" : "");
     }
 }
 
@@ -527,7 +495,7 @@ static void warn_of_drift(struct check *check)
     if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || has_surface(check)) return;
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting > 0)
-            warn_at(check->diag, scene, scene->fluid[k].common.line,
+            warn_at(check->diag, check->scene, scene->fluid[k].common.line,
                     "[fluid %s] fills its periodic domain, so its mean pressure drifts with "
                     "`shifting`, by about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, "
                     "or a smaller `shifting`",
@@ -539,11 +507,7 @@ enum err warn_of_fluid(struct check *check)
     struct scene *const scene = check->scene;
     if (scene->n_fluid == 0) return ERR_OK;
     for (int f = 0; f < scene->n_fluid; f++) {
-        if (!isnan(scene->fluid[f].surface)) {
-            warn_of_upward_gravity(check, &scene->fluid[f]);
-            warn_of_low_surface(check, f);
-            TRY(warn_of_high_surface(check, f));
-        }
+        if (!isnan(scene->fluid[f].surface)) warn_of_surface(check, f);
         warn_of_density(check, f);
         warn_of_start_gap(check, f);
         warn_of_weight(check, f);
@@ -564,9 +528,9 @@ enum err warn_of_fluid(struct check *check)
     if (scene->full) warn_of_balance(check);
     for (int k = 0; k < scene->n_probe; k++) {
         warn_of_fixed_probe(check, &scene->probe[k]);
-        warn_of_moment(check, &scene->probe[k]);
         warn_of_dry_probe(check, &scene->probe[k]);
     }
+    warn_of_turning(check);
     warn_of_drift(check);
     return warn_of_missing_floor(check);
 }

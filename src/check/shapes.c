@@ -20,31 +20,12 @@ static bool on_lattice(double cells)
     return fabs(cells - round(cells)) <= 1e-6 * max2(1, 1e-6 * fabs(cells));
 }
 
-static void warn_of_box(struct check *k, const struct region *region, const struct shape *shape)
-{
-    const struct scene_lattice *const l = &region->lattice;
-    for (int c = 0; c < 2; c++) {
-        const double low = shape->pt[0][c], high = shape->pt[1][c];
-        const double a = cells_to(region, c, low), b = cells_to(region, c, high);
-        if (on_lattice(a) && on_lattice(b)) continue;
-        const double n = geometry_rows_between(region, c, low, high);
-        const double from = l->origin[c] + ceil(a - 0.5 - 1e-6) * l->spacing[c];
-        k->scene->off_lattice = true;
-        warn_at(k->diag, k->scene, shape->line,
-                "[%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
-                "sampled as %.0f %s%s from %g to %g m; edges at %g and %g m would fit",
-                kind_names[region->kind], region->name, "xy"[c], low, high, b - a,
-                c ? "high" : "wide", n, c ? "row" : "column", n == 1 ? "" : "s", from,
-                from + n * l->spacing[c], l->origin[c] + round(a) * l->spacing[c],
-                l->origin[c] + round(b) * l->spacing[c]);
-    }
-}
-
-/* The first edge along the lattice that lies between its lines. */
+/* The first edge along each axis of the lattice that lies between its lines. */
 static void warn_of_edges(struct check *check, const struct region *region, int shape)
 {
     const struct scene_lattice *const l = &region->lattice;
     const int line = region->list->item[shape].line;
+    bool told[2] = {false, false};
     for (int k = 0; k < region->add.n; k++) {
         const struct outline *o = &region->add.item[k];
         if (region->add.shape[k] != shape) continue;
@@ -53,9 +34,9 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
             const double round_off = l->angle == 0 ? 0 : 1e-9 * l->dp;
             const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
             const double cells = cells_to(region, c, a[c]);
-            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells)) continue;
+            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || told[c]) continue;
             const double fit = l->origin[c] + round(cells) * l->spacing[c];
-            check->scene->off_lattice = true;
+            check->scene->off_lattice = told[c] = true;
             if (l->angle == 0)
                 warn_at(check->diag, check->scene, line,
                         "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
@@ -68,7 +49,6 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
                         "%.4g degrees; move the edge or choose another dp",
                         kind_names[region->kind], region->name, fabs(a[c] - fit) / l->dp,
                         l->angle * (180 / PI));
-            return;
         }
     }
 }
@@ -160,7 +140,7 @@ static void warn_of_thin(struct check *check, const struct region *region, const
     const bool directly = thick + scene->top.dp < reach;
     if (scene->n_fluid == 0 || thick >= reach || (wall && !is_between(check, wall))) return;
     if (scene->numerics.sides == SIDES_ONE && !directly) return;
-    warn_at(check->diag, scene, wall ? wall->line : region->line,
+    warn_at(check->diag, check->scene, wall ? wall->line : region->line,
             "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts "
             "with the fluid behind it; %s prevents that",
             kind_names[region->kind], region->name, thick, 2 * scene->h,
@@ -191,10 +171,7 @@ static void warn_of_region(struct check *check, const struct region *region)
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
         if (region->lattice.fitted || layered) continue;
-        if (shape->kind == SHAPE_BOX && region->lattice.angle == 0)
-            warn_of_box(check, region, shape);
-        else
-            warn_of_edges(check, region, k);
+        warn_of_edges(check, region, k);
         if (region->kind == KIND_WALL) warn_of_thin(check, region, shape, thickness(shape));
     }
     if (region->kind != KIND_SOLID) return;

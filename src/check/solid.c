@@ -69,7 +69,7 @@ static enum err warn_of_loose_bodies(struct check *check)
                 ? "a [load] acts on it, so it is driven away unless something stops it"
                 : NULL;
         if (why)
-            warn_at(check->diag, scene, b->common.line,
+            warn_at(check->diag, check->scene, b->common.line,
                     "[solid %s] has no clamp, and %s; give it a `clamp` if it is fixed%s",
                     b->common.name, why, falls ? ", or gravity = off" : "");
     }
@@ -118,7 +118,7 @@ static enum err warn_of_full_clamps(struct check *check)
         if (held == 0) continue;
         const int rows = free_rows(scene, &clamped, body);
         if (rows >= RESOLVED_ROWS || (rows > 0 && scene_is_bonded(scene, body))) continue;
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "`clamp` leaves %d row%s of particles of [solid %s] free, %lld of %lld particles, "
                 "so %s; make the clamp smaller, or use %s",
                 rows, rows == 1 ? "" : "s", name, all - held, all,
@@ -148,7 +148,7 @@ static void warn_of_hinge(struct check *check, int body)
         if (r < best) best = r, nearest = k;
     }
     if (held >= 2)
-        warn_at(check->diag, scene, clamp->line,
+        warn_at(check->diag, check->scene, clamp->line,
                 "this small clamp holds %lld particles of [solid %s], so the body cannot turn "
                 "about it; a hinge holds one: clamp = circle %.6g, %.6g, 0.6*dp",
                 held, scene->solid[body].common.name, p->x[nearest], p->y[nearest]);
@@ -196,7 +196,7 @@ static void warn_of_material(struct check *check, int body)
     const struct scene *const scene = check->scene;
     const struct scene_solid *const b = &scene->solid[body];
     if (b->density < LIGHTEST_FOAM)
-        warn_at(check->diag, scene, b->common.line,
+        warn_at(check->diag, check->scene, b->common.line,
                 "[solid %s] has a density of %.4g kg/m^3, less than any foam, so it has "
                 "hardly any inertia; rubber has about 1100 kg/m^3",
                 b->common.name, b->density);
@@ -209,7 +209,7 @@ static void warn_of_material(struct check *check, int body)
     const double weight = extent_along(scene, KIND_SOLID, body, scene->top.gravity);
     const double own = b->gravity ? b->density * weight : 0, pressure = max2(own, water);
     if (pressure > 0.1 * b->young)
-        warn_at(check->diag, scene, b->common.line,
+        warn_at(check->diag, check->scene, b->common.line,
                 "[solid %s] is too soft for %s of %.3g Pa, which is %.2g times its `young` = "
                 "%.3g Pa: it may collapse and a guard stop the run; check the unit, such as MPa",
                 b->common.name, own > water ? "its own weight" : "the pressure of the water",
@@ -218,27 +218,11 @@ static void warn_of_material(struct check *check, int body)
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_at(check->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
+        warn_at(check->diag, check->scene, scene_line(scene, SECTION_solid, body, "velocity"),
                 "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
                 "sqrt(young/density) = %.3g m/s: an impact crushes it and a guard stops the run; "
                 "check the units of `velocity`, `young` and `density`",
                 b->common.name, speed, sound);
-}
-
-/* By L-1 the moment on a body that turns and sticks is too large by 2 mu A times its rate of
- * turning. At low Reynolds numbers it turns twice as fast in a shear as it should. */
-static void warn_of_turning(struct check *check, int body)
-{
-    const struct scene_solid *const b = &check->scene->solid[body];
-    double nu = 0;
-    for (int k = 0; k < check->scene->n_fluid; k++)
-        nu = max2(nu, check->scene->fluid[k].laminar_viscosity);
-    if (nu > 0 && b->slip == SLIP_NONE && b->clamp.n == 0)
-        warn_at(check->diag, check->scene, b->common.line,
-                "[solid %s] is free to turn and has slip = none: the viscous moment on it is "
-                "too large by 2 mu A times its rate of turning (mu = %.3g Pa s, A: its area). At "
-                "low Reynolds numbers it turns too fast, by up to two times; forces are right",
-                b->common.name, nu * check->scene->rho0);
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
@@ -271,7 +255,6 @@ enum err warn_of_solids(struct check *check)
         warn_of_hinge(check, k);
         warn_of_other_motions(check, k);
         warn_of_material(check, k);
-        warn_of_turning(check, k);
         warn_of_flutter(check, k);
     }
     return ERR_OK;

@@ -12,37 +12,32 @@
 /* A table this many times as long as the run has mostly another unit of time. */
 enum { LONG_TABLE = 100 };
 
-static void warn_of_sound_speed(struct check *check, const struct scene_fluid *fluid)
+static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fluid)
 {
     const struct scene *const scene = check->scene;
     const double least = 10 * max2(fluid->max_speed, sqrt(fluid->max_pressure / fluid->density));
     if (scene->c0 < least * (1 - 1e-9))
-        warn_at(check->diag, scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will "
                 "vary by more than 1 %%",
                 fluid->common.name, scene->c0, least);
     if (!isnan(fluid->surface) && scene->top.gravity[1] == 0)
-        warn_at(check->diag, scene, fluid->common.line,
+        warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so "
                 "the initial pressure is zero",
                 fluid->common.name);
-}
-
-static void warn_of_shift(struct check *check, const struct scene_fluid *fluid)
-{
-    const double *const gravity = check->scene->top.gravity, cfl = check->scene->numerics.cfl;
-    if (fluid->shifting_speed != SHIFTING_LARGEST) return;
-    if (gravity[0] != 0 || gravity[1] != 0)
+    if (fluid != scene->fluid || fluid->shifting_speed != SHIFTING_LARGEST) return;
+    if (scene->top.gravity[0] != 0 || scene->top.gravity[1] != 0)
         warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
                 "energy, in proportion to `shifting`; if the fluid has a free surface, use "
                 "shifting_speed = own",
                 fluid->common.name);
-    if (fluid->shifting * cfl > 5 * (1 + 1e-9))
+    if (fluid->shifting * scene->numerics.cfl > 5 * (1 + 1e-9))
         warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit "
                 "of shifting_speed = largest; reduce one of them",
-                fluid->common.name, fluid->shifting, cfl);
+                fluid->common.name, fluid->shifting, scene->numerics.cfl);
 }
 
 /* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
@@ -54,7 +49,7 @@ static void warn_of_sliding(struct check *check)
         const struct scene_solid *const solid = k < scene->n_solid ? &scene->solid[k] : NULL;
         const struct scene_wall *const wall = solid ? NULL : &scene->wall[k - scene->n_solid];
         if ((solid ? solid->slip : wall->slip) != SLIP_FREE || !(solid || *wall->motion)) continue;
-        warn_at(check->diag, scene, scene_line(scene, SECTION_numerics, 0, "sides"),
+        warn_at(check->diag, check->scene, scene_line(scene, SECTION_numerics, 0, "sides"),
                 "sides = one drags the fluid that slides along [%s %s], as if the body were larger "
                 "by a spacing all round: the added mass of a cylinder of 10 spacings is 40 %% too "
                 "large; use sides = both, or slip = none",
@@ -81,7 +76,7 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
         if (strcmp(scene->wall[k].motion, motion->common.name) == 0) return;
     for (int k = 0; k < scene->n_solid; k++)
         if (strcmp(scene->solid[k].clamp_motion, motion->common.name) == 0) return;
-    warn_at(check->diag, scene, motion->common.line,
+    warn_at(check->diag, check->scene, motion->common.line,
             "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
             "[solid]",
             motion->common.name);
@@ -100,7 +95,7 @@ static void warn_of_motion_table(struct check *check, int k)
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_at(check->diag, scene, line,
+    warn_at(check->diag, check->scene, line,
             "%s = %.200s ends at t = %.6g s, before end_time = %.6g s, and still moves in its last "
             "row: what it moves stops there within a step and then rests; continue the table, end "
             "it at rest, or use end_time = %.6g s",
@@ -119,7 +114,7 @@ static void warn_of_gravity_table(struct check *check)
     warn_of_long_table(check, table, line, "gravity_file", name);
     const bool acts = table->x[last] != 0 || table->y[last] != 0;
     if (acts && table->t[last] < scene->top.end_time * (1 - 1e-9))
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
                 "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add "
                 "a row of zeros, or use end_time = %.6g s",
@@ -132,7 +127,7 @@ static void warn_of_gravity_table(struct check *check)
         sum[1] += half * (table->y[k] + table->y[k + 1]);
     }
     if (size2 > 0 && fabs(sum[0] * g[0] + sum[1] * g[1]) > 0.9 * size2)
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
                 "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
                 "out of one of them",
@@ -149,7 +144,7 @@ void warn_of_speed(struct check *check, int line, double speed, const char *form
     va_end(list);
     scene->given_speed = max2(scene->given_speed, speed);
     if (scene->n_fluid > 0 && speed > SPEED_WARNING * scene->c0)
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "%s up to %.3g m/s, above %g of the fluid's speed of sound, %.3g m/s. It is not "
                 "weakly compressible then, and a guard may stop the run; check the units (angles "
                 "are in radians), or use "
@@ -173,19 +168,19 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
         return;
     }
     if (largest > DENS_WARNING * stiffness)
-        warn_at(check->diag, scene, open->common->line,
+        warn_at(check->diag, check->scene, open->common->line,
                 "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
                 "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
                 open->word, open->common->name, largest, 100 * largest / stiffness,
                 sqrt(largest / (0.01 * scene->rho0)));
     if (open->absorb > 0 && wave < reach)
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The fluid "
                 "resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out waves of "
                 "up to the length L",
                 open->word, open->common->name, open->absorb, wave, reach);
     if (open->absorb > scene->top.end_time)
-        warn_at(check->diag, scene, line,
+        warn_at(check->diag, check->scene, line,
                 "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
                 "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a shorter "
                 "time",
@@ -196,8 +191,7 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
 void warn_of_values(struct check *check)
 {
     const struct scene *const scene = check->scene;
-    for (int k = 0; k < scene->n_fluid; k++) warn_of_sound_speed(check, &scene->fluid[k]);
-    if (scene->n_fluid > 0) warn_of_shift(check, &scene->fluid[0]);
+    for (int k = 0; k < scene->n_fluid; k++) warn_of_fluid_keys(check, &scene->fluid[k]);
     warn_of_sliding(check);
     for (int k = 0; k < scene->n_motion; k++) {
         warn_of_motion_of_nothing(check, &scene->motion[k]);
@@ -207,7 +201,7 @@ void warn_of_values(struct check *check)
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)
-            warn_at(check->diag, scene, open.common->line,
+            warn_at(check->diag, check->scene, open.common->line,
                     "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
                     "this boundary; use density_diffusion = 0.1",
                     open.word, open.common->name);

@@ -77,10 +77,14 @@ static void test_surface_against_gravity_and_below_the_water(void)
 {
     read("dp = 5 mm\nend_time = 1 s\ngravity = 0, 9.81\n" WATER SIDES FLOOR
          "[wall lid]\nshape = box -0.02, 0.05, 0.12, 0.07\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "`surface` with upward gravity"), warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings, "`surface`, but gravity points upwards, by 9.81 m/s^2 at t = 0"),
+        warnings);
     /* It grows upwards from zero; or a tank is shaken by more than g, about -g. */
     read("dp = 5 mm\nend_time = 1 s\ngravity = 0, 9.81*min(t, 1)\n" WATER SIDES FLOOR);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "upwards on average, by 4.91 m/s^2"), warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "upwards, by 0 m/s^2 at t = 0 and 4.91 on average"),
+                                 warnings);
     read("dp = 5 mm\nend_time = 1 s\ngravity = 0, -9.81 + 20*sin(50*t)\n" WATER SIDES FLOOR);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "upward"), warnings);
     read(HEAD "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\nsurface = 0.03\n" SIDES
