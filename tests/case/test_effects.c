@@ -112,6 +112,8 @@ static const struct {
          FX_IMPEDANCE,
      EFFECT_FORCE_EXTRAPOLATION, "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
+    {TOP PLAIN_SOLID "[numerics]\nsolid_steps = implicit\n", FX_SOLID | FX_CONTACT | FX_IMPLICIT,
+     EFFECT_IMPLICIT, "line 11: [numerics] solid_steps"},
     {TOP FLUID "[output]\nenergy_account = on\n", FX_FLUID, EFFECT_ENERGY_ACCOUNT,
      "line 7: [output] energy_account"},
 };
