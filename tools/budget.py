@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Says which is the finest dp that runs within a wall time, and what a few round dp cost."""
+"""Says which is the finest dp that runs within a wall time, and what a few round dp cost.
+
+example: tools/budget.py 10min cases/gate.cfg --threads 2"""
 
 from casetool import Parser, make_case, run_tool, seconds
 

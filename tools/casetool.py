@@ -53,7 +53,7 @@ class Parser(argparse.ArgumentParser):
     """Options of a tool; a wrong one ends it with exit status 1, as the program does."""
 
     def __init__(self, doc):
-        super().__init__(description=doc)
+        super().__init__(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
     def add_case(self):
         self.add_argument("case", metavar="CASE", help="case file")

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Runs a case in several resolutions, coarsest first, and prints what probes and energies converge
 to, with order and error band; finished runs are not run again. Results: DIR/dp-*/ and
-DIR/refine.json."""
+DIR/refine.json.
+
+example: tools/refine.py cases/gate.cfg -n 3 --set dp=2mm --until 50ms"""
 
 from casetool import Parser, make_case, number, run_tool
 

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Writes the film of a run as one HTML file that any browser shows: particles coloured by a field
-that one picks, probe curves with a cursor, measuring with the mouse."""
+that one picks, probe curves with a cursor, measuring with the mouse.
+
+example: tools/view.py runs/gate --every 2 --out gate.html"""
 
 import argparse
 import base64
@@ -20,7 +22,8 @@ LARGEST = 20e6  # bytes of the page
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", nargs="?", metavar="RUN", help="folder of a run")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="every N-th snapshot "
                                                                           "(%(default)s)")

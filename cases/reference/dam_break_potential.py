@@ -205,7 +205,8 @@ def solve(spacing, end):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--spacing", type=float, help="least spacing of nodes, H; its solution to "
                                                       "the screen")
     chosen = parser.parse_args()

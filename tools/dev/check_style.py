@@ -2,6 +2,8 @@
 """Checks what a formatter cannot: layers, sizes, words, flags and exported symbols.
 
 Prints one line per finding, `file:line: what`; warnings do not fail. Needs only Python itself.
+
+example: tools/dev/check_style.py --library build/release/libsphfsi.a
 """
 import argparse
 import os
@@ -207,7 +209,8 @@ def check_format(paths):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--library", type=Path, action="append", default=[],
                         help="library whose exported symbols to check")
     args = parser.parse_args()
