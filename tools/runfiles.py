@@ -27,17 +27,15 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
-    from sphfsi.files import (CASES, BadFile, Reference, Run, check_increasing, make_runs,
-                              read_case,
-                              read_table, read_text, references)
+    from sphfsi.files import (CASES, BadFile, Error, Reference, Run, check_increasing, make_runs,
+                              read_case, read_table, read_text, references)
     from sphfsi.style import COLOURS, STYLE, WIDTH, scaled_unit
 except ImportError as missing:
     sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; {remedy()}")
 
 __all__ = ["CASES", "COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "check_increasing",
            "make_runs", "np", "plt", "read_case", "read_table", "read_text", "references",
-           "run_tool",
-           "save", "scaled_unit", "sentence"]
+           "run_tool", "save", "scaled_unit", "sentence"]
 
 
 def sentence(problem):
@@ -50,11 +48,12 @@ def sentence(problem):
 
 
 def run_tool(main):
-    """Runs main() of a tool; what is wrong with a file becomes one sentence and exit status 1."""
+    """Runs main() of a tool; what is wrong with a file or a case becomes one sentence and exit
+    status 1."""
     plt.rcParams.update(STYLE)
     try:
         sys.exit(main())
-    except BadFile as problem:
+    except Error as problem:
         sys.exit(f"{Path(sys.argv[0]).stem}: {problem}")
 
 
