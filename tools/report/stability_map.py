@@ -174,8 +174,7 @@ def report(rows):
     head = ["density", "across", "wet sides", "integrator", "scheme", "sub-steps", "gain", "term"]
     return fill("stability_map.md", drawn=drawn, plates=len(rows) - verdicts.count("left out"),
                 early=early, stopped=verdicts.count("stopped"), gains=len(gains),
-                percent=100 * LIMIT,
-                gained="\n" + table(head, gained) + "\n" if gains else "",
+                percent=100 * LIMIT, gained="\n" + table(head, gained) + "\n" if gains else "",
                 left_out=verdicts.count("left out"), end=END, height=HEIGHT, right=RIGHT[2],
                 versions=", ".join(common.load(RESULTS)["versions"]),
                 **{name: sum(row["result"] == words for row in rows) for name, words in

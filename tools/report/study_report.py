@@ -14,11 +14,9 @@ from palette import shrink
 from study import SCENES
 from study_presets import fronts, preset_table, write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
-                           main_error,
-                           percent)
+                           main_error, percent)
 from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
-                          halving_table,
-                          knob_table, order_table, ranked_knobs, schemes_table)
+                          halving_table, knob_table, order_table, ranked_knobs, schemes_table)
 
 MARKS = "osD^v<>ph*XP"
 PANEL = 2.5  # inches
@@ -66,8 +64,7 @@ def draw_group(axes, study, case, group, settings):
     axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.85",
                 linewidth=7, solid_capstyle="round", zorder=1, label="Pareto front of all settings")
     draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6,
-              zorder=4,
-              label="defaults")
+              zorder=4, label="defaults")
     knobs = list(dict.fromkeys(knob for knob, _ in settings))
     for number, (knob, value) in enumerate(settings):
         draw_line(axes, study, study.of(case, knob, value), color=COLOURS[number % len(COLOURS)],
@@ -83,8 +80,7 @@ def draw_group(axes, study, case, group, settings):
 def draw_case(study, case, path):
     groups = groups_of(study, case)
     figure, panels = plt.subplots(len(groups), 1, figsize=(WIDTH, 0.4 + PANEL * len(groups)),
-                                  sharex=True,
-                                  sharey=True, squeeze=False)
+                                  sharex=True, sharey=True, squeeze=False)
     for axes, (group, settings) in zip(panels[:, 0], groups.items()):
         draw_group(axes, study, case, group, settings)
     panels[-1, 0].set_xlabel("CPU time (s)")
@@ -107,8 +103,7 @@ def case_text(study, case):
     front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles"
                       for p in study.front(case))
     return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""),
-                case=case,
-                       error=main_error(entry), against=against(entry["error"][0]),
+                case=case, error=main_error(entry), against=against(entry["error"][0]),
                        references="\n".join(sources),
                        table=base_table(study, case), front=front or "no finished point")
 
@@ -195,8 +190,7 @@ def write(data, out, evidence=None):
                         for case, entry in study.cases.items())
     inside = data.resolve().is_relative_to(ROOT)
     text = fill(
-        "accuracy.md",
-        summary=summary(study), crossing=CROSSING,
+        "accuracy.md", summary=summary(study), crossing=CROSSING,
         data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
         circumstances=circumstances(study), note=rules.get("note", ""),
         repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),

@@ -39,8 +39,7 @@ def press(name, limit, stiffer=1.0, **constants):
 
 def disc(name, speed, limits, levels, **constants):
     return scene(name, "contact_disc", ("ratio", "over the radius"), levels,
-                 of.disc_of(speed, limits),
-                 {"v": speed, **constants}, against="finite elements")
+                 of.disc_of(speed, limits), {"v": speed, **constants}, against="finite elements")
 
 
 def bullet(name, **constants):
@@ -68,17 +67,13 @@ SCENES = [
     friction("block that slides to rest", of.slide_of(2), (4, 8), slope=0.6, push=0.2),
     friction("block on a slope of 0.6", of.slope_of(1), (4, 8), slope=0.6, push=10),
     friction("block on a slope of 0.28 that turns in 0.3 s", of.held_of(0.01), (4, 8, 16),
-             slope=0.28,
-             push=10, rise=0.3),
+             slope=0.28, push=10, rise=0.3),
     friction("block on a slope of 0.25 that turns in 1 ms", of.held_of(0.01), (4, 8, 16),
-             slope=0.25,
-             push=10),
+             slope=0.25, push=10),
     friction("block on a slope of 0.28 that turns in 1 ms", of.held_of(None), (4, 8, 16),
-             slope=0.28,
-             push=10),
+             slope=0.28, push=10),
     *[friction(f"block as wide as high on a slope of {slope}, friction 1.5",
-               of.topple_of(slope > 1),
-               (10, 20), slope=slope, mu=1.5, push=10, rise=0.3, aspect=1)
+               of.topple_of(slope > 1), (10, 20), slope=slope, mu=1.5, push=10, rise=0.3, aspect=1)
       for slope in (0.85, 1.05)],
     scene("three blocks on a floor, 10 s", "contact_stack", ("ratio", "over the height"), (5, 10),
           of.measure_stack, {"over": -0.1}, against="statics"),
@@ -87,8 +82,7 @@ SCENES = [
             against="statics")
       for over in (0.4, 0.55)],
     scene("strip that folds onto itself", "contact_fold", ("ratio", "through the thickness"),
-          (4, 8),
-          of.measure_fold, against="beam by finite differences"),
+          (4, 8), of.measure_fold, against="beam by finite differences"),
     scene("beam pressed onto a beam", "beam_on_beam", ("across", "through the thickness"), (4, 8),
           of.measure_beams, against="symmetry"),
     bullet("200 m/s at a wall"), bullet("200 m/s at a strip of three", held=1),
@@ -96,8 +90,7 @@ SCENES = [
     bullet("200 m/s, corner first, at a strip of three", corner=1, held=1),
     bullet("200 m/s, corner on corner", corner=1, held=1, top=0),
     scene("ram presses two blocks to half their height", "pressed", ("dp", "m, spacing"),
-          (5e-3, 2.5e-3),
-          of.measure_driven, against="no overlap of half a spacing"),
+          (5e-3, 2.5e-3), of.measure_driven, against="no overlap of half a spacing"),
 ]
 
 
