@@ -471,7 +471,9 @@ static enum err load_particles(const struct image *m, struct particles *particle
         if (!data || info->keep != KEEP_STATE) continue;
         struct block b;
         const unsigned optional =
-            kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION);
+            kind == KIND_WALL
+                ? MOVING
+                : (unsigned)(G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX);
         if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
             set_missing_field(particles, info);
         else

@@ -24,11 +24,17 @@ enum err particles_create(struct particles *particles, struct arena *a, int64_t 
 {
     memset(particles, 0, sizeof *particles);
     particles->capacity = capacity;
-    particles->groups = groups;
+    return particles_add(particles, a, groups, what, d);
+}
+
+enum err particles_add(struct particles *particles, struct arena *a, unsigned groups,
+                       const char *what, struct diag *d)
+{
+    particles->groups |= groups;
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         if (!(f->group & groups)) continue;
-        void *memory = arena_alloc(a, (size_t)capacity, f->size, what, d);
+        void *memory = arena_alloc(a, (size_t)particles->capacity, f->size, what, d);
         if (!memory) return ERR_MEMORY;
         ASSERT((uintptr_t)memory % ARENA_ALIGN == 0);
         memcpy((unsigned char *)particles + f->offset, &memory, sizeof memory);

@@ -54,6 +54,10 @@ void *field_array(const struct particles *particles, const struct field_info *f)
 enum err particles_create(struct particles *particles, struct arena *a, int64_t capacity,
                           unsigned groups, const char *what, struct diag *d) SPHFSI_CHECKED;
 
+/* The arrays of further groups, zero. */
+enum err particles_add(struct particles *particles, struct arena *a, unsigned groups,
+                       const char *what, struct diag *d) SPHFSI_CHECKED;
+
 /* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
 void particles_permute(struct particles *particles, const int32_t *order, int64_t n, void *scratch);
 

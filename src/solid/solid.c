@@ -82,11 +82,10 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
 
 static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
                                                 const struct scene *scene,
-                                                const struct particles *particles)
+                                                const struct particles *particles, bool implicit)
 {
     const int choice = scene->numerics.solid_precision;
-    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE ||
-        scene->numerics.solid_steps == SOLID_STEPS_IMPLICIT)
+    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit)
         return &solid_sweeps_double;
     if (choice == SOLID_PRECISION_AUTO && solid_needs_double(solid, scene, particles))
         return &solid_sweeps_double;
@@ -94,7 +93,7 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
 }
 
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
-                      struct particles *particles, struct diag *d)
+                      struct particles *particles, bool implicit, struct diag *d)
 {
     memset(solid, 0, sizeof *solid);
     solid->n_bodies = scene->n_solid;
@@ -114,7 +113,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
-    solid->sweeps = choose_sweeps(solid, scene, particles);
+    solid->sweeps = choose_sweeps(solid, scene, particles, implicit);
     TRY(solid_packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {

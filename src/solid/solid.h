@@ -13,9 +13,9 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
                                const struct particles *particles);
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
- * are set). */
+ * are set). implicit: for implicit steps, in double precision. */
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
-                      struct particles *particles, struct diag *d) SPHFSI_CHECKED;
+                      struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
 
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). In the
  * variational form hourglass control adds to the stress; then also the viscous and the hourglass

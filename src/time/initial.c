@@ -102,6 +102,28 @@ static const char *remedy_of_substeps(const struct simulation *sim)
     return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
 }
 
+/* Whether an implicit step costs less than the sub-steps of a fluid step (T-94). */
+static bool implicit_pays(const struct simulation *sim)
+{
+    const struct scene *const scene = sim->scene;
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct scene_numerics *const n = &scene->numerics;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, area = 0;
+    bool possible = n->solid_steps == SOLID_STEPS_AUTO && sim->effects & FX_COUPLING &&
+                    n->multirate != MULTIRATE_OFF && n->solid_precision != SOLID_PRECISION_SINGLE;
+    for (int k = 0; k < scene->n_solid; k++)
+        possible &= sim->solid.body[k].variational || !(sim->solid.body[k].kappa > 0);
+    if (!possible) return false;
+    for (int64_t i = 0; i < particles->n; i++) {
+        low[0] = min2(low[0], particles->X[i]), high[0] = max2(high[0], particles->X[i]);
+        low[1] = min2(low[1], particles->Y[i]), high[1] = max2(high[1], particles->Y[i]);
+        area += square(sim->solid.body[particles->body[i]].dp);
+    }
+    const double across = area / (sim->solid.dp * max2(high[0] - low[0], high[1] - low[1]));
+    const double substeps = timestep_fluid_limit(sim) / sim->dt_solid;
+    return substeps > 10 + 2 * across;
+}
+
 /* Sub-steps help where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *sim, struct diag *d)
 {
@@ -149,6 +171,15 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+static enum err create_solid(struct simulation *sim, struct diag *d)
+{
+    TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
+                     sim->effects & FX_IMPLICIT, d));
+    start_solid(sim);
+    solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
+    return ERR_OK;
+}
+
 enum err initial_state(struct simulation *sim, struct diag *d)
 {
     sim->gravity_varies = scene_gravity_varies(sim->scene);
@@ -159,10 +190,24 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     }
     if (sim->effects & FX_FLUID) TRY(create_fluid(sim, d));
     if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, &sim->arena, sim->scene, id, d));
+    sim->coupling = (struct coupling){
+        .scene = sim->scene,
+        .fluid = &sim->fluid,
+        .solid = &sim->solid,
+        .particles = &sim->kind[KIND_SOLID],
+        .ahead = sim->integrator->ahead,
+        .centred = sim->integrator->centred,
+        .exchange_time = &sim->state.exchange_time,
+    };
     if (sim->effects & FX_SOLID) {
-        TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
-        start_solid(sim);
-        solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
+        TRY(create_solid(sim, d));
+        sim->state.solid_stiffening = sim->state.solid_slowing = 1;
+        timestep_set_solid(sim);
+        if (implicit_pays(sim)) {
+            sim->effects |= FX_IMPLICIT;
+            TRY(particles_add(&sim->kind[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
+            TRY(create_solid(sim, d));
+        }
         if (sim->effects & FX_CONTACT)
             TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
                                &sim->kind[KIND_SOLID], d));
@@ -171,11 +216,11 @@ enum err initial_state(struct simulation *sim, struct diag *d)
             sim->solid.loads = &sim->loads;
         }
         if (sim->effects & FX_IMPLICIT) {
+            sim->coupling.centred = true;
             TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
             sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
         }
         sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
-        sim->state.solid_stiffening = sim->state.solid_slowing = 1;
         timestep_set_solid(sim);
     }
     if (sim->effects & FX_MOTION) {
@@ -183,15 +228,6 @@ enum err initial_state(struct simulation *sim, struct diag *d)
                                d));
         move_walls(sim, 0);
     }
-    sim->coupling = (struct coupling){
-        .scene = sim->scene,
-        .fluid = &sim->fluid,
-        .solid = &sim->solid,
-        .particles = &sim->kind[KIND_SOLID],
-        .ahead = sim->integrator->ahead,
-        .centred = sim->integrator->centred || sim->effects & FX_IMPLICIT,
-        .exchange_time = &sim->state.exchange_time,
-    };
     TRY(choose_rate(sim, d));
     timestep_find_grid(sim);
     set_guards(sim);

@@ -69,6 +69,31 @@ static void test_implicit_steps_agree_with_substeps(void)
     }
 }
 
+/* Implicit where it costs less than 10 + 2 x 4 sub-steps (T-94), and where the case allows it. */
+static void test_auto_chooses_by_cost(void)
+{
+    static const struct {
+        const char *set, *other;
+        bool implicit;
+    } row[] = {
+        {"integrator=leapfrog", "plate.young=2 GPa", true},
+        {"integrator=leapfrog", "plate.young=20 MPa", false},
+        {"integrator=verlet", "plate.young=20 GPa", true},
+        {"numerics.solid_steps=explicit", "plate.young=20 GPa", false},
+        {"numerics.multirate=off", "plate.young=20 GPa", false},
+        {"numerics.solid_precision=single", "plate.young=20 GPa", false},
+        {"plate.hourglass_form=printed", "plate.young=20 GPa", false},
+    };
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        rig_open(&rig, plate, row[k].set, row[k].other, NULL);
+        TEST_ASSERT_EQUAL_MESSAGE(row[k].implicit, rig.sim.solid.implicit != NULL, row[k].set);
+        TEST_ASSERT_EQUAL_MESSAGE(row[k].implicit, (rig.sim.effects & FX_IMPLICIT) != 0,
+                                  row[k].other);
+        rig_steps(&rig, 3, 1);
+        if (row[k].implicit) TEST_ASSERT_EQUAL_INT(1, rig.sim.substeps);
+    }
+}
+
 /* Without viscosity the plate's energy is what the account says it has received. */
 static void test_account_of_the_solid_is_exact(void)
 {
@@ -98,6 +123,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_implicit_steps_agree_with_substeps);
+    RUN_TEST(test_auto_chooses_by_cost);
     RUN_TEST(test_account_of_the_solid_is_exact);
     return UNITY_END();
 }

@@ -114,7 +114,12 @@ expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.02
 expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.0205 --out \
     "$dir/short" \
     --set numerics.multirate=on --set numerics.fixed_step=2e-5
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.0205 --out \
+    "$dir/implicit" --set numerics.solid_steps=implicit
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/implicit" --threads 1 --until 0.021 --out \
+    "$dir/explicit"
 [ -n "$(momentum single)" ] || fail "no momentum in the ledger"
+[ "$(momentum implicit)" = "$(momentum impulse)" ] || fail "implicit steps drop the impulse"
 [ "$(momentum soft)" = "$(momentum single)" ] || fail "an interface impulse stays"
 [ "$(momentum short)" = "$(momentum impulse)" ] || fail "shorter steps drop the interface impulse"
 [ "$(momentum impulse)" != "$(momentum single)" ] || fail "no interface impulse, nothing tested"

@@ -14,6 +14,7 @@
 /* Water on both sides of a plate, higher on the left. */
 static const char tanks[] =
     "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[constants]\nx1 = 0.115\n"
+    "[numerics]\nsolid_steps = explicit\n"
     "[fluid left]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nartificial_viscosity = 0.1\n"
     "density_diffusion = 0.1\nsurface = 0.1\n"
     "[fluid right]\nlike = left\nshape = box x1, 0, x1 + 0.1, 0.05\nsurface = 0.05\n"
