@@ -144,38 +144,42 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
  * of threads. */
 enum { SHIFT_SLICES = 24, SHIFT_BLOCK = 64 };
 
-/* The shifts of `count` particles from `from` on, and by how much each gains energy, J/m. Their
- * factor: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al. 2017). At the free
- * surface, where the divergence of the positions falls from 2 to below 1.5, the shift goes to zero
- * as in Dominguez et al. 2022. Returns the largest, squared. */
+/* The shifts of `count` particles from `from` on, and if it `counts` by how much each gains energy,
+ * J/m. Their factor: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al. 2017). At
+ * the free surface, where the divergence of the positions falls from 2 to below 1.5, the shift goes
+ * to zero as in Dominguez et al. 2022. Returns the largest, squared. */
 static double shift_block(const struct fluid *fluid, struct particles *particles, double dt,
-                          const double g[2], int64_t from, int count, double gain[SHIFT_BLOCK])
+                          const double g[2], int64_t from, int count, bool counts,
+                          double gain[SHIFT_BLOCK])
 {
     const double full = 2, none = 1.5, c0 = fluid->k.c0, given = fluid->k.shifting_speed,
-                 size = -fluid->k.model->shifting * fluid->k.h * dt;
-    const bool fills = fluid->k.fills_domain;
-    double longest2 = 0;
+                 of_speed = given > 0 ? 0 : 1, fills = fluid->k.fills_domain ? 2 : 0;
+    double size[SHIFT_BLOCK], before[SHIFT_BLOCK], longest2 = 0;
+    for (int r = 0; r < count; r++) {
+        const bool held = particles->open && particles->open[from + r]; /* T-50: given motion */
+        size[r] = held ? 0 : -fluid->k.model->shifting * fluid->k.h * dt;
+    }
 #pragma omp simd reduction(max : longest2)
     for (int r = 0; r < count; r++) {
         const int64_t i = from + r;
         const double fade = min2(1, max2(0, (particles->div_r[i] - none) / (full - none)));
-        const double v2 = square(particles->vx[i]) + square(particles->vy[i]);
-        const double speed = given > 0 ? given : sqrt(v2);
-        const bool held = particles->open && particles->open[i]; /* T-50: their motion is given */
-        const double step = held ? 0 : size * speed * fade;
+        const double speed =
+            given + of_speed * sqrt(square(particles->vx[i]) + square(particles->vy[i]));
+        const double step = size[r] * speed * fade, dens = particles->dens[i];
         const double dx = step * particles->grad_c_x[i], dy = step * particles->grad_c_y[i];
-        const double dens = particles->dens[i]; /* L-9: */
-        const double after =
-            dens +
-            (fills ? 2 * (1 + dens) * (dx * particles->grad_c_x[i] + dy * particles->grad_c_y[i])
-                   : 0);
+        const double after = dens + fills * (1 + dens) * /* L-9 */
+                                        (dx * particles->grad_c_x[i] + dy * particles->grad_c_y[i]);
         particles->x[i] += dx;
         particles->y[i] += dy;
         particles->dens[i] = after;
-        gain[r] = particle_mass(&fluid->k, particles, i) *
-                  (eos_energy(after, c0) - eos_energy(dens, c0) - g[0] * dx - g[1] * dy);
+        before[r] = dens;
+        gain[r] = -(g[0] * dx + g[1] * dy);
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
+    if (!counts) return longest2;
+    for (int r = 0; r < count; r++)
+        gain[r] = particle_mass(&fluid->k, particles, from + r) *
+                  (gain[r] + eos_energy(particles->dens[from + r], c0) - eos_energy(before[r], c0));
     return longest2;
 }
 
@@ -190,7 +194,8 @@ double fluid_shift(const struct fluid *fluid, struct particles *particles, doubl
         for (int64_t i = n * m / SHIFT_SLICES; i < end; i += SHIFT_BLOCK) {
             double gained[SHIFT_BLOCK];
             const int count = (int)(end - i < SHIFT_BLOCK ? end - i : SHIFT_BLOCK);
-            longest2 = max2(longest2, shift_block(fluid, particles, dt, g, i, count, gained));
+            longest2 = max2(longest2,
+                            shift_block(fluid, particles, dt, g, i, count, gain != NULL, gained));
             for (int r = 0; r < count && gain; r++) part[m][particles->body[i + r]] += gained[r];
         }
     }
