@@ -82,15 +82,16 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
                         struct scene_section_common *to)
 {
     char *const target = (void *)to;
-    const char *const name = target + like->offset;
+    char name[SCENE_TEXT] = "";
     TRY(case_value(r, e, like, target));
+    snprintf(name, sizeof name, "%s", target + like->offset);
     struct nearest near = {0};
     for (int k = 0; k < to->index; k++) {
         const struct scene_section_common *const from = section_at(r->scene, like->section, k);
         nearest_offer(&near, name, from->name);
         if (strcmp(from->name, name) != 0) continue;
         memcpy(to + 1, from + 1, section_table[like->section].size - sizeof *to);
-        memset(target + like->offset, 0, SCENE_TEXT);
+        memcpy(target + like->offset, name, sizeof name);
         for (int p = 0; p < PARAM_COUNT; p++)
             if (param_table[p].section == like->section && param_table[p].type == PARAM_SHAPES)
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));

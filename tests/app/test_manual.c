@@ -4,6 +4,7 @@
 #include "case/effects.h"
 #include "app/evidence.h"
 #include "app/actions.h"
+#include "check/check.h"
 #include "case/params.h"
 #include "geometry/load.h"
 #include "rig.h"
@@ -146,9 +147,11 @@ static void a_copy_without_its_clamp_is_warned_of(void)
     const char *const mended = "right.clamp=box 0.1, 0, 0.12, 8 mm";
     struct scene scene;
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, posts, "posts.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_scene(&scene, &diag));
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(1, warnings);
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, posts, "posts.cfg", 1, &mended, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_scene(&scene, &diag));
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(1, warnings);
 }
