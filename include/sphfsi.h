@@ -4,7 +4,7 @@
  *     struct sphfsi_simulation *s;
  *     const struct sphfsi_options options = {.case_path = "cases/gate.cfg"};
  *     if (sphfsi_create(&s, &options)) return puts(sphfsi_error()), 1;
- *     while (sphfsi_time(s) < 0.1 && !sphfsi_step(s, 0.1)) {}
+ *     while (sphfsi_time(s) < 0.1 && !sphfsi_step(s, INFINITY)) {}
  *     struct sphfsi_view x;
  *     if (!sphfsi_field(s, SPHFSI_FLUID, "x", &x)) printf("%g m\n", ((const double *)x.data)[0]);
  *     sphfsi_free(s);
@@ -156,14 +156,17 @@ SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,
  * or another thread is in a call; the simulation stays. */
 SPHFSI_API enum sphfsi_status sphfsi_free(struct sphfsi_simulation *s);
 
-/** Takes one time step, which ends at `limit` (s) at the latest. Limits at uneven distances of a
- * few steps make uneven steps, in which a solid with sub-steps can gain energy (docs/theory.md,
- * T-34b): give limits at equal distances, or at least 64 steps apart. SPHFSI_INPUT: `limit` is not
- * later than the time. SPHFSI_GUARD: the state is not sound; the simulation can be read and freed,
- * but not stepped. */
+/** Takes one time step; of a solid without fluid, up to 16. It ends at `limit` (s) at the latest.
+ * INFINITY: the physics alone sets the step, and steps have the bits of sphfsi_run, which ends with
+ * the first step at or after its end. A limit within the next two steps shortens them and so
+ * changes the bits of all that follows. Limits a few steps apart make uneven steps, in which a
+ * solid with sub-steps can gain energy (docs/theory.md, T-34b). SPHFSI_INPUT: `limit` is not later
+ * than the time. SPHFSI_GUARD: the state is not sound; the simulation can be read and freed, but
+ * not stepped. */
 SPHFSI_API enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit);
 
-/** Steps until the simulated time is exactly `time` (s). Errors as sphfsi_step. */
+/** Steps until the simulated time is exactly `time` (s), which is the limit of these steps. Errors
+ * as sphfsi_step. */
 SPHFSI_API enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time);
 
 /** Simulated time, time at which the case ends, last time step, s. */
@@ -171,8 +174,7 @@ SPHFSI_API double sphfsi_time(const struct sphfsi_simulation *s);
 SPHFSI_API double sphfsi_end_time(const struct sphfsi_simulation *s);
 SPHFSI_API double sphfsi_time_step(const struct sphfsi_simulation *s);
 
-/** Time (s) of the next output that sphfsi_run would write of this case, at most the end time.
- * Steps that end at these times have the bits of the program's run. */
+/** Time (s) of the next output that sphfsi_run would write of this case, at most the end time. */
 SPHFSI_API double sphfsi_next_output(const struct sphfsi_simulation *s);
 
 /** Number of steps taken, and of particles of a kind. */
@@ -194,8 +196,9 @@ SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sph
 SPHFSI_API const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                          int k);
 
-/** Values of a probe of the case now, by the name of its section: as many as the quantity has
- * columns (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such probe. */
+/** Values of a probe of the case now, or its mean so far, by the name of its section: as many as
+ * its quantity has columns (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such
+ * probe. */
 enum { SPHFSI_PROBE_COLUMNS = 5 };
 SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                                            double values[SPHFSI_PROBE_COLUMNS]);

@@ -101,10 +101,14 @@ def _converge_columns(columns: list[Column], measure: str, ratio: float) -> Conv
     return found
 
 
-def _read_columns(run: Path, file: str) -> dict[str, Column]:
-    table, _ = read_table(run / file, torn=True, finite=False)
-    time = table.pop("time_s")
-    return {name: Column.of(time, values) for name, values in table.items()}
+def _read_columns(folders: list[Path], file: str) -> list[dict[str, Column]]:
+    """The columns of each run up to the last time that all of them have: the last steps of a solid
+    without fluid may pass rows behind the end."""
+    tables = [read_table(folder / file, torn=True, finite=False)[0] for folder in folders]
+    times = [table.pop("time_s") for table in tables]
+    end = min(time[-1] for time in times)
+    return [{name: Column.of(time[time <= end], values[time <= end])
+             for name, values in table.items()} for time, table in zip(times, tables)]
 
 
 def _two_digits(value: float) -> str:
@@ -203,7 +207,7 @@ class Refinement:
     def _report_file(self, file: str, result: Callable[[str], None]) -> dict[str, Any]:
         """The convergence of the columns of one file. Of the ledger only energies that end at other
         than zero are printed."""
-        runs = [_read_columns(folder, file) for folder in reversed(self.folders[-3:])]
+        runs = _read_columns(self.folders[:-4:-1], file)
         report: dict[str, Any] = {}
         for name in runs[0]:
             if any(name not in run for run in runs):

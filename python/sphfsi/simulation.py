@@ -136,8 +136,7 @@ class Simulation:
 
     @property
     def next_output(self) -> float:
-        """Time of the next output of a run of the case, s. Steps that end at these times have its
-        bits."""
+        """Time of the next output of a run of the case, s."""
         return lib.sphfsi_next_output(self._handle)
 
     @property
@@ -153,10 +152,10 @@ class Simulation:
         check(status)
 
     def step(self, limit: float | None = None) -> float:
-        """Takes one time step, which ends at `limit` (s; default: the end of the case) if it would
-        reach further. Returns the time, s."""
+        """Takes one time step; of a solid without fluid, up to 16. Without a limit steps have the
+        bits of a run of the case. A limit (s) that is near shortens them. Returns the time, s."""
         self._finish(0)
-        self._finish(lib.sphfsi_step(self._handle, self.end_time if limit is None else limit))
+        self._finish(lib.sphfsi_step(self._handle, np.inf if limit is None else limit))
         return self.time
 
     def advance(self, time: float | None = None) -> float:

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a simulation that the calling program steps. */
 #include "app/call.h"
-#include "app/due.h"
-#include "output/probes.h"
+#include "output/rows.h"
 #include "time/relax.h"
 #include "app/session.h"
 #include "check/check.h"
@@ -34,6 +33,7 @@ struct user_function {
 struct sphfsi_simulation {
     struct session session;
     struct probes probes;
+    struct row_files means; /* of the probes */
     struct user_function force[KIND_COUNT];
     struct user_function *motion;          /* [n_motion]; NULL: none */
     double *computed[KIND_COUNT][D_COUNT]; /* fields that are computed when they are asked for */
@@ -77,8 +77,9 @@ static enum err open_simulation(struct sphfsi_simulation *handle, const struct s
     TRY(session_open(&handle->session, o, d));
     struct simulation *const sim = &handle->session.simulation;
     check_simulation(sim, d);
-    const enum err e = probes_create(&handle->probes, sim, &sim->arena, d);
-    if (!e) probes_follow(&handle->probes, sim);
+    enum err e = probes_create(&handle->probes, sim, &sim->arena, d);
+    if (!e) e = rows_create(&handle->means, &handle->probes, sim, false, &sim->arena, d);
+    if (!e) rows_follow(&handle->means, sim);
     if (e) session_close(&handle->session);
     handle->threads = thread_count();
     return e;
@@ -130,7 +131,6 @@ static enum err step(struct sphfsi_simulation *handle, double limit, struct diag
                          limit, sim->state.time);
     enum err e = relax_to_rest(sim, d);
     if (!e) e = simulation_step(sim, limit, d);
-    if (!e) probes_follow(&handle->probes, sim);
     handle->stopped = e == ERR_GUARD;
     return e;
 }
@@ -170,15 +170,6 @@ double sphfsi_time_step(const struct sphfsi_simulation *handle)
     return handle ? handle->session.simulation.state.dt : (double)NAN;
 }
 
-/* The first multiple of an interval after the time, as a run finds it. */
-static double output_after(double interval, double time)
-{
-    struct due u = {.written = time};
-    due_begin(&u, interval, time, true);
-    while (due_time(&u) <= time) u.k++;
-    return due_time(&u);
-}
-
 double sphfsi_next_output(const struct sphfsi_simulation *handle)
 {
     if (!handle) return (double)NAN;
@@ -187,10 +178,13 @@ double sphfsi_next_output(const struct sphfsi_simulation *handle)
                                out->checkpoint_interval};
     const double time = handle->session.simulation.state.time;
     double next = handle->session.scene.top.end_time;
-    for (size_t k = 0; k < COUNT_OF(interval); k++)
-        next = min2(next, output_after(interval[k], time));
-    for (int k = 0; k < handle->probes.n_files; k++)
-        next = min2(next, output_after(handle->probes.file[k].interval, time));
+    for (int k = -(int)COUNT_OF(interval); k < handle->probes.n_files; k++) {
+        struct due due = {k < 0 ? interval[k + (int)COUNT_OF(interval)]
+                                : handle->probes.file[k].interval,
+                          0};
+        due_pass(&due, time);
+        next = min2(next, due_time(&due));
+    }
     return next;
 }
 

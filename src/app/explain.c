@@ -7,6 +7,7 @@
 #include "check/check.h"
 #include "output/report.h"
 #include "output/snapshot_file.h"
+#include "time/timestep.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -168,12 +169,8 @@ static bool is_known(const struct simulation *sim, int bound)
 /* The bound that limits the step now; -1: none is known. */
 static int binding_bound(const struct simulation *sim)
 {
-    int binding = -1;
-    for (int k = 0; k < BOUND_COUNT; k++)
-        if (is_known(sim, k) && k != BOUND_output &&
-            (binding < 0 || sim->dt_bound[k] < sim->dt_bound[binding]))
-            binding = k;
-    return binding;
+    const enum bound binding = timestep_binding(sim);
+    return is_known(sim, binding) ? (int)binding : -1;
 }
 
 static void say_bounds(const struct simulation *sim, const struct sphfsi_options *o)
@@ -351,7 +348,7 @@ static void write_bounds(struct json *j, const struct simulation *sim)
     const int binding = binding_bound(sim);
     json_open(j, "time_step_bounds", '{');
     for (int k = 0; k < BOUND_COUNT; k++)
-        if (is_known(sim, k) && k != BOUND_output) json_number(j, bound_names[k], sim->dt_bound[k]);
+        if (is_known(sim, k)) json_number(j, bound_names[k], sim->dt_bound[k]);
     json_close(j, '}');
     json_text(j, "time_step_bound", binding < 0 ? "none" : bound_names[binding]);
     if (sim->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);

@@ -39,7 +39,7 @@ static enum err take_steps(struct least *least, struct simulation *sim, struct d
     double phase[PHASE_COUNT], now;
     memcpy(phase, sim->phase_seconds, sizeof phase);
     do {
-        TRY(simulation_step(sim, end, d));
+        TRY(simulation_step(sim, (double)INFINITY, d));
         now = wall_clock();
     } while (sim->state.time < end && now - begin < repeat_seconds &&
              has_fluid_of_start(sim, least->n_start));
@@ -85,7 +85,7 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     const double start = wall_clock();
     int first = 0;
     do {
-        TRY(simulation_step(sim, end, d));
+        TRY(simulation_step(sim, (double)INFINITY, d));
     } while (++first <= FIRST_STEPS && sim->state.time < end &&
              has_fluid_of_start(sim, least.n_start) && wall_clock() - start < first_seconds);
     const double begin = wall_clock();
@@ -100,26 +100,42 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     return ERR_OK;
 }
 
-/* The time of all rows of the run by what one takes now, the least of several. The first row may
- * evaluate the rates anew, which is counted with the steps. */
+/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its
+ * mean was 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
+static double expected_step(const struct simulation *sim)
+{
+    const double limit = timestep_longest(sim);
+    if (!(sim->effects & FX_FLUID) || sim->scene->numerics.fixed_step > 0) return limit;
+    double speed = 0;
+    for (int k = 0; k < sim->scene->n_fluid; k++)
+        speed = max2(speed, sim->scene->fluid[k].max_speed);
+    const double approach = max2(0.75 * speed, sim->fluid.extremes.approach);
+    const double dt = limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
+    const bool together = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
+    return together ? min2(dt, sim->dt_solid) : dt;
+}
+
+/* The time of all rows of the run by what reading a state takes now, the least of several. A row
+ * lies between two states, and a state serves all rows beside it. The first reading may evaluate
+ * the rates anew, which is counted with the steps. */
 static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time;
     struct probes probes;
     TRY(probes_create(&probes, sim, &sim->arena, d));
     for (int file = -1; file < probes.n_files; file++) {
-        double least = HUGE_VAL, row[SERIES_MAX_COLUMNS];
+        double least = HUGE_VAL, row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
         for (int k = 0; k < ROWS_MEASURED; k++) {
             const double begin = wall_clock();
             if (file < 0)
                 simulation_ledger(sim);
             else
-                probes_sample(&probes, sim, file, row);
+                probes_sample(&probes, sim, file, false, row, rate);
             least = min2(least, wall_clock() - begin);
         }
         const double interval =
             file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
-        c->rows += max2(0, least) * end / interval;
+        c->rows += max2(0, least) * min2(2 * end / interval, end / expected_step(sim));
     }
     return ERR_OK;
 }
@@ -132,35 +148,6 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
 }
 
 /* --- the run --- */
-
-/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its
- * mean was 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
-static double expected_step(const struct simulation *sim)
-{
-    const double limit = timestep_fluid_limit(sim), fixed = sim->scene->numerics.fixed_step;
-    if (fixed > 0) return fixed;
-    double speed = 0;
-    for (int k = 0; k < sim->scene->n_fluid; k++)
-        speed = max2(speed, sim->scene->fluid[k].max_speed);
-    const double approach = max2(0.75 * speed, sim->fluid.extremes.approach);
-    return limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
-}
-
-/* Number of steps, which must end at every output time. Only the shortest interval counts, also of
- * a probe that has its own, or the grid that has all of them (T-34d): the others are usually
- * multiples of it. */
-static double count_steps(const struct simulation *sim, double dt)
-{
-    const struct scene_output *const out = &sim->scene->output;
-    double piece = sim->scene->top.end_time;
-    if (sim->scene->n_probe > 0) piece = min2(piece, out->probe_interval);
-    for (int k = 0; k < sim->scene->n_probe; k++)
-        if (sim->scene->probe[k].interval > 0) piece = min2(piece, sim->scene->probe[k].interval);
-    piece = min2(piece, min2(out->ledger_interval, out->snapshot_interval));
-    if (out->checkpoint_interval > 0) piece = min2(piece, out->checkpoint_interval);
-    if (sim->output_grid > 0) piece = sim->output_grid;
-    return sim->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
-}
 
 /* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run.
  */
@@ -185,18 +172,13 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     const double n_fluid = (double)sim->kind[KIND_FLUID].n;
     const double n_solid = (double)sim->kind[KIND_SOLID].n;
     const double end = sim->scene->top.end_time;
-    struct forecast f = {.dt = n_fluid > 0 ? expected_step(sim) : sim->dt_solid};
-    if (n_fluid > 0 && n_solid > 0 && !(sim->effects & FX_MULTIRATE))
-        f.dt = min2(f.dt, sim->dt_solid);
-    f.steps = count_steps(sim, f.dt);
-    f.dt = end / f.steps;
+    struct forecast f = {.dt = expected_step(sim)};
+    f.steps = ceil(end / f.dt);
     if (n_solid > 0)
         f.substeps =
             f.steps * (sim->effects & FX_MULTIRATE ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
-    const double ledger_evaluations = end / sim->scene->output.ledger_interval;
-    f.seconds = (f.evaluations + ledger_evaluations) * n_fluid * c->fluid +
-                f.substeps * n_solid * c->solid + c->rows;
+    f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows;
     f.memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
     f.disk = disk_bytes(sim);
     return f;

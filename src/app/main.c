@@ -134,6 +134,7 @@ static void on_progress(void *context, const struct sphfsi_progress *p)
     if (!c->terminal && !p->finished && floor(10 * fraction) <= floor(10 * c->last_fraction) &&
         p->wall_seconds - c->last_line < 30)
         return;
+    if (fraction >= 1 && !p->finished) return; /* the last call follows */
     c->last_fraction = fraction;
     c->last_line = p->wall_seconds;
     if (p->finished) {

@@ -2,17 +2,16 @@
 #include "app/actions.h"
 
 #include "app/case_change.h"
-#include "app/due.h"
 #include "app/evidence.h"
 #include "base/run_dir.h"
 #include "check/check.h"
 #include "output/checkpoint.h"
-#include "output/probes.h"
 #include "output/report.h"
-#include "output/series.h"
+#include "output/rows.h"
 #include "output/snapshot.h"
 #include "time/guards.h"
 #include "time/relax.h"
+#include "time/timestep.h"
 #include "time/energy.h"
 
 #include <errno.h>
@@ -21,7 +20,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum output { OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
+enum output { OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
 
 struct run {
     const struct sphfsi_options *options;
@@ -31,16 +30,15 @@ struct run {
     struct run_dir folder;
     struct arena arena;
     struct probes probes;
+    struct row_files rows;
     struct references references;
-    struct score *score;       /* of each reference */
-    struct series *probe_rows; /* [probes.n_files] */
-    struct series ledger_rows;
+    struct score *score; /* of each reference */
     struct snapshots snapshots;
     struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
     char restarted_from[PATH_BYTES], checkpoint[PATH_BYTES];
-    struct due *probe_due; /* [probes.n_files] */
     struct due due[OUT_COUNT];
+    double written[OUT_COUNT]; /* s: time of the last one; -1: none */
     struct record record;
     double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
 };
@@ -49,52 +47,20 @@ struct run {
 static const double image_fraction = 0.0025;
 static const double progress_seconds = 0.25;
 
-static const char ledger_header[] =
-#define LEDGER(name, unit, meaning) "," #name "_" unit
-    LEDGER_COLUMNS(LEDGER)
-#undef LEDGER
-    ;
-
-/* --- output times --- */
+/* --- output --- */
 
 /* Whether there are rows already: a run that is stopped while it seeks rest has none. */
 static bool goes_on(const struct run *r) { return r->options->restart && !relax_due(r->s); }
 
+/* A run begins with a snapshot, and without a checkpoint: that state is the case, or the checkpoint
+ * of the fork. */
 static void set_intervals(struct run *r, double time)
 {
     const struct scene_output *out = &r->session.scene.output;
-    const bool restart = goes_on(r);
-    const double interval[OUT_COUNT] = {
-        [OUT_LEDGER] = out->ledger_interval,
-        [OUT_SNAPSHOT] = out->snapshot_interval,
-        [OUT_CHECKPOINT] = out->checkpoint_interval,
-    };
-    for (int k = 0; k < OUT_COUNT; k++) due_begin(&r->due[k], interval[k], time, restart);
-    for (int k = 0; k < r->probes.n_files; k++)
-        due_begin(&r->probe_due[k], r->probes.file[k].interval, time, restart);
-    /* No checkpoint at the start: that state is the case, or the checkpoint of the fork. */
-    r->due[OUT_CHECKPOINT].k += !restart;
-}
-
-static double next_time(const struct run *r)
-{
-    double next = r->session.scene.top.end_time;
-    for (int k = 0; k < OUT_COUNT; k++) next = min2(next, due_time(&r->due[k]));
-    for (int k = 0; k < r->probes.n_files; k++) next = min2(next, due_time(&r->probe_due[k]));
-    return next;
-}
-
-/* --- output --- */
-
-static enum err write_ledger(struct run *r)
-{
-    r->record.last = simulation_ledger(r->s);
-    const double row[] = {
-#define LEDGER(name, unit, meaning) r->record.last.name,
-        LEDGER_COLUMNS(LEDGER)
-#undef LEDGER
-    };
-    return series_row(&r->ledger_rows, row, r->diag);
+    r->due[OUT_SNAPSHOT].interval = out->snapshot_interval;
+    r->due[OUT_CHECKPOINT].interval = out->checkpoint_interval;
+    if (goes_on(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
+    due_pass(&r->due[OUT_CHECKPOINT], time);
 }
 
 /* Compares the probes with their references; a failure is only a warning. */
@@ -106,7 +72,8 @@ static void score_references(struct run *r)
     if (r->references.n == 0) return;
     r->record.score = r->score;
     for (int k = 0; k < r->probes.n_files; k++) {
-        if (!references_score(&r->references, k, r->probe_rows[k].path, r->score, &why)) continue;
+        if (!references_score(&r->references, k, r->rows.file[k].series.path, r->score, &why))
+            continue;
         diag_warn(&why, "the references were not compared: %s", why.text);
         r->record.score = NULL;
     }
@@ -117,6 +84,7 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 {
     r->record.exit_reason = exit_reason;
     r->record.message = message;
+    r->record.snapshots_missed = r->image.snapshots_missed;
     r->record.wall_seconds = wall_clock() - r->wall_start;
     r->record.last = simulation_ledger(r->s);
     return report_summary(r->folder.path, r->s, &r->record, d);
@@ -125,7 +93,6 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 static enum err capture(struct run *r, struct diag *d)
 {
     const double begin = wall_clock();
-    r->image.snapshots_missed = r->record.snapshots_missed;
     TRY(checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d));
     r->wall_image = wall_clock();
     r->image_cost = r->wall_image - begin;
@@ -135,8 +102,7 @@ static enum err capture(struct run *r, struct diag *d)
 /* Rows are synced first: after a power failure a checkpoint must not be newer than the rows. */
 static enum err store(struct run *r, struct diag *d)
 {
-    for (int k = 0; k < r->probes.n_files; k++) TRY(series_sync(&r->probe_rows[k], d));
-    TRY(series_sync(&r->ledger_rows, d));
+    TRY(rows_sync(&r->rows, d));
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }
 
@@ -146,7 +112,7 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
 {
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
         return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
-    r->record.snapshots_missed++;
+    r->image.snapshots_missed++;
     diag_warn(why, "the snapshot at %.6g s is missing, the run continues: %s", time, why->text);
     return ERR_OK;
 }
@@ -166,40 +132,24 @@ static enum err write_checkpoint(struct run *r)
     return write_summary(r, "running", "", r->diag);
 }
 
-static enum err write_output(struct run *r, enum output what)
+/* Writes what is due at the first state at or after its time; at the end of the run, all that was
+ * not written of this state. The checkpoint is the last: a restart relies on all others having been
+ * written. */
+static enum err write_due(struct run *r)
 {
-    if (what == OUT_LEDGER) return write_ledger(r);
-    return what == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r);
-}
-
-static double phases_so_far(const struct simulation *sim)
-{
-    double sum = 0;
-    for (int k = 0; k < PHASE_COUNT; k++) sum += sim->phase_seconds[k];
-    return sum;
-}
-
-/* Writes the outputs that are due; at the end of the run, all that were not written at this time.
- * The checkpoint is the last: a restart relies on all others having been written. */
-static enum err write_due(struct run *r, bool at_end)
-{
+    const bool at_end = r->s->state.time >= r->session.scene.top.end_time;
     const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
-    for (int k = 0; k < r->probes.n_files; k++) {
-        if (!due_now(&r->probe_due[k], time, at_end)) continue;
-        double row[SERIES_MAX_COLUMNS];
-        probes_sample(&r->probes, r->s, k, row);
-        TRY(series_row(&r->probe_rows[k], row, r->diag));
-        due_pass(&r->probe_due[k], time);
-    }
     for (int k = 0; k < OUT_COUNT; k++) {
-        if (!due_now(&r->due[k], time, at_end)) continue;
-        TRY(write_output(r, (enum output)k));
+        const bool due = due_time(&r->due[k]) <= time, of_end = at_end && r->written[k] < time;
+        if (k == OUT_SNAPSHOT) r->image.snapshot_of_end = of_end && !due;
+        if (!due && !of_end) continue;
+        TRY(k == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r));
+        r->written[k] = time;
         due_pass(&r->due[k], time);
     }
     if (!at_end && image_fraction * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
-    /* Evaluations for output, which the next step reuses, are already counted in their own phases.
-     */
+    /* Evaluations, which the next step uses, are counted in their own phases. */
     r->s->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->s) - before);
     return ERR_OK;
 }
@@ -231,23 +181,20 @@ static void show_progress(struct run *r, bool finished)
     const struct sphfsi_options *o = r->options;
     const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
     if (!o->progress || (!finished && since(&r->wall_progress) < interval)) return;
-    const double now = wall_clock();
+    const double end = r->session.scene.top.end_time, now = wall_clock();
     r->wall_progress = now;
     r->record.wall_seconds = now - r->wall_start;
     const struct state *st = &r->s->state;
-    int binding = 0;
-    for (int k = 1; k < BOUND_COUNT; k++)
-        if (k != BOUND_output && r->s->dt_bound[k] < r->s->dt_bound[binding]) binding = k;
-    const double done = st->time - r->record.start_time, end = r->session.scene.top.end_time;
+    const double done = st->time - r->record.start_time, left = max2(0, end - st->time);
     const struct sphfsi_progress p = {
         .time = st->time,
         .end_time = end,
         .start_time = r->record.start_time,
         .dt = st->dt,
-        .bound = bound_names[binding],
+        .bound = bound_names[timestep_binding(r->s)],
         .particle_steps_per_second = report_rate(r->s, &r->record),
         .wall_seconds = r->record.wall_seconds,
-        .seconds_left = done > 0 ? r->record.wall_seconds * (end - st->time) / done : -1,
+        .seconds_left = done > 0 ? r->record.wall_seconds * left / done : -1,
         .steps = st->steps,
         .finished = finished,
     };
@@ -293,22 +240,19 @@ static enum err relax(struct run *r)
     return ERR_OK;
 }
 
+/* A run ends with the first step at or after its end: no output moves a step. */
 static enum err advance(struct run *r)
 {
-    const double end = r->session.scene.top.end_time;
     TRY(relax(r));
-    probes_follow(&r->probes, r->s);
-    TRY(write_due(r, false));
-    while (r->s->state.time < end) {
-        const double next = next_time(r);
-        while (r->s->state.time < next) {
-            TRY(simulation_step(r->s, next, r->diag));
-            probes_follow(&r->probes, r->s);
-            TRY(between_steps(r));
-        }
-        TRY(write_due(r, false));
+    rows_follow(&r->rows, r->s);
+    TRY(observe(r->s, r->s->state.time, r->diag));
+    TRY(write_due(r));
+    while (r->s->state.time < r->session.scene.top.end_time) {
+        TRY(simulation_step(r->s, (double)INFINITY, r->diag));
+        TRY(write_due(r));
+        TRY(between_steps(r));
     }
-    return write_due(r, true);
+    return ERR_OK;
 }
 
 /* After a failure: saves what can be saved. The message remains that of the failure. */
@@ -388,13 +332,8 @@ static enum err start_fresh(struct run *r)
 {
     TRY(snapshots_create(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
                          r->diag));
-    TRY(series_create(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, r->diag));
-    for (int k = 0; k < r->probes.n_files; k++) {
-        const struct probe_file *const f = &r->probes.file[k];
-        TRY(series_create(&r->probe_rows[k], r->folder.path, f->name, f->header, r->diag));
-        r->probe_due[k].written = -1;
-    }
-    for (int k = 0; k < OUT_COUNT; k++) r->due[k].written = -1;
+    TRY(rows_start(&r->rows, r->folder.path, r->s->state.time, r->diag));
+    for (int k = 0; k < OUT_COUNT; k++) r->written[k] = -1;
     r->record.first = simulation_ledger(r->s);
     return ERR_OK;
 }
@@ -402,28 +341,14 @@ static enum err start_fresh(struct run *r)
 static enum err start_restart(struct run *r)
 {
     const double time = r->s->state.time;
-    const struct scene_output *const out = &r->session.scene.output;
-    double row[SERIES_MAX_COLUMNS];
+    /* An uninterrupted run would not have the snapshot of an earlier end. */
+    const double kept = r->image.snapshot_of_end ? nextafter(time, -1) : time;
     /* First, so that a kill in between leaves no checkpoint that is newer than the rows. */
     TRY(checkpoint_remove_later(r->folder.path, r->s->state.steps, r->diag));
-    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
-                         due_kept_until(out->snapshot_interval, time),
-                         &r->due[OUT_SNAPSHOT].written, r->diag));
-    TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1,
-                      due_kept_until(out->ledger_interval, time), row, &r->due[OUT_LEDGER].written,
-                      r->diag));
-    for (int k = 0; k < r->probes.n_files; k++) {
-        const struct probe_file *const f = &r->probes.file[k];
-        TRY(series_resume(&r->probe_rows[k], r->folder.path, f->name, f->header,
-                          due_kept_until(f->interval, time), NULL, &r->probe_due[k].written,
-                          r->diag));
-    }
-    r->due[OUT_CHECKPOINT].written = time;
-    int k = 0;
-#define LEDGER(name, unit, meaning) r->record.first.name = row[k++];
-    LEDGER_COLUMNS(LEDGER)
-#undef LEDGER
-    return ERR_OK;
+    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, kept,
+                         &r->written[OUT_SNAPSHOT], r->diag));
+    r->written[OUT_CHECKPOINT] = time;
+    return rows_resume(&r->rows, r->folder.path, time, &r->record.first, r->diag);
 }
 
 /* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in
@@ -454,10 +379,12 @@ static enum err load_checkpoint(struct run *r)
                   "%s was written by version %s, but this is %s: results may differ "
                   "in their last digits",
                   r->restarted_from, info.version, SPHFSI_VERSION);
-    if (!fork) TRY(checkpoint_missed(&r->image, &r->record.snapshots_missed, r->diag));
+    if (!fork) TRY(checkpoint_snapshots(&r->image, r->diag));
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
              : checkpoint_apply(&r->image, r->s, r->diag));
-    if (r->s->state.time > r->session.scene.top.end_time)
+    /* The last step of a finished run passes its end. */
+    const double last = r->s->state.dt * (r->s->effects & FX_FLUID ? 1 : CHECK_INTERVAL);
+    if (r->s->state.time - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,
             "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
@@ -515,23 +442,12 @@ static enum err simulate(struct run *r)
 
 static void end_run(struct run *r)
 {
-    for (int k = 0; r->probe_rows && k < r->probes.n_files; k++) series_close(&r->probe_rows[k]);
-    series_close(&r->ledger_rows);
+    rows_close(&r->rows);
     snapshots_close(&r->snapshots);
     checkpoint_free(&r->image);
     arena_free(&r->arena);
     free(r->case_text);
     run_dir_close(&r->folder);
-}
-
-static enum err create_probes(struct run *r)
-{
-    TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
-    const size_t n = (size_t)r->probes.n_files;
-    r->probe_rows = arena_alloc(&r->arena, n, sizeof *r->probe_rows, "probes", r->diag);
-    for (size_t k = 0; r->probe_rows && k < n; k++) r->probe_rows[k].fd = -1;
-    r->probe_due = arena_alloc(&r->arena, n, sizeof *r->probe_due, "probes", r->diag);
-    return r->probe_rows && r->probe_due ? ERR_OK : ERR_MEMORY;
 }
 
 static enum err open_references(struct run *r)
@@ -548,7 +464,8 @@ static enum err open_references(struct run *r)
 
 static enum err run_session(struct run *r, const char *path, enum run_dir_use use)
 {
-    TRY(create_probes(r));
+    TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
+    TRY(rows_create(&r->rows, &r->probes, r->s, true, &r->arena, r->diag));
     TRY(open_references(r));
     TRY(run_dir_open(&r->folder, path, use, r->diag));
     TRY(begin_run(r));
@@ -569,7 +486,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     r->options = o;
     r->diag = d;
     r->s = &r->session.simulation;
-    r->folder.lock = r->ledger_rows.fd = -1;
+    r->folder.lock = -1;
     enum err e = session_open(&r->session, o, d);
     if (!e) {
         check_simulation(r->s, d);

@@ -4,6 +4,7 @@
 #include "case/params.h"
 #include "check/check.h"
 #include "geometry/load.h"
+#include "output/due.h"
 #include "time/timestep.h"
 
 #include <math.h>
@@ -53,13 +54,6 @@ void session_result(const struct sphfsi_options *o, const char *format, ...)
     va_end(args);
 }
 
-double session_time(double time)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.12g", time);
-    return strtod(text, NULL);
-}
-
 /* No run has more steps, nor a file more rows. */
 static const double most_counts = 1e10;
 
@@ -104,31 +98,17 @@ static enum err check_counts(const struct scene *scene, double until, struct dia
     return ERR_OK;
 }
 
-/* The interval nearest to `wish` that is a multiple or a whole fraction of `given`, if that is not
- * 0 or far longer: rows that fall between each other make the steps uneven (T-34d). */
-static double in_step_with(double given, double wish)
-{
-    if (given == 0 || given > EQUAL_STEPS * wish) return wish;
-    const double many = round(max2(wish, given) / min2(wish, given));
-    const double near = wish > given ? many * given : given / many;
-    return fabs(near - wish) < 1e-9 * wish ? wish : near;
-}
-
 /* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes
- * the same rows and takes the same steps as the whole one. */
+ * the same rows as the whole one. */
 static enum err settle_times(struct scene *scene, double until, struct diag *d)
 {
     struct scene_output *out = &scene->output;
     const double end = scene->top.end_time;
-    struct output_interval given;
-    double first = 0; /* of the intervals that the case gives */
-    for (int k = 0; timestep_output(scene, k, &given); k++)
-        if (first == 0) first = given.interval;
-    if (out->probe_interval == 0) out->probe_interval = in_step_with(first, end / 1000);
-    if (out->ledger_interval == 0) out->ledger_interval = in_step_with(first, end / 1000);
+    if (out->probe_interval == 0) out->probe_interval = end / 1000;
+    if (out->ledger_interval == 0) out->ledger_interval = end / 1000;
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
     TRY(check_counts(scene, until, d));
-    scene->top.end_time = session_time(until > 0 ? until : end);
+    scene->top.end_time = due_round(until > 0 ? until : end);
     return ERR_OK;
 }
 
@@ -198,7 +178,7 @@ void session_close(struct session *x)
 static enum err check_steps(const struct session *x, struct diag *d)
 {
     const struct simulation *const sim = &x->simulation;
-    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
+    const double step = timestep_longest(sim);
     const double end = x->scene.top.end_time, n = end / step;
     if (n <= most_counts) return ERR_OK;
     char place[LOCATION_TEXT];

@@ -30,8 +30,4 @@ void session_say(const struct sphfsi_options *o, const char *format, ...) SPHFSI
 /* The same for what --quiet shows, too: what was asked for, and how to go on. */
 void session_result(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
 
-/* Rounds a time to 12 digits, so that the times k * interval of several outputs are equal where
- * they should be and do not differ by round-off. */
-double session_time(double time);
-
 #endif

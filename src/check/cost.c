@@ -44,35 +44,6 @@ static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
                 b->common.name, b->density / scene->rho0, fixed, bound);
 }
 
-/* T-34d. The first of the other intervals is named. */
-static void warn_of_uneven_steps(const struct simulation *sim, struct diag *d)
-{
-    struct output_interval own, other;
-    const struct scene *const scene = sim->scene;
-    if (!sim->uneven || !timestep_output(scene, sim->uneven - 1, &own)) return;
-    for (int k = 0; timestep_output(scene, k, &other) && !(other.interval > 0);) k++;
-    warn_at(d, scene, scene_line(scene, own.section, own.index, own.key),
-            "outputs with %s = %g s fall between those with %s = %g s and make the steps uneven. "
-            "So solids take steps half as long, and the energy account is less exact; intervals "
-            "that are multiples of each other avoid that",
-            own.key, own.interval, other.key, other.interval);
-}
-
-static void warn_of_intervals(const struct simulation *sim, struct diag *d)
-{
-    const struct scene *const scene = sim->scene;
-    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
-    struct output_interval out;
-    for (int k = 0; timestep_output(scene, k, &out); k++)
-        if (out.interval > 0 && out.interval < 0.5 * step)
-            warn_at(
-                d, scene, scene_line(scene, out.section, out.index, out.key),
-                "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, "
-                "so the run needs about %.3g times as many steps; use a longer interval",
-                scene_given(scene, out.section, out.index, out.key) ? "" : "the default of output.",
-                out.key, out.interval, step, step / out.interval);
-}
-
 static void warn_of_damping(const struct simulation *sim, struct diag *d)
 {
     const double free = solid_step_of(square(sim->solid.omega_max), 0);
@@ -151,8 +122,6 @@ void check_simulation(const struct simulation *sim, struct diag *d)
 {
     warn_of_precision(sim, d);
     warn_of_unstable_step(sim, d);
-    warn_of_uneven_steps(sim, d);
-    warn_of_intervals(sim, d);
     warn_of_damping(sim, d);
     if (sim->effects & FX_FLUID) warn_of_bounds(sim, d);
 }

@@ -38,7 +38,7 @@ void impulse_begin(struct coupling *coupling, double dt)
 }
 
 void impedance_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                    double drift)
+                    double drift, double next)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
@@ -55,8 +55,8 @@ void impedance_kick(const struct particles *particles, int64_t first, int64_t en
         const double after =
             particles->vx[i] * particles->face_x[i] + particles->vy[i] * particles->face_y[i];
         particles->face_work[i] -= 0.5 * faster * (before + after);
-        particles->ux[i] += drift * particles->vx[i];
-        particles->uy[i] += drift * particles->vy[i];
+        particles->ux[i] = particles->ux[i] + drift * particles->vx[i] + next * particles->vx[i];
+        particles->uy[i] = particles->uy[i] + drift * particles->vy[i] + next * particles->vy[i];
     }
 }
 

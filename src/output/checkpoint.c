@@ -10,7 +10,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 7, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
+enum { FORMAT = 8, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 
 /* Owners of blocks: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
@@ -53,7 +53,7 @@ _Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) 
 enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
 
 static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
-static const char carried_name[] = "probe_means";
+static const char carried_name[] = "rows";
 
 static uint64_t checksum(const void *bytes, size_t n) { return hash_bytes(HASH_START, bytes, n); }
 
@@ -90,7 +90,7 @@ static void put_block(struct image *m, const char *name, unsigned owner, enum it
     m->size += sizeof head + padded(bytes);
 }
 
-/* State of a run beside its particles: blocks of numbers, the means of probes last. */
+/* State of a run beside its particles: blocks of numbers, what rows carry last. */
 struct numbers {
     const char *name;
     enum item item;
@@ -131,7 +131,7 @@ static size_t image_bytes(const struct simulation *sim, const struct numbers *li
                           size_t case_length)
 {
     size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer) + padded(case_length) +
-                   sizeof(int64_t) + (size_t)(n + 2) * sizeof(struct block_header);
+                   2 * sizeof(int64_t) + (size_t)(n + 3) * sizeof(struct block_header);
     for (int k = 0; k < n; k++) bytes += padded(list[k].count * item_size[list[k].item]);
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
@@ -177,9 +177,10 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
     put_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, &m->snapshots_missed, 1);
+    put_block(m, "snapshot_of_end", OWNER_STATE, ITEM_INT64, &m->snapshot_of_end, 1);
     for (int k = 0; k < n; k++)
         put_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].data, list[k].count);
-    head.blocks = 2 + (uint32_t)n + put_particles(m, sim);
+    head.blocks = 3 + (uint32_t)n + put_particles(m, sim);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
@@ -436,10 +437,12 @@ static enum err load_block(const struct image *m, const char *name, unsigned own
     return ERR_OK;
 }
 
-enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct diag *d)
+enum err checkpoint_snapshots(struct image *m, struct diag *d)
 {
-    TRY(load_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, 1, snapshots, d));
-    return range_check("snapshots_missed", (double)*snapshots, 0, COUNTS, d);
+    TRY(load_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, 1, &m->snapshots_missed, d));
+    TRY(load_block(m, "snapshot_of_end", OWNER_STATE, ITEM_INT64, 1, &m->snapshot_of_end, d));
+    TRY(range_check("snapshots_missed", (double)m->snapshots_missed, 0, COUNTS, d));
+    return range_check("snapshot_of_end", (double)m->snapshot_of_end, 0, 1, d);
 }
 
 /* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the

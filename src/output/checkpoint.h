@@ -11,7 +11,9 @@
 struct image {
     unsigned char *bytes;
     size_t size, capacity;
-    int64_t snapshots_missed; /* so far; captured beside the state */
+    /* Captured beside the state: snapshots missed so far; 1: there is a snapshot of this state only
+     * because the run ended with it. */
+    int64_t snapshots_missed, snapshot_of_end;
 };
 
 enum { CHECKPOINT_VERSION_TEXT = 48 };
@@ -64,9 +66,8 @@ struct block_info {
  * Returns false after the last block. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info);
 
-/* How many snapshots had been missed when it was captured. */
-enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct diag *d)
-    SPHFSI_CHECKED;
+/* Reads what it has of snapshots. */
+enum err checkpoint_snapshots(struct image *m, struct diag *d) SPHFSI_CHECKED;
 
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
  * the new case is loaded as at rest. Used by the two functions below. */

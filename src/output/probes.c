@@ -212,24 +212,6 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
     return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, sim, a, d) : ERR_OK;
 }
 
-static enum err create_means(struct probes *p, struct simulation *sim, struct arena *a,
-                             struct diag *d)
-{
-    int n = 0;
-    for (int k = 0; k < p->n; k++) n += p->probe[k].average > 0;
-    if (n == 0) return ERR_OK;
-    struct probe_mean *mean = arena_alloc(a, (size_t)n, sizeof *mean, "means of probes", d);
-    if (!mean) return ERR_MEMORY;
-    sim->carried.n = n * (int64_t)(sizeof *mean / sizeof(double));
-    sim->carried.value = &mean->row;
-    for (int k = 0; k < p->n; k++) {
-        if (!(p->probe[k].average > 0)) continue;
-        p->probe[k].mean = mean;
-        *mean++ = (struct probe_mean){.row = -1};
-    }
-    return ERR_OK;
-}
-
 /* --- files --- */
 
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size)
@@ -268,9 +250,9 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
         const struct scene_probe *const sp = &scene->probe[k];
         if (only >= 0 ? k != only : sp->interval > 0) continue;
         p->probe[k].file = p->n_files;
+        p->probe[k].column = f->columns;
         at = name_columns(header, size, at, sp);
         f->columns += p->probe[k].columns;
-        f->refresh |= needs_refresh(sp->quantity);
         f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;
     }
     if (f->columns == 1) return ERR_OK;
@@ -280,7 +262,8 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
     return ERR_OK;
 }
 
-enum err probes_create(struct probes *p, struct simulation *sim, struct arena *a, struct diag *d)
+enum err probes_create(struct probes *p, const struct simulation *sim, struct arena *a,
+                       struct diag *d)
 {
     const struct scene *scene = sim->scene;
     *p = (struct probes){.n = scene->n_probe};
@@ -288,7 +271,6 @@ enum err probes_create(struct probes *p, struct simulation *sim, struct arena *a
     p->file = arena_alloc(a, (size_t)p->n + 1, sizeof *p->file, "probes", d);
     if (!p->probe || !p->file) return ERR_MEMORY;
     for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], sim, a, d));
-    TRY(create_means(p, sim, a, d));
     TRY(create_file(p, scene, -1, a, d));
     for (int k = 0; k < p->n; k++)
         if (scene->probe[k].interval > 0) TRY(create_file(p, scene, k, a, d));
@@ -371,11 +353,13 @@ static void reaction(const struct probe *pr, struct simulation *sim, double out[
     add_forces(pr, particles, pr->body, now.clamp_x, now.clamp_y, out);
 }
 
-/* T-75: the particles of a body have equal masses. */
-static void pose(const struct probe *pr, const struct simulation *sim, double out[3])
+/* T-75: the particles of a body have equal masses. Pose and its rate. */
+static void pose(const struct probe *pr, const struct simulation *sim, double out[3],
+                 double rate[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
-    double X = 0, Y = 0, ux = 0, uy = 0, across = 0, along = 0, n = 0;
+    double X = 0, Y = 0, ux = 0, uy = 0, vx = 0, vy = 0, n = 0;
+    double across = 0, along = 0, to_across = 0, to_along = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->body[i] != pr->body) continue;
         n++;
@@ -383,18 +367,25 @@ static void pose(const struct probe *pr, const struct simulation *sim, double ou
         Y += particles->Y[i];
         ux += particles->ux[i];
         uy += particles->uy[i];
+        vx += particles->vx[i];
+        vy += particles->vy[i];
     }
-    X /= n, Y /= n, ux /= n, uy /= n;
+    X /= n, Y /= n, ux /= n, uy /= n, vx /= n, vy /= n;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->body[i] != pr->body) continue;
         const double a = particles->X[i] - X, b = particles->Y[i] - Y;
         const double x = a + (particles->ux[i] - ux), y = b + (particles->uy[i] - uy);
         across += a * y - b * x;
         along += a * x + b * y;
+        to_across += a * (particles->vy[i] - vy) - b * (particles->vx[i] - vx);
+        to_along += a * (particles->vx[i] - vx) + b * (particles->vy[i] - vy);
     }
     out[0] = X + ux;
     out[1] = Y + uy;
     out[2] = elementary_atan2(across, along);
+    rate[0] = vx;
+    rate[1] = vy;
+    rate[2] = (along * to_across - across * to_along) / (square(across) + square(along));
 }
 
 static void energy(const struct probe *pr, const struct simulation *sim, double out[3])
@@ -455,13 +446,21 @@ static void velocity(const struct probe *pr, const struct simulation *sim, doubl
         fluid_velocity(pr, sim, out);
 }
 
-static void values(const struct probe *pr, struct simulation *sim, double *row)
+static void displacement(const struct probe *pr, const struct particles *solid, double out[2],
+                         double rate[2])
+{
+    weighted_sum(pr, solid->ux, solid->uy, out);
+    weighted_sum(pr, solid->vx, solid->vy, rate);
+}
+
+/* Values, and their rates where these are known. */
+static void values(const struct probe *pr, struct simulation *sim, double *row, double *rate)
 {
     const struct particles *const solid = &sim->kind[KIND_SOLID];
     double at[2] = {0};
     if (pr->target == TARGET_FLUID_POINT) place(pr, sim, at);
     switch ((enum probe_quantity)pr->quantity) {
-    case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
+    case PROBE_DISPLACEMENT: displacement(pr, solid, row, rate); break;
     case PROBE_VELOCITY: velocity(pr, sim, row); break;
     case PROBE_PRESSURE: *row = fluid_pressure_at(sim, at[0], at[1]); break;
     case PROBE_STRESS: stress(pr, sim, row); break;
@@ -472,84 +471,38 @@ static void values(const struct probe *pr, struct simulation *sim, double *row)
     case PROBE_FLUX: *row = fluid_flux(sim, pr->point, pr->to); break;
     case PROBE_STRAIN: strain(pr, sim, row); break;
     case PROBE_ACCELERATION: acceleration(pr, sim, row); break;
-    case PROBE_POSE: pose(pr, sim, row); break;
+    case PROBE_POSE: pose(pr, sim, row, rate); break;
     case PROBE_REACTION: reaction(pr, sim, row); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(pr, sim, row); break;
     case PROBE_QUANTITIES: break;
     }
 }
 
-/* --- means in time --- */
-
-/* Number of the first row at or after the time, and where its mean begins, s. */
-static double next_row(const struct probes *p, const struct probe *pr, double time, double *begin)
+void probes_sample(const struct probes *p, struct simulation *sim, int file, bool means,
+                   double *row, double *rate)
 {
-    const double interval = p->file[pr->file].interval, row = ceil(time / interval - 1e-9);
-    *begin = row * interval - pr->average - 1e-9 * interval;
-    return row;
-}
-
-/* T-76: the trapezoidal rule. What lies before the first value within the mean, less than a step,
- * has that value. */
-static void add_to_mean(const struct probe *pr, double row, double begin, double time, double dt,
-                        const double *now)
-{
-    struct probe_mean *const m = pr->mean;
-    const bool joined = m->row >= 0 && m->time >= begin;
-    if (m->row != row && joined) m->begin = m->time;
-    if (m->row != row && !joined) {
-        m->begin = m->time = max2(begin, time - dt);
-        memcpy(m->last, now, sizeof m->last);
-    }
-    if (m->row != row) memset(m->sum, 0, sizeof m->sum);
-    m->row = row;
-    for (int c = 0; c < pr->columns; c++) {
-        m->sum[c] += 0.5 * (m->last[c] + now[c]) * (time - m->time);
-        m->last[c] = now[c];
-    }
-    m->time = time;
-}
-
-void probes_follow(const struct probes *p, struct simulation *sim)
-{
-    const double time = sim->state.time;
+    bool refresh = false;
+    for (int k = 0; k < p->n; k++)
+        refresh |= p->probe[k].file == file && (!means || p->probe[k].mean) &&
+                   needs_refresh(p->probe[k].quantity);
+    if (refresh) simulation_refresh(sim);
+    row[0] = sim->state.time;
     for (int k = 0; k < p->n; k++) {
-        const struct probe *const pr = &p->probe[k];
-        double begin, now[PROBE_MAX_COLUMNS] = {0};
-        if (!pr->mean) continue;
-        const double row = next_row(p, pr, time, &begin);
-        if (time < begin || (pr->mean->row >= 0 && time <= pr->mean->time)) continue;
-        if (needs_refresh(pr->quantity)) simulation_refresh(sim);
-        values(pr, sim, now);
-        add_to_mean(pr, row, begin, time, sim->state.dt, now);
-    }
-}
-
-/* The mean, or the value now where none has been begun. */
-static void present(const struct probe *pr, struct simulation *sim, double *row)
-{
-    const struct probe_mean *const m = pr->mean;
-    if (!m || m->row < 0 || m->time != sim->state.time) {
-        values(pr, sim, row);
-        return;
-    }
-    for (int c = 0; c < pr->columns; c++)
-        row[c] = m->time > m->begin ? m->sum[c] / (m->time - m->begin) : m->last[c];
-}
-
-void probes_sample(const struct probes *p, struct simulation *sim, int file, double *row)
-{
-    if (p->file[file].refresh) simulation_refresh(sim);
-    *row++ = sim->state.time;
-    for (int k = 0; k < p->n; k++) {
-        if (p->probe[k].file != file) continue;
-        present(&p->probe[k], sim, row);
-        row += p->probe[k].columns;
+        const struct probe *const probe = &p->probe[k];
+        if (probe->file != file || (means && !probe->mean)) continue;
+        values(probe, sim, row + probe->column, rate + probe->column);
     }
 }
 
 void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row)
 {
-    if (needs_refresh(p->probe[probe].quantity)) simulation_refresh(sim);
-    present(&p->probe[probe], sim, row);
+    const struct probe *const pr = &p->probe[probe];
+    const struct probe_mean *const m = pr->mean;
+    if (m && m->row >= 0 && m->time == sim->state.time) {
+        for (int c = 0; c < pr->columns; c++) row[c] = m->sum[c] / m->covered;
+        return;
+    }
+    if (needs_refresh(pr->quantity)) simulation_refresh(sim);
+    double rate[PROBE_MAX_COLUMNS];
+    values(pr, sim, row, rate);
 }

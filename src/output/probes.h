@@ -21,26 +21,26 @@ struct probe_body {
 /* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as
  * they are. */
 struct probe_mean {
-    double row;             /* number of the row that it is for; -1: none yet */
-    double begin;           /* s, of the mean */
-    double time;            /* s, of the last value */
-    double sum[5], last[5]; /* integral over time since `begin`; last values */
+    double row;     /* number of the row that it is for; -1: none yet */
+    double time;    /* s: end of the time that it covers so far */
+    double covered; /* s */
+    double sum[5];  /* integral over this time */
 };
 
 struct probe {
     int quantity; /* enum probe_quantity */
     enum probe_target target;
-    int columns, file;
-    int direction;  /* enum probe_direction */
-    enum kind kind; /* of the body */
-    int body;       /* index of its section, the first if there are several; -1: none */
-    int n_more;     /* further bodies, of a force */
+    int columns, file, column; /* `column`: its first in the file */
+    int direction;             /* enum probe_direction */
+    enum kind kind;            /* of the body */
+    int body;                  /* index of its section, the first if there are several; -1: none */
+    int n_more;                /* further bodies, of a force */
     struct probe_body *more;
     int motion;              /* that carries the point of a probe on a wall; -1: none */
     double point[2];         /* m, in the initial configuration */
     double to[2];            /* m */
     double average;          /* s; 0: none */
-    struct probe_mean *mean; /* in the simulation's `carried`; NULL: none */
+    struct probe_mean *mean; /* NULL: none */
     int n;                   /* particles of the interpolation at a material point */
     int32_t *particle;       /* of the solid */
     double *weight;          /* sum 1; reproduce linear fields */
@@ -52,7 +52,6 @@ struct probe_file {
     const char *header;         /* its columns joined by commas, "time_s" first */
     double interval;            /* s */
     int columns;
-    bool refresh; /* one of them needs simulation_refresh */
 };
 
 struct probes {
@@ -65,20 +64,18 @@ enum { PROBE_MAX_COLUMNS = 5, PROBE_COLUMN_TEXT = SCENE_NAME + 24 };
 
 /* Finds the particles and weights of each probe, and the columns of each file; the arena owns the
  * memory. ERR_INPUT: a probe is too far from its body. */
-enum err probes_create(struct probes *p, struct simulation *sim, struct arena *a, struct diag *d)
-    SPHFSI_CHECKED;
+enum err probes_create(struct probes *p, const struct simulation *sim, struct arena *a,
+                       struct diag *d) SPHFSI_CHECKED;
 
-/* Adds the present to the means; at the start of a run and after each step. The state stays as it
- * is. */
-void probes_follow(const struct probes *p, struct simulation *sim);
-
-/* One row of a file: the time, then the values of its probes. */
-void probes_sample(const struct probes *p, struct simulation *sim, int file, double *row);
+/* The present time, and values of the probes of a file, or of those with means only, in its
+ * columns; their rates where these are known. */
+void probes_sample(const struct probes *p, struct simulation *sim, int file, bool means,
+                   double *row, double *rate);
 
 /* Name of a column of a probe, <probe>_<quantity>_<unit>; false: it has no such column. */
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size);
 
-/* The values of one probe now, as many as it has columns. */
+/* The values of one probe now, as many as it has columns; its mean so far, if it has one. */
 void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row);
 
 #endif

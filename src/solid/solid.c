@@ -267,24 +267,25 @@ static void pack_all_motion(const struct chunk *own)
 }
 
 void solid_free_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                     double drift)
+                     double drift, double next)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
         particles->vx[i] += kick * particles->sx[i];
         particles->vy[i] += kick * particles->sy[i];
-        particles->ux[i] += drift * particles->vx[i];
-        particles->uy[i] += drift * particles->vy[i];
+        particles->ux[i] = particles->ux[i] + drift * particles->vx[i] + next * particles->vx[i];
+        particles->uy[i] = particles->uy[i] + drift * particles->vy[i] + next * particles->vy[i];
     }
 }
 
-static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, double drift)
+static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, double drift,
+                           double next)
 {
     const struct particles *const particles = own->p;
     const struct solid_pack *const pack = own->s->pack;
     const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : particles->n;
     const int64_t first = own->first < own->last ? pack[own->first].i : end;
-    f(particles, first, end, kick, drift);
+    f(particles, first, end, kick, drift, next);
     pack_all_motion(own);
 }
 
@@ -382,19 +383,21 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
 {
     const struct chunk chunk = chunk_of(solid, particles), *const own = &chunk;
     const double first = centred ? 0.5 * dt : 0;
-    kick_and_drift(own, solid_free_kick, 0, first);
-    if (centred) place_clamps(own, solid->time + first);
+    double time = solid->time;
+    kick_and_drift(own, solid_free_kick, 0, 0, first);
+    if (centred) place_clamps(own, time + first);
     for (int k = 0; k < n; k++) {
+        const bool last = k + 1 == n;
         stress_sweeps(own, true);
         force_sweeps(own);
-        outer_forces(solid, particles, solid->time + k * dt + first);
+        outer_forces(solid, particles, time + first);
         if (solid->contact || solid->loads) {
 #pragma omp single
             solid_book_work(solid, particles, particles->vx, particles->vy, dt);
         }
-        const double drift = k + 1 < n ? dt : dt - first;
-        kick_and_drift(own, solid->kick, dt, drift);
-        place_clamps(own, k + 1 < n ? solid->time + (k + 1) * dt + first : solid->time + n * dt);
+        kick_and_drift(own, solid->kick, dt, dt - first, last ? 0 : first);
+        time += dt;
+        place_clamps(own, last ? time : time + first);
     }
 }
 
@@ -406,7 +409,7 @@ void solid_advance(struct solid *solid, struct particles *particles, double dt, 
     }
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     substeps(solid, particles, dt, n, centred);
-    solid->time += n * dt;
+    for (int k = 0; k < n; k++) solid->time += dt; /* as in the steps */
 }
 
 double solid_set_positions(struct particles *particles)

@@ -83,9 +83,11 @@ struct solid;
 typedef void solid_sweep(const struct solid *solid, struct particles *particles, int64_t first,
                          int64_t last);
 
-/* Kick by the accelerations and drift, s, of the particles from first to end - 1. */
+/* Kick by the accelerations, s, of the particles from first to end - 1; their drift to the end of
+ * the step, and then into the next one. The sum of both would have other bits, and n steps at once
+ * not those of n steps. */
 typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                        double drift);
+                        double drift, double next);
 
 /* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:
  * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */

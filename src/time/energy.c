@@ -127,8 +127,8 @@ struct ledger simulation_ledger(struct simulation *sim)
         row.newton_residual = sim->solid.implicit->residual;
     }
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
-                     open_energy(&sim->open) - state->lost_energy - without_potential(&row) -
-                     row.potential;
+                     sim->solid.work + open_energy(&sim->open) - state->lost_energy -
+                     without_potential(&row) - row.potential;
     for (int64_t i = 0; i < fluid->n; i++)
         row.dens_extreme = max2(row.dens_extreme, fabs(fluid->dens[i]));
     return row;

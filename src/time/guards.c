@@ -230,16 +230,8 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-static int binding_bound(const struct simulation *sim)
-{
-    int least = 0;
-    for (int k = 1; k < BOUND_COUNT; k++)
-        if (sim->dt_bound[k] < sim->dt_bound[least]) least = k;
-    return least;
-}
-
 /* What lengthens a step that a bound limits. */
-static const char *step_remedy(const struct simulation *sim, int bound)
+static const char *step_remedy(const struct simulation *sim, enum bound bound)
 {
     if (bound != BOUND_solid && bound != BOUND_contact)
         return "a smaller cfl or a higher sound_speed may help";
@@ -252,26 +244,25 @@ static const char *step_remedy(const struct simulation *sim, int bound)
 static enum err check_step(struct simulation *sim, struct diag *d)
 {
     const double limit = sim->guard.step_limit;
-    const bool cut = !(sim->dt_bound[BOUND_output] > sim->state.dt); /* by an output time */
+    const enum bound bound = timestep_binding(sim);
+    const double dt = sim->dt_bound[bound]; /* whatever limit the caller has given */
     if (sim->substeps > SUBSTEPS_MOST)
         return diag_fail(
             d, ERR_GUARD,
             "%s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
             "because its material is being crushed or torn; a finer dp may help",
             time_text(sim).text, sim->dt_solid, sim->substeps);
-    if (cut || sim->state.dt > STEP_WARNING * limit) return ERR_OK;
-    if (sim->state.dt < limit)
+    if (dt > STEP_WARNING * limit) return ERR_OK;
+    if (dt < limit)
         return diag_fail(d, ERR_GUARD,
                          "%s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
-                         time_text(sim).text, sim->state.dt);
-    const int bound = binding_bound(sim);
+                         time_text(sim).text, dt);
     if (!sim->guard.warned_step)
         diag_warn(d,
                   "%s: the time step has fallen to %.3g s, limited by %s, and the run "
                   "stops at %.3g s; %s",
-                  time_text(sim).text, sim->state.dt, bound_names[bound], limit,
-                  step_remedy(sim, bound));
+                  time_text(sim).text, dt, bound_names[bound], limit, step_remedy(sim, bound));
     sim->guard.warned_step = true;
     return ERR_OK;
 }

@@ -229,7 +229,6 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         move_walls(sim, 0);
     }
     TRY(choose_rate(sim, d));
-    timestep_find_grid(sim);
     set_guards(sim);
     update_extremes(sim);
     find_speed(sim);

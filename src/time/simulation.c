@@ -95,7 +95,7 @@ static void count_work(struct simulation *sim)
 
 static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
-    solid_only_step(sim, t_limit);
+    TRY(solid_only_step(sim, t_limit, d));
     count_work(sim);
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     find_speed(sim);
@@ -107,11 +107,8 @@ static enum err step_without_fluid(struct simulation *sim, double t_limit, struc
     return ERR_OK;
 }
 
-static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
+static enum err step_with_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
-    sim->solid.time = sim->state.time;
-    t_limit = timestep_stop(sim, t_limit);
-    if (!(sim->effects & FX_FLUID)) return step_without_fluid(sim, t_limit, d);
     const double speed2_before = sim->extremes.speed2;
     double clock = wall_clock();
     timestep_watch_contact(sim, sim->state.time, 1);
@@ -136,6 +133,18 @@ static enum err take_step(struct simulation *sim, double t_limit, struct diag *d
     TRY(guards_penetration(sim, d));
     phase_add(sim, PHASE_update, clock);
     return ERR_OK;
+}
+
+static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
+{
+    sim->solid.time = sim->state.time;
+    if (sim->effects & FX_FLUID) {
+        TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
+        TRY(step_with_fluid(sim, t_limit, d));
+    } else {
+        TRY(step_without_fluid(sim, t_limit, d));
+    }
+    return observe(sim, sim->state.time, d);
 }
 
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)

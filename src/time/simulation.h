@@ -19,8 +19,9 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     SPHFSI_CHECKED;
 void simulation_free(struct simulation *sim);
 
-/* Advances by one time step, ending no later than t_limit (> time), and exactly at it if the step
- * comes within a step of it. ERR_GUARD: the state is invalid; d has the message. */
+/* Advances by one time step, of a solid without fluid by up to 16, ending at t_limit (> time) at
+ * the latest. INFINITY: the physics alone sets the step. The observer sees the state before and
+ * after. ERR_GUARD: the state is invalid; d has the message. */
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* After the STATE fields, n of each kind and sim->state have been loaded from a checkpoint:

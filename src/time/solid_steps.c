@@ -12,23 +12,18 @@
 /* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = CHECK_INTERVAL };
 
-/* Bounds of a solid without fluid; returns the smallest. */
-static enum bound lone_bounds(struct simulation *sim)
+/* Bounds of a solid without fluid; returns the smallest, s. */
+static double find_bounds(struct simulation *sim)
 {
     const double fixed = sim->scene->numerics.fixed_step;
     for (int k = 0; k < BOUND_COUNT; k++) sim->dt_bound[k] = (double)INFINITY;
-    if (fixed > 0) {
-        sim->dt_bound[BOUND_fixed] = fixed;
-        return BOUND_fixed;
-    }
+    if (fixed > 0) return sim->dt_bound[BOUND_fixed] = fixed;
     sim->dt_bound[BOUND_solid] = sim->dt_lone_solid;
     if (sim->solid.implicit && sim->solid.contact) /* as beside fluid */
         sim->dt_bound[BOUND_contact] = sim->contact.approach;
-    if (sim->solid.implicit)
-        return sim->dt_bound[BOUND_contact] < sim->dt_lone_solid ? BOUND_contact : BOUND_solid;
-    if (!(sim->dt_solid < sim->dt_lone_solid)) return BOUND_solid;
-    sim->dt_bound[BOUND_contact] = sim->dt_solid;
-    return BOUND_contact;
+    else if (!sim->solid.implicit && sim->dt_solid < sim->dt_lone_solid)
+        sim->dt_bound[BOUND_contact] = sim->dt_solid;
+    return min2(sim->dt_lone_solid, sim->dt_bound[BOUND_contact]);
 }
 
 static void advance_lone(struct simulation *sim, double dt, int n)
@@ -51,28 +46,43 @@ static void advance_implicit(struct simulation *sim, double dt)
     sim->state.solid_substeps += sim->substeps - 1;
 }
 
-/* When a contact is near, each step is chosen separately and may be shorter than planned.
- * Where surfaces are pressed so hard that the material may fail, the guards judge each step.
- * Returns the time advanced, or 0 if all *n steps were as long as planned. */
-static double advance_near(struct simulation *sim, double dt, int *n)
+/* The part of a batch of steps of dt that comes next: up to the state before a time that is
+ * observed, then the step over it. */
+static int steps_of_part(const struct simulation *sim, double dt, int most)
 {
-    double advanced = 0;
-    bool shorter = false;
-    for (int k = 0; k < *n; k++) {
-        if (k) timestep_watch_contact(sim, sim->solid.time, SOLID_BATCH);
-        if (k && guards_contact_hard(sim)) {
-            shorter = true;
+    const double before = floor((sim->observer.next - sim->state.time) / dt - 1e-6);
+    return sim->observer.context ? (int)max2(1, min2(before, most)) : most;
+}
+
+/* When a contact is near, each step is chosen separately and may be shorter than planned. Where
+ * surfaces are pressed so hard that the material may fail, the guards judge each step: *n becomes
+ * the number of steps taken, and *cut the time by which they were shorter. */
+static enum err advance_batch(struct simulation *sim, bool near, double dt, int *n, double *cut,
+                              struct diag *d)
+{
+    struct state *const st = &sim->state;
+    const double start = st->time;
+    for (int k = 0, part; k < *n; k += part) {
+        double step = dt;
+        if (near && k) timestep_watch_contact(sim, sim->solid.time, SOLID_BATCH);
+        if (near && k && guards_contact_hard(sim)) {
             *n = k;
             break;
         }
-        const bool cut = !(sim->scene->numerics.fixed_step > 0) && sim->dt_solid < dt;
-        const double now = cut ? sim->dt_solid : dt;
-        advance_lone(sim, now, 1);
-        advanced += now;
-        shorter |= cut;
-        sim->state.dt_min = sim->state.steps || k ? min2(sim->state.dt_min, now) : now;
+        const bool chosen = near && !sim->solid.implicit && !(sim->scene->numerics.fixed_step > 0);
+        if (chosen) step = min2(dt, sim->dt_solid);
+        part = near ? 1 : steps_of_part(sim, step, *n - k);
+        if (k && sim->observer.context) solid_set_positions(&sim->kind[KIND_SOLID]);
+        TRY(observe(sim, st->time + (part + 1e-6) * step, d));
+        if (sim->solid.implicit)
+            advance_implicit(sim, step);
+        else
+            advance_lone(sim, step, part);
+        *cut += dt - step;
+        st->time = start + ((k + part) * dt - *cut);
+        st->dt_min = st->steps || k ? min2(st->dt_min, step) : step;
     }
-    return shorter ? advanced : 0;
+    return ERR_OK;
 }
 
 /* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). The
@@ -88,16 +98,15 @@ static void external_for_step(struct simulation *sim, double dt)
     find_external(sim, KIND_SOLID, sim->state.time + half);
 }
 
-static void book_lone(struct simulation *sim, double dt, int n, enum bound binding)
+static void book_lone(struct simulation *sim, double dt, int n)
 {
     struct state *const st = &sim->state;
-    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
     st->dt_max = max2(st->dt_max, dt);
     st->dt = dt;
     st->steps += n;
     st->solid_substeps += n;
     st->particle_steps += n * sim->kind[KIND_SOLID].n;
-    st->bound_steps[binding] += n;
+    st->bound_steps[timestep_binding(sim)] += n;
     if (!sim->solid.implicit) sim->substeps = 1;
 }
 
@@ -113,36 +122,29 @@ static void add_external_work(struct simulation *sim, double dt)
                            external->ay[i] * particles->vy[i]));
 }
 
-void solid_only_step(struct simulation *sim, double t_limit)
+enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     struct state *const st = &sim->state;
-    const double start = wall_clock();
+    const double start = wall_clock(), before = phases_so_far(sim), begin = st->time;
     const bool implicit = sim->solid.implicit != NULL;
     const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
-    const enum bound binding = lone_bounds(sim);
-    const double bound = sim->dt_bound[binding];
+    const double bound = find_bounds(sim);
     const bool external = sim->external[KIND_SOLID].at != NULL;
     const int batch = external || sim->gravity_varies || implicit ? 1 : SOLID_BATCH;
-    /* Equal steps up to the limit, as in timestep_choose. Rounding of the times must not add a
-     * step. */
-    const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
-    const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
+    /* Rounding of the times must not add a step. */
+    const double left = t_limit - begin, steps = max2(1, ceil(left / bound - 1e-6));
     const bool hits = steps <= batch;
-    int n = hits ? (int)steps : batch;
-    const bool cut = dt < bound * (1 - 1e-9);
-    if (cut) sim->dt_bound[BOUND_output] = dt;
+    const double dt = hits ? left / steps : bound, end = hits ? t_limit : begin + batch * dt;
+    const int planned = hits ? (int)steps : batch;
+    int n = planned;
+    double cut = 0;
     if (external) external_for_step(sim, dt);
-    double advanced = 0;
     if (external) add_external_work(sim, 0.5 * dt);
-    if (implicit)
-        advance_implicit(sim, dt);
-    else if (near)
-        advanced = advance_near(sim, dt, &n);
-    else
-        advance_lone(sim, dt, n);
-    if (external) add_external_work(sim, (advanced > 0 ? advanced : dt) - 0.5 * dt);
+    TRY(advance_batch(sim, near, dt, &n, &cut, d));
+    if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
+    if (n == planned && cut == 0) st->time = end;
     solid_set_positions(&sim->kind[KIND_SOLID]);
-    phase_add(sim, PHASE_solid, start);
-    st->time = advanced > 0 ? st->time + advanced : hits ? t_limit : st->time + n * dt;
-    book_lone(sim, dt, n, cut ? BOUND_output : binding);
+    phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
+    book_lone(sim, dt, n);
+    return ERR_OK;
 }

@@ -5,7 +5,8 @@
 
 #include "time/state.h"
 
-/* Up to 16 steps, which end no later than t_limit. */
-void solid_only_step(struct simulation *sim, double t_limit);
+/* Up to 16 steps, which end at t_limit at the latest. The observer sees the state before them, and
+ * within them the states on both sides of the time that it waits for. */
+enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -25,6 +25,25 @@ struct time_text time_text(const struct simulation *sim)
     return time;
 }
 
+enum err observe(struct simulation *sim, double until, struct diag *d)
+{
+    struct observer *const by = &sim->observer;
+    /* No time passes before t = 0, while rest is sought. */
+    if (!by->context || sim->state.time < 0 || until < by->next) return ERR_OK;
+    const double begin = wall_clock(), before = phases_so_far(sim);
+    const enum err e = by->look(by->context, sim, until, d);
+    /* Evaluations, which the coming step uses, are counted in their own phases. */
+    sim->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(sim) - before);
+    return e;
+}
+
+double phases_so_far(const struct simulation *sim)
+{
+    double sum = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) sum += sim->phase_seconds[k];
+    return sum;
+}
+
 double phase_add(struct simulation *sim, enum phase phase, double since)
 {
     if (!phase_runs(phase, sim->effects)) return since; /* what there is goes to the next one */

@@ -42,6 +42,15 @@ struct state {
 
 struct simulation;
 
+/* Reads the state between steps and changes nothing that a step depends on. */
+struct observer {
+    /* Called with the present state where `next` is in it or before `until`, the time that the
+     * coming step does not pass; sets `next`. */
+    enum err (*look)(void *context, struct simulation *sim, double until, struct diag *d);
+    void *context; /* NULL: nobody looks */
+    double next;   /* s: the states on both sides of this time are wanted */
+};
+
 /* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). The maxima may skip values that
  * are not numbers; the NaN probe is zero if there are none. */
 struct extremes {
@@ -101,12 +110,11 @@ struct simulation {
     bool evaluated;      /* rates, pressures and the fluid's force are those of the present state */
     bool cells_overfull; /* more particles in a cell than the sweeps support: no evaluations */
     bool gravity_varies; /* with time */
-    int uneven; /* the output, from 1, that has no such grid with those before it; 0: none */
-    double output_grid; /* s, of all frequent outputs; 0: none is needed (T-34d) */
     struct {
         int64_t n;
         double *value;
-    } carried; /* by probes from step to step (output/probes.h): checkpointed, not hashed */
+    } carried; /* by rows from step to step (output/rows.h): checkpointed, not hashed */
+    struct observer observer;
     struct guard guard;
     struct external external[KIND_COUNT]; /* of fluid and solid */
     struct energy_gain gain;              /* of the last test of the energy account */
@@ -119,7 +127,11 @@ struct time_text {
 };
 struct time_text time_text(const struct simulation *sim);
 
+/* Lets the observer look at the present state; the coming step ends at `until` at the latest. */
+enum err observe(struct simulation *sim, double until, struct diag *d) SPHFSI_CHECKED;
+
 /* Adds the time since `since` to a phase and returns the present time. */
 double phase_add(struct simulation *sim, enum phase phase, double since);
+double phases_so_far(const struct simulation *sim);
 
 #endif

@@ -89,13 +89,6 @@ static double bound_added_mass(const struct simulation *sim, const struct fluid_
     return coupling_added_mass_step(&sim->coupling, &lightest);
 }
 
-/* Set below, where the remaining time is known. */
-static double bound_output(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)sim, (void)now;
-    return (double)INFINITY;
-}
-
 static double bound_fixed(const struct simulation *sim, const struct fluid_extremes *now)
 {
     (void)now;
@@ -117,9 +110,6 @@ static const effect_set bound_effects[BOUND_COUNT] = {
 #undef FX_NONE
 };
 
-/* Relative rounding of the intervals of outputs. */
-#define OUTPUT_ROUNDING 1e-9
-
 static double bound_at(const struct simulation *sim, int k, const struct fluid_extremes *now)
 {
     const bool fixed = sim->scene->numerics.fixed_step > 0;
@@ -136,6 +126,20 @@ double timestep_fluid_limit(const struct simulation *sim)
     return limit;
 }
 
+enum bound timestep_binding(const struct simulation *sim)
+{
+    int least = 0;
+    for (int k = 1; k < BOUND_COUNT; k++)
+        if (sim->dt_bound[k] < sim->dt_bound[least]) least = k;
+    return (enum bound)least;
+}
+
+double timestep_longest(const struct simulation *sim)
+{
+    const double fixed = sim->scene->numerics.fixed_step;
+    return sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : fixed > 0 ? fixed : sim->dt_solid;
+}
+
 double timestep_courant(const struct simulation *sim)
 {
     return timestep_fluid_limit(sim) * sim->fluid.k.c0 / sim->fluid.k.h;
@@ -146,13 +150,12 @@ bool timestep_beyond(const struct simulation *sim, double cfl)
     return sim->effects & FX_FLUID && timestep_courant(sim) > cfl * (1 + 1e-9);
 }
 
-/* The step that the bounds allow now, s: the last one may be short because an output followed
- * it. INFINITY before the first step. */
+/* The step that the bounds allow now, s; INFINITY before the first step. */
 static double usual_step(const struct simulation *sim)
 {
     double step = sim->state.dt > 0 ? sim->state.dt_max : (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT && sim->state.dt > 0; k++)
-        if (k != BOUND_output && k != BOUND_solid) step = min2(step, sim->dt_bound[k]);
+        if (k != BOUND_solid) step = min2(step, sim->dt_bound[k]);
     return step;
 }
 
@@ -178,77 +181,6 @@ const char *timestep_shorter(const struct simulation *sim, double *half)
     return "fixed_step";
 }
 
-/* The greatest common divisor of two times, up to their rounding. */
-static double common_divisor(double a, double b)
-{
-    const double rounding = OUTPUT_ROUNDING * min2(a, b);
-    while (b > rounding) {
-        const double rest = fmod(a, b);
-        a = b;
-        b = b - rest > rounding ? rest : 0;
-    }
-    return a;
-}
-
-bool timestep_output(const struct scene *scene, int which, struct output_interval *out)
-{
-    enum { COMMON = 4 };
-    bool common = false; /* whether any probe has the common interval */
-    for (int k = 0; k < scene->n_probe; k++) common |= !(scene->probe[k].interval > 0);
-    const struct output_interval of_case[COMMON] = {
-        {SECTION_output, 0, "probe_interval", common ? scene->output.probe_interval : 0},
-        {SECTION_output, 0, "ledger_interval", scene->output.ledger_interval},
-        {SECTION_output, 0, "snapshot_interval", scene->output.snapshot_interval},
-        {SECTION_output, 0, "checkpoint_interval", scene->output.checkpoint_interval},
-    };
-    const int k = which - COMMON;
-    if (k >= scene->n_probe) return false;
-    *out = k < 0 ? of_case[which]
-                 : (struct output_interval){SECTION_probe, k, "interval", scene->probe[k].interval};
-    return true;
-}
-
-/* The grid of outputs less than `most` apart, 0: none is needed. False if it is finer than
- * half a step or half of the shortest interval; s->uneven is then the output that makes it so. */
-static bool find_grid(struct simulation *sim, double step, double most)
-{
-    double grid = 0, shortest = (double)INFINITY;
-    struct output_interval out;
-    for (int k = 0; timestep_output(sim->scene, k, &out); k++) {
-        if (!(out.interval > 0 && out.interval < most)) continue;
-        grid = grid > 0 ? common_divisor(grid, out.interval) : out.interval;
-        shortest = min2(shortest, out.interval);
-        sim->uneven = k + 1;
-        if (2 * grid < min2(step, shortest) * (1 - OUTPUT_ROUNDING)) return false;
-    }
-    sim->uneven = 0;
-    sim->output_grid = grid < shortest * (1 - OUTPUT_ROUNDING) ? grid : 0;
-    return true;
-}
-
-void timestep_find_grid(struct simulation *sim)
-{
-    const double fixed = sim->scene->numerics.fixed_step;
-    const double fluid = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : (double)INFINITY;
-    const bool together = !(sim->effects & FX_MULTIRATE);
-    const double step = fixed > 0 ? fixed : together ? min2(fluid, sim->dt_solid) : fluid;
-    sim->output_grid = 0;
-    if (!(sim->effects & FX_SOLID) || sim->solid.implicit) return;
-    if (find_grid(sim, step, EQUAL_STEPS * step) || find_grid(sim, step, FREQUENT_STEPS * step))
-        return;
-    timestep_set_solid(sim);
-}
-
-double timestep_stop(const struct simulation *sim, double t_limit)
-{
-    const double grid = sim->output_grid, time = sim->state.time;
-    if (grid == 0 || time < 0) return t_limit; /* no rows before t = 0 */
-    /* Outputs are at times of 12 digits. */
-    const double near = 1e-6 * grid + 1e-11 * time;
-    const double next = grid * (floor((time + near) / grid) + 1);
-    return next < t_limit - near ? next : t_limit;
-}
-
 double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
 {
     double dt = (double)INFINITY;
@@ -256,22 +188,10 @@ double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
         sim->dt_bound[k] = bound_at(sim, k, &sim->fluid.extremes);
         dt = min2(dt, sim->dt_bound[k]);
     }
-    /* Equal steps up to the limit, not full ones and a remainder: steps that change in a pattern
-     * excite oscillations near the bound that are stable with each step alone (docs/theory.md).
-     * Rounding of the time adds no step. */
+    /* A step that rounding of the times leaves before the limit is none. */
     const double left = t_limit - sim->state.time, steps = ceil(left / dt * (1 - 1e-9));
     *hits = steps <= 1;
-    if (steps > EQUAL_STEPS || (*hits && left == dt)) return *hits ? left : dt;
-    const double equal = *hits ? left : left / steps;
-    if (equal < dt * (1 - 1e-9)) sim->dt_bound[BOUND_output] = equal;
-    return equal;
-}
-
-/* The fraction of the solid's stable step that is used. At half of it uneven steps feed no
- * oscillation that viscosity does not damp (T-34d). */
-static double solid_safety(const struct simulation *sim)
-{
-    return sim->scene->numerics.solid_safety * (sim->uneven ? 0.5 : 1);
+    return steps <= 2 ? left / max2(1, steps) : dt;
 }
 
 /* T-34c: the number of sub-steps goes down only after the solid's viscosity has dissipated enough.
@@ -280,7 +200,8 @@ static double solid_safety(const struct simulation *sim)
 static bool fewer_is_safe(const struct simulation *sim, double fewer)
 {
     const struct state *const st = &sim->state;
-    const double z = solid_safety(sim), less = z * fewer / (double)st->substeps_held;
+    const double z = sim->scene->numerics.solid_safety,
+                 less = z * fewer / (double)st->substeps_held;
     const double root = sqrt((1 + z) * (1 - less) / ((1 - z) * (1 + less)));
     const double gain = root - 1 / root; /* at least the logarithm of root^2 */
     return 0.5 * sim->solid.damping_max * (st->time - st->substeps_needed) > gain;
@@ -309,7 +230,7 @@ void timestep_set_solid(struct simulation *sim)
     /* A fully clamped body has no bound, but a moving body may hit it. */
     const bool bounded = sim->effects & FX_FLUID || isfinite(step);
     sim->dt_solid = sim->dt_lone_solid =
-        solid_safety(sim) * (bounded ? step : sim->solid.paper_step);
+        sim->scene->numerics.solid_safety * (bounded ? step : sim->solid.paper_step);
     if (sim->effects & FX_FLUID || !sim->solid.implicit) return;
     if (isfinite(sim->solid.implicit->period))
         sim->dt_solid = sim->dt_lone_solid = sim->solid.implicit->period / IMPLICIT_PARTS;
@@ -322,7 +243,7 @@ static double step_in_contact(const struct simulation *sim)
     const double slowing = sim->state.solid_slowing;
     const double step = solid_step_of(square(sim->solid.omega_max / slowing) + contact->omega2,
                                       sim->solid.damping_max / slowing + contact->damping);
-    return min2(solid_safety(sim) * step, contact->approach);
+    return min2(sim->scene->numerics.solid_safety * step, contact->approach);
 }
 
 bool timestep_watch_contact(struct simulation *sim, double time, int steps)
@@ -369,9 +290,5 @@ void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits)
     st->dt_max = max2(st->dt_max, dt);
     st->steps++;
     st->particle_steps += sim->kind[KIND_FLUID].n + sim->kind[KIND_SOLID].n;
-    for (int k = 0; k < BOUND_COUNT; k++)
-        if (sim->dt_bound[k] <= dt) {
-            st->bound_steps[k]++;
-            break;
-        }
+    st->bound_steps[timestep_binding(sim)]++;
 }

@@ -78,14 +78,13 @@ shape = box -0.04, 0, 0, 0.1
 motion = m
 [motion m]
 kind = expression
-x = -0.01*t*(t - 0.07003)/(t - 0.07003)
-[output]
-probe_interval = 0.07003
-ledger_interval = 0.07003
+x = -0.01*t*(t - 0.0703125)/(t - 0.0703125)
+[numerics]
+fixed_step = 0.000244140625 # 2^-12: 288 of them are 0.0703125 exactly
 END
 command 2 ./sphfsi moved.cfg --quiet --out n >/dev/null
 is "$(others)" "go on: the same command with --fork $(newest n) and another --out"
-grep -q '^sphfsi: moved.cfg:9: t = 0.07003 s: \[motion m\] gives \[wall side\]' err ||
+grep -q '^sphfsi: moved.cfg:9: t = 0.0703125 s: \[motion m\] gives \[wall side\]' err ||
     fail "$(cat err)"
 sed 's/^x = .*/x = 9*t/
 s/^shape = box -0.04.*/&\nshape = box 0.1, 0, 0.14, 0.1\nshape = box -0.04, -0.04, 0.14, 0/' \

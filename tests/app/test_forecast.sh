@@ -42,12 +42,12 @@ grep -q '^finest dp within the budget: --set dp=0\.0' "$work/budget" || fail "$(
 awk '/^  dp .* (fits|too long|bodies)/ { if (n++ && $8 < last) exit 1; last = $8 }' \
     "$work/budget" ||
     fail "costs do not grow: $(cat "$work/budget")"
-# A probe with its own interval: each of its times ends a step.
+# A probe with rows closer than steps: no row ends a step.
 probe=(cases/templates/dam_break.cfg --until 0.05)
 want=$("$SPHFSI" --explain "${probe[@]}" 2>/dev/null | steps_of)
 "$SPHFSI" "${probe[@]}" --quiet --out "$work/probe" 2>/dev/null || fail "the dam break failed"
 got=$(sed -n "s/^  \"steps\": \([0-9]*\),/\1/p" "$work/probe/summary.json")
-near "$want" "$got" 0.02 || fail "probe with an interval: $want steps foreseen, $got taken"
+near "$want" "$got" 0.1 || fail "probe with an interval: $want steps foreseen, $got taken"
 
 for bad in 10 0s 5days ""; do
     budget "$bad" cases/still_water.cfg 2>"$work/error" && fail "a budget of '$bad' was accepted"
@@ -82,9 +82,9 @@ grep -q 'Dam break and elastic gate\|warning.*interval' "$work/said" &&
 "$SPHFSI" --explain tests/stability/wedge.cfg 2>&1 |
     grep -q '^  wedge: .* error unknown, because' ||
     fail "an error of the tip of a body that moves freely"
-"$SPHFSI" --explain cases/templates/baffle.cfg --set output.ledger_interval=1e-9 \
+"$SPHFSI" --explain cases/templates/baffle.cfg \
     --set baffle.damping_time=0.01 --set numerics.fixed_step=1e-6 >"$work/said" 2>&1
-for key in ledger_interval 'damping_time = 0.01' 'fixed_step limits'; do
+for key in 'damping_time = 0.01' 'fixed_step limits'; do
     grep -q "^warning: --set: .*$key" "$work/said" ||
         fail "no warning of $key: $(grep warning "$work/said")"
 done

@@ -51,7 +51,6 @@ $probe"
 says 1 ':12: interval = 1e-14 s gives' "$body
 $probe
 interval = 1e-14"
-says 0 ': the default of output.ledger_interval = 1e-05 s is shorter' "$body" --explain
 says 1 ': \[domain\] is periodic in x and only 0.04 m wide' 'dp = 1 cm
 end_time = 1
 [fluid w]

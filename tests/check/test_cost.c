@@ -66,36 +66,6 @@ static void test_damping(void)
     TEST_ASSERT_TRUE(below && above);
 }
 
-/* Outputs end steps: said from half a step on. */
-static void test_intervals(void)
-{
-    static const char *const keys[] = {"output.probe_interval", "output.ledger_interval",
-                                       "output.snapshot_interval", "p.interval"};
-    char set[64];
-    warn_of(water, NULL);
-    TEST_ASSERT_EQUAL_STRING("", said);
-    const double step = timestep_fluid_limit(&rig.sim);
-    for (int k = 0; k < 4; k++)
-        for (int much = 0; much < 2; much++) {
-            const double interval = (much ? 0.51 : 0.4) * step;
-            snprintf(set, sizeof set, "%s=%.9g", keys[k], interval);
-            warn_of(water, set);
-            TEST_ASSERT_EQUAL_INT_MESSAGE(!much, said[0] != '\0', said);
-            if (much) continue;
-            char want[100];
-            snprintf(want, sizeof want, "--set: %s = %g s is shorter than the time step of %.3g s",
-                     strchr(keys[k], '.') + 1, interval, step);
-            TEST_ASSERT_EQUAL_STRING_LEN(want, said, strlen(want));
-            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "needs about 2.5 times as many steps"), said);
-        }
-    /* Without probes there are no rows of them. */
-    char text[1000];
-    snprintf(text, sizeof text, "%.*s", (int)(strstr(water, "[probe") - water), water);
-    snprintf(set, sizeof set, "output.probe_interval=%.9g", 0.1 * step);
-    warn_of(text, set);
-    TEST_ASSERT_EQUAL_STRING("", said);
-}
-
 /* Laminar viscosity bounds the step by 0.125 h^2/nu; sound alone by C h/c0. */
 static void test_bounds(void)
 {
@@ -161,7 +131,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_damping);
-    RUN_TEST(test_intervals);
     RUN_TEST(test_bounds);
     RUN_TEST(test_bodies);
     return UNITY_END();

@@ -95,7 +95,7 @@ static void test_kick_and_settling_by_hand(void)
         open(integrators[k], NULL);
         face_one();
         rig.sim.state.exchange_time = 1e-3;
-        impedance_kick(solid, 0, 1, 0, 0);
+        impedance_kick(solid, 0, 1, 0, 0, 0);
         assert_near(1e-12, 3 - 1.6, solid->vx[0], "vx");
         assert_near(1e-12, 4 - 6.4 / 3, solid->vy[0], "vy");
         /* At the mean velocity the impulse does the work that the kinetic energy shows. */
@@ -126,17 +126,17 @@ static void test_kicks_of_a_heavy_body(void)
 {
     open("block.density=20000", "block.young=1e8");
     face_one();
-    impedance_kick(solid, 0, 1, 0, 0);
+    impedance_kick(solid, 0, 1, 0, 0, 0);
     assert_near(1e-12, 3 - 0.6 * 4 / 101, solid->vx[0], "vx");
     assert_near(1e-12, 4 - 0.8 * 4 / 101, solid->vy[0], "vy");
-    impedance_kick(solid, 0, 1, 0, 0);
+    impedance_kick(solid, 0, 1, 0, 0, 0);
     assert_near(1e-12, 3 - 0.6 * 4 * (1 - square(100 / 101.0)), solid->vx[0], "vx, twice");
     impulse_end(&rig.sim.coupling);
     assert_near(1e-13, -2 * 0.6 * 4 * (1 - square(100 / 101.0)), solid->interface_impulse_x[0],
                 "impulse, x");
     solid->free[0] = 0;
     face_one();
-    impedance_kick(solid, 0, 1, 0, 0);
+    impedance_kick(solid, 0, 1, 0, 0, 0);
     TEST_ASSERT_TRUE(solid->vx[0] == 3 && solid->vy[0] == 4);
 }
 
@@ -343,7 +343,7 @@ static void test_small_surface_has_no_large_pressure(void)
 {
     open(NULL, NULL);
     face_one();
-    impedance_kick(solid, 0, 1, 0, 0);
+    impedance_kick(solid, 0, 1, 0, 0, 0);
     impulse_end(&rig.sim.coupling);
     const double pressure = solid->interface_pressure[0];
     solid->wet_x[0] *= 1e-3;

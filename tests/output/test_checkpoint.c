@@ -214,15 +214,15 @@ static void numbers_that_no_run_has_are_refused(void)
 
 static void missed_snapshots_are_counted_on(void)
 {
-    int64_t missed = -1;
     open_with(0, NULL);
     image.snapshots_missed = 7;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
-    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_missed(&image, &missed, &diag));
-    TEST_ASSERT_EQUAL_INT64(7, missed);
+    image.snapshots_missed = -1;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_snapshots(&image, &diag));
+    TEST_ASSERT_EQUAL_INT64(7, image.snapshots_missed);
     image.snapshots_missed = -2;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_missed(&image, &missed, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_snapshots(&image, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed = -2"), diag.text);
 }
 

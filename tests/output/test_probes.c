@@ -58,8 +58,8 @@ static void weights_reproduce_linear_fields(const char *point)
 {
     open_with("", point);
     set_linear_field();
-    double row[8];
-    probes_sample(&probes, &rig.sim, 0, row);
+    double row[8], rate[8];
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
     const double *at = probes.probe[0].point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5 + 2 * at[0] - 3 * at[1], row[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.25 + at[0] + 4 * at[1], row[2]);
@@ -146,8 +146,8 @@ static void velocity_where_it_is_dry(void)
 static void pressure_is_hydrostatic_at_the_start(void)
 {
     open_with("", NULL);
-    double row[8];
-    probes_sample(&probes, &rig.sim, 0, row);
+    double row[8], rate[8];
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
     TEST_ASSERT_DOUBLE_WITHIN(0.03 * 1000 * 9.81 * 0.1, 1000 * 9.81 * 0.08, row[5]);
 }
 

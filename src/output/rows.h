@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT
+ * Rows of probes and of the ledger at uniform times, between the states of a run on both sides of
+ * these times; and the means of probes over time. No step depends on them. */
+#ifndef SPHFSI_OUTPUT_ROWS_H
+#define SPHFSI_OUTPUT_ROWS_H
+
+#include "output/due.h"
+#include "output/probes.h"
+#include "output/series.h"
+
+/* The rows of a file. Before the last state and at it: the columns, of which the first is the time,
+ * s (-1: not read), and their rates (NAN: not known). */
+struct rows {
+    const char *name, *header;
+    int file;       /* of probes; -1: the ledger */
+    int columns;    /* with the time */
+    double window;  /* s: the longest `average` of its probes */
+    struct due due; /* of the rows behind the first */
+    double next;    /* s: time of the next row */
+    bool *angle;    /* [columns]: rad, from -pi to pi */
+    double *before, *before_rate, *now, *now_rate;
+    bool whole;           /* `now` has all columns, not only what means need */
+    struct series series; /* not open: means only */
+};
+
+/* All files of a run, the ledger last. */
+struct row_files {
+    struct probes *probes;
+    double end; /* s: no row is later; the last step passes it */
+    int n;
+    struct rows *file;
+};
+
+/* Lists the files, or without `ledger` only what the means of probes need. What a restart needs of
+ * them becomes the simulation's `carried`. */
+enum err rows_create(struct row_files *r, struct probes *p, struct simulation *sim, bool ledger,
+                     struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* Creates the files, whose first row will be of the time; or continues those of an earlier run
+ * behind the time, and reads the first row of the ledger. */
+enum err rows_start(struct row_files *r, const char *folder, double time, struct diag *d)
+    SPHFSI_CHECKED;
+enum err rows_resume(struct row_files *r, const char *folder, double time, struct ledger *first,
+                     struct diag *d) SPHFSI_CHECKED;
+
+/* Lets the rows and means follow the simulation from its present state on. */
+void rows_follow(struct row_files *r, struct simulation *sim);
+
+/* Makes all rows survive a power failure. */
+enum err rows_sync(const struct row_files *r, struct diag *d) SPHFSI_CHECKED;
+void rows_close(struct row_files *r);
+
+#endif
