@@ -174,6 +174,12 @@ class Tests:
         return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
 
 
+def compiler(program, folder):
+    """The command that finds the file with the fault first; its compiler may be several words."""
+    k = program.compile.index("-Iinclude")
+    return [*program.compile[:k], f"-I{folder}/tree/src", *program.compile[k:], "-w"]
+
+
 def build(program, fault, folder):
     """The objects that the fault changes; None: it does not compile."""
     source = folder / "tree" / fault["file"]
@@ -186,10 +192,8 @@ def build(program, fault, folder):
         name = str(old.relative_to(program.build).with_suffix(".c"))
         path = source if name == fault["file"] else ROOT / name
         new = folder / str(old.relative_to(program.build)).replace("/", "_")
-        first = [program.compile[0], f"-I{folder}/tree/src"]
-        made = subprocess.run([*first, *program.compile[1:], "-w", version, "-c", "-o", new, path],
-                              cwd=ROOT,
-                              capture_output=True)
+        made = subprocess.run([*compiler(program, folder), version, "-c", "-o", new, path],
+                              cwd=ROOT, capture_output=True)
         if made.returncode:
             return None
         if new.read_bytes() != old.read_bytes():
@@ -205,9 +209,8 @@ def object_of_test(program, test, fault, folder):
     new = folder / "test.o"
     unity = re.search(r"^UNITY_CFLAGS := (.*)", (ROOT / "build/unity.mk").read_text(),
                       re.M)[1].split()
-    subprocess.run([program.compile[0], f"-I{folder}/tree/src", *program.compile[1:], "-w",
-                    "-Itests/support",
-                    *unity, "-c", "-o", new, test], cwd=ROOT, check=True)
+    subprocess.run([*compiler(program, folder), "-Itests/support", *unity, "-c", "-o", new, test],
+                   cwd=ROOT, check=True)
     return str(new)
 
 
