@@ -376,6 +376,25 @@ static void test_an_opening_that_sampling_closes(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+static void test_flow_past_a_body_that_sticks(void)
+{
+#define STREAM(slip, shift)                                                                        \
+    "dp = 5 mm\nend_time = 1 s\n[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\n"    \
+    "laminar_viscosity = 1e-3\n" shift                                                             \
+    "[wall plates]\nshape = box -0.05, -0.02, 0.15, 0\nshape = box -0.05, 0.05, 0.15, 0.07\n" slip \
+    "[inflow in]\nfrom = 0, 0.05\nto = 0, 0\nspeed = 0.1\n"                                        \
+    "[outflow out]\nfrom = 0.1, 0\nto = 0.1, 0.05\npressure = 0\n"
+    read(STREAM("slip = none\n", ""));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "[fluid water] sticks to [wall plates] and has no "
+                                        "`shifting`"),
+                                 warnings);
+    read(STREAM("slip = none\n", "shifting = 10\nshifting_speed = largest\n"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "`shifting`"), warnings);
+    read(STREAM("", ""));
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "`shifting`"), warnings);
+}
+
 static void test_shifting_where_nothing_gives_way(void)
 {
 #define CHANNEL                                                                               \
@@ -486,6 +505,7 @@ int main(void)
     RUN_TEST(test_a_gap_within_one_wall);
     RUN_TEST(test_a_gap_that_sampling_closes);
     RUN_TEST(test_an_opening_that_sampling_closes);
+    RUN_TEST(test_flow_past_a_body_that_sticks);
     RUN_TEST(test_shifting_where_nothing_gives_way);
     return UNITY_END();
 }
