@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: MIT
 """Runs small scenes with open boundaries and says how far each is off (make verify-open, some
 minutes on one core): a vortex that leaves, a weir with given discharge, a flow that reverses
-periodically.
+periodically, a jet on a plate, a cylinder in a stream.
 
 examples:
   tools/report/verify_open.py               writes docs/open_verification.md
   tools/report/verify_open.py --only weir   runs these scenes again, keeps the figures of the others
 
-The scenes are cases/verify/open_*.cfg. The figures are kept in docs/open_verification.json."""
+The scenes are cases/verify/open_*.cfg and cylinder.cfg. The figures are kept in
+docs/open_verification.json."""
 import math
 
 from common import (ROOT, BadFile, cell, judged, limit_text, measure_scene, np, number, run_scenes,
@@ -106,6 +107,27 @@ def measure_reversal(runs):
              100 * max(abs(n / count[0] - 1) for n in count), 2)]
 
 
+def measure_jet(runs):
+    """Means of the last 0.3 s; the sheets beyond the ends of the plate."""
+    ideal, half, d = 1000 * 2**2 * 0.04, 0.4, 0.04
+    p = runs[0].table()
+    force = -p["plate_fy_N_per_m"][p["time_s"] > 0.3].mean()
+    v = np.concatenate([v[abs(x[:, 0]) > half + d] for t, x, v in fluid(runs[0]) if t > 0.3])
+    return [("force on the plate, % of rho U^2 d too high", 100 * (float(force) / ideal - 1), 3),
+            ("angle of the sheets behind it, degrees upwards",
+             math.degrees(math.atan2(v[:, 1].sum(), abs(v[:, 0]).sum())), 2)]
+
+
+def measure_cylinder(runs):
+    """The last fifth of the run, in rho U^2 D/2."""
+    p = runs[0].table()
+    late = p["time_s"] > 0.8 * runs[0].end_time
+    drag, lift = (p[f"cylinder_f{axis}_N_per_m"][late] / 500 for axis in "xy")
+    return [("drag coefficient, mean", float(drag.mean()), None),
+            ("its standard deviation", float(drag.std()), None),
+            ("lift coefficient, standard deviation", float(lift.std()), None)]
+
+
 def vortex(ratio):
     return "open_vortex", [[f"ratio={ratio}", f"length={length} m"] for length in (1.6, 3.2)], \
         measure_vortex
@@ -116,7 +138,11 @@ SCENES = {"vortex, 30 spacings over the channel": vortex(30), "vortex, 60 spacin
           "weir, 10 spacings high": ("open_weir", [["ratio=10"]], measure_weir),
           "weir, 20 spacings high": ("open_weir", [["ratio=20"]], measure_weir),
           "reversal, 20 spacings across": ("open_reversal", [["ratio=20"]], measure_reversal),
-          "reversal, 40 spacings across": ("open_reversal", [["ratio=40"]], measure_reversal)}
+          "reversal, 40 spacings across": ("open_reversal", [["ratio=40"]], measure_reversal),
+          "jet, 10 spacings across": ("open_jet", [["across=10"]], measure_jet),
+          "jet, 20 spacings across": ("open_jet", [["across=20"]], measure_jet),
+          "cylinder, Re = 20, 10 spacings across": ("cylinder", [["Re=20", "end=40*D/U"]],
+                                                    measure_cylinder)}
 
 
 def report(known):
