@@ -41,9 +41,9 @@ static bool matters_to_restart(const struct place *p)
 static bool matters_to_fork(const struct place *p)
 {
     static const char *const kept[] = {
-        "dp",        "integrator",   "h_over_dp",     "lattice_origin", "lattice_angle",
-        "shape",     "minus",        "clamp",         "density",        "sound_speed",
-        "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp"};
+        "dp",        "integrator",   "h_over_dp",     "lattice_origin",  "lattice_angle",
+        "shape",     "minus",        "clamp",         "density",         "sound_speed",
+        "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge"};
     static const char *const free_sections[] = {"output", "probe", "reference", "motion"};
     if (p->length == 0 || p->line[0] == '#') return false;
     for (size_t k = 0; k < COUNT_OF(free_sections); k++)

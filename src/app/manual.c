@@ -115,6 +115,7 @@ static void param_type_text(const struct param *param, char *text, size_t size)
         [PARAM_EXPR] = "expression",
         [PARAM_SHAPES] = "shape, may be repeated",
         [PARAM_NUMBERS] = "numbers",
+        [PARAM_HINGES] = "point, may be repeated",
     };
     static const char *const scopes[] = {"", " in x, y", " in t", " in x, y, t"};
     const char *const name = names[param->type];

@@ -122,7 +122,12 @@ static void describe_solid(const struct scene *scene, int body, FILE *to)
     fprintf(to, "; %g kg/m^3, E %.4g Pa, nu %g; ", solid->density, solid->young, solid->poisson);
     if (clamped) fprintf(to, "%lld clamped (hatched)", clamped);
     if (solid->joined[0]) fprintf(to, "%sbonded to %s", clamped ? ", " : "", solid->joined);
-    if (!clamped && !solid->joined[0]) fputs("nothing clamped", to);
+    const bool held = clamped || solid->joined[0];
+    if (solid->hinge.n)
+        fprintf(to, "%s%d hinge%s (rings)", held ? ", " : "", solid->hinge.n,
+                solid->hinge.n > 1 ? "s" : "");
+    else if (!held)
+        fputs("nothing clamped", to);
     if (fabs(error) >= 5e-5) fprintf(to, "; area %+.2f %%", 100 * error);
 }
 
@@ -167,6 +172,13 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     put_particles(g, kind, body, true);
     fprintf(g->file, "\"/>\n<rect x=\"%d\" y=\"%.1f\" width=\"12\" height=\"12\" fill=\"%s\"/>\n",
             LEFT, legend_y(g) + LINE - 11, fill);
+    const struct hinge_list none = {0}, *const hinges = kind == KIND_SOLID
+                                                            ? &g->scene->solid[body].hinge
+                                                            : &none;
+    for (int k = 0; k < hinges->n; k++)
+        fprintf(g->file,
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"none\" stroke=\"#000\"/>\n",
+                px(g, hinges->item[k].at[0]), py(g, hinges->item[k].at[1]));
     list(g, middle < 0 ? -99 : px(g, p->x[middle]), middle < 0 ? 0 : py(g, p->y[middle]) + 4, text);
 }
 

@@ -121,11 +121,13 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
 enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
                         const char *unit) SPHFSI_CHECKED;
 
-/* case/values.c: an entry's text to its value in a section; case/shapes.c: adds a shape to a list;
+/* case/values.c: an entry's text to its value in a section; case/shapes.c: adds a shape or a hinge;
  * words by enum shape_kind. */
 enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
                     void *section) SPHFSI_CHECKED;
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+    SPHFSI_CHECKED;
+enum err case_hinge(struct reader *r, const struct entry *e, struct hinge_list *list)
     SPHFSI_CHECKED;
 extern const char *const shape_words[];
 

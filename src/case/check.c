@@ -33,8 +33,12 @@ static enum err check_names(struct reader *r, const struct param *param, const v
     const char *const text = (const char *)section + param->offset;
     const struct scene_probe *const probe = param->section == SECTION_probe ? section : NULL;
     const bool one = param->list && probe && probe->quantity != PROBE_FORCE;
+    const struct hinge_list *const hinges = (const void *)text;
     char name[SCENE_TEXT];
-    if (!*text) return ERR_OK;
+    for (int k = 0; param->type == PARAM_HINGES && k < hinges->n; k++)
+        if (*hinges->item[k].other)
+            TRY(check_name(r, param, section, hinges->item[k].other, param->also));
+    if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
         return check_name(r, param, section, text, one ? param->kind : param->also);
     for (int k = 0; scene_listed(text, k, name); k++)
@@ -132,6 +136,14 @@ static enum err check_solid(struct reader *r, const void *section)
                            "dp%s",
                            a->dp, scene->top.dp,
                            scene->n_fluid ? "" : "; without fluid it may be finer");
+    for (int k = 0; k < a->hinge.n; k++) {
+        const char *const to = a->hinge.item[k].other;
+        if (strcmp(to, a->common.name) == 0)
+            return bad_section(r, a, NULL,
+                               "hinge = X, Y, %s: a body cannot be hinged to itself; name another "
+                               "[solid] or a [wall]",
+                               to);
+    }
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(scene, a->joined);
     if (other < 0) return ERR_OK; /* case_check_names reports it */
@@ -214,7 +226,13 @@ static enum err check_solid_steps(struct reader *r)
         return bad_line(r, scene_line(scene, SECTION_numerics, 0, "multirate"),
                         "%s gives the solid steps of its own, but multirate = off; use auto", with);
     for (int k = 0; k < scene->n_solid; k++)
-        if (scene->solid[k].hourglass > 0 && scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
+        if (scene->solid[k].hinge.n)
+            return bad_line(r, scene->solid[k].hinge.item[0].line,
+                            "[solid %s] has a `hinge`, which %s does not hold; use "
+                            "solid_steps = explicit",
+                            scene->solid[k].common.name, with);
+        else if (scene->solid[k].hourglass > 0 &&
+                 scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
             return bad_line(r, scene_line(scene, SECTION_solid, k, "hourglass_form"),
                             "[solid %s] hourglass_form = printed has no energy, which %s needs; "
                             "use variational",

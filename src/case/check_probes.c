@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Each body once: a force that counts twice is a mistake. A reaction is that of clamps. */
+/* Each body once: a force that counts twice is a mistake. A reaction is that of clamps
+ * and hinges. */
 static enum err check_body(struct reader *r, const struct scene_probe *p)
 {
     char name[SCENE_TEXT], other[SCENE_TEXT];
@@ -19,10 +20,11 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
                 return bad_section(r, p, NULL, "body = %.60s: %.60s is listed twice", p->body,
                                    name);
     const int body = scene_find_solid(r->scene, p->body);
-    if (p->quantity == PROBE_REACTION && body >= 0 && r->scene->solid[body].clamp.n == 0)
+    if (p->quantity == PROBE_REACTION && body >= 0 &&
+        r->scene->solid[body].clamp.n + r->scene->solid[body].hinge.n == 0)
         return bad_section(r, p, NULL,
-                           "measures the force of the clamps of [solid %s], which has none; give "
-                           "the solid a `clamp`",
+                           "measures the force of the clamps and hinges of [solid %s], which has "
+                           "none; give the solid a `clamp` or a `hinge`",
                            p->body);
     return ERR_OK;
 }

@@ -136,6 +136,7 @@ bool param_is_default(const struct param *param, const void *section)
     case PARAM_TEXT: return strcmp(value, param->text_default) == 0;
     case PARAM_EXPR: return !((const struct scene_expr *)value)->e[0];
     case PARAM_SHAPES: return ((const struct shape_list *)value)->n == 0;
+    case PARAM_HINGES: return ((const struct hinge_list *)value)->n == 0;
     case PARAM_NUMBERS: break;
     }
     return ((const struct number_list *)value)->n == 0;

@@ -37,7 +37,8 @@ enum param_type {
     PARAM_TIME_VECTOR = PARAM_VECTOR,
     PARAM_EXPR,
     PARAM_SHAPES,
-    PARAM_NUMBERS
+    PARAM_NUMBERS,
+    PARAM_HINGES
 };
 
 struct param_default {
@@ -93,6 +94,12 @@ const struct expr *param_in_time(const struct param *param, const void *section,
 /* The value of a REAL, INTEGER or CHOICE. */
 double param_number(const struct param *param, const void *section);
 void param_set_number(const struct param *param, void *section, double number);
+
+/* Whether a key may be given several times: the regions and points of a body. */
+SPHFSI_INLINE bool param_repeats(const struct param *param)
+{
+    return param->type == PARAM_SHAPES || param->type == PARAM_HINGES;
+}
 
 /* Whether a section has the default value of a key. */
 bool param_is_default(const struct param *param, const void *section);

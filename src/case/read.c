@@ -29,6 +29,7 @@ static void set_defaults(void *section, enum section_id id, int index)
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", param->text_default); break;
         case PARAM_EXPR:
         case PARAM_SHAPES:
+        case PARAM_HINGES:
         case PARAM_NUMBERS: break; /* absent */
         }
     }
@@ -93,8 +94,10 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
         memcpy(to + 1, from + 1, section_table[like->section].size - sizeof *to);
         memcpy(target + like->offset, name, sizeof name);
         for (int p = 0; p < PARAM_COUNT; p++)
-            if (param_table[p].section == like->section && param_table[p].type == PARAM_SHAPES)
-                memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
+            if (param_table[p].section == like->section && param_repeats(&param_table[p]))
+                memset(target + param_table[p].offset, 0,
+                       param_table[p].type == PARAM_SHAPES ? sizeof(struct shape_list)
+                                                           : sizeof(struct hinge_list));
         return ERR_OK;
     }
     if (r->incomplete) return ERR_INPUT; /* it may be defined in an invalid line */
@@ -140,7 +143,7 @@ static enum err read_section(struct reader *r, int section)
             continue;
         }
         const struct entry **const before = &given[param - param_table];
-        if (*before && param->type != PARAM_SHAPES) {
+        if (*before && !param_repeats(param)) {
             TRY(case_go_on(r,
                            bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
                                      e->key, (*before)->line)));

@@ -35,6 +35,18 @@ struct number_list {
     double *value;
 };
 
+/* A point of a body that stays in place, or on another section, in the case file's words. */
+struct hinge_point {
+    double at[2];
+    char other[SCENE_NAME]; /* [solid] or [wall]; empty: in place */
+    int line;
+};
+
+struct hinge_list {
+    int n;
+    struct hinge_point *item;
+};
+
 /* Up to two expressions in x and y, or in x, y and t, or one in t. NULL: not given. */
 struct scene_expr {
     struct expr *e[2];
@@ -59,6 +71,7 @@ struct scene_section_common {
 #define MEMBER_EXPR(key) struct scene_expr key;
 #define MEMBER_SHAPES(key) struct shape_list key;
 #define MEMBER_NUMBERS(key) struct number_list key;
+#define MEMBER_HINGES(key) struct hinge_list key;
 #define PARAM(section, key, type, ...) MEMBER_##type(key)
 /* clang-format off */
 #define SECTION(section, named) struct scene_##section { struct scene_section_common common;

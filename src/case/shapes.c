@@ -13,6 +13,7 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static enum err read_point(struct reader *r, const struct entry *e, struct slice text, int n,
@@ -178,6 +179,16 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
     return shape->kind == SHAPE_POLYGON ? check_polygon(r, e, shape) : ERR_OK;
 }
 
+/* A list with a place for one more item; NULL: no memory. */
+static void *with_place(struct reader *r, void *items, int n, size_t size)
+{
+    if (n & (n - 1)) return items; /* full at powers of two: double the memory */
+    void *const more =
+        arena_alloc(&r->scene->arena, 2 * (size_t)n + 1, size, "regions of a body", r->diag);
+    if (more && n) memcpy(more, items, (size_t)n * size);
+    return more;
+}
+
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
 {
     const size_t length = strcspn(e->value, " \t:");
@@ -195,13 +206,29 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     struct shape shape = {.kind = kind == arc ? SHAPE_POLYLINE : (enum shape_kind)kind,
                           .line = e->line};
     TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), kind == arc, &shape));
-    if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: double the memory */
-        struct shape *const item =
-            arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);
-        if (!item) return ERR_MEMORY;
-        if (list->n) memcpy(item, list->item, (size_t)list->n * sizeof *item);
-        list->item = item;
-    }
+    list->item = with_place(r, list->item, list->n, sizeof shape);
+    if (!list->item) return ERR_MEMORY;
     list->item[list->n++] = shape;
+    return ERR_OK;
+}
+
+enum err case_hinge(struct reader *r, const struct entry *e, struct hinge_list *list)
+{
+    struct hinge_point hinge = {.line = e->line};
+    struct slice text = slice_of(e->value), rest = text, piece = text;
+    const int n = slice_count(text, ',');
+    if (n != 2 && n != 3)
+        return bad_value(r, e, "`X, Y` or `X, Y, NAME` is expected; there %s %d%s",
+                         n == 1 ? "is" : "are", n, comma_hint(e->value));
+    for (int k = 0; k < n; k++) slice_next(&rest, ',', &piece);
+    if (n == 3) {
+        snprintf(hinge.other, sizeof hinge.other, "%.*s", (int)piece.length, piece.at);
+        while (text.at[text.length - 1] != ',') text.length--;
+        text.length--;
+    }
+    TRY(read_point(r, e, text, 2, hinge.at));
+    list->item = with_place(r, list->item, list->n, sizeof hinge);
+    if (!list->item) return ERR_MEMORY;
+    list->item[list->n++] = hinge;
     return ERR_OK;
 }

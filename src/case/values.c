@@ -178,6 +178,7 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
                                   : read_vector(r, e, param, place);
     case PARAM_EXPR: return read_field(r, e, param, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
+    case PARAM_HINGES: return case_hinge(r, e, place);
     case PARAM_NUMBERS: break;
     }
     return read_numbers(r, e, param, place);

@@ -107,7 +107,15 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     char text[SCENE_TEXT];
     if (param->type == PARAM_SHAPES)
         for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
-    if (param->type == PARAM_SHAPES || (param->type == PARAM_REAL && isnan(*number)) ||
+    const struct hinge_list *const hinges = value;
+    for (int k = 0; param->type == PARAM_HINGES && k < hinges->n; k++) {
+        const struct hinge_point *const hinge = &hinges->item[k];
+        fprintf(out, "%s = ", param->key);
+        write_real(out, "", hinge->at[0]);
+        write_real(out, ", ", hinge->at[1]);
+        fprintf(out, "%s%s\n", hinge->other[0] ? ", " : "", hinge->other);
+    }
+    if (param_repeats(param) || (param->type == PARAM_REAL && isnan(*number)) ||
         (param->type == PARAM_NUMBERS && !list->n) || (param->type == PARAM_EXPR && !field->e[0]))
         return;
     fprintf(out, "%s = ", param->key);
@@ -140,6 +148,7 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
             fprintf(out, "%s%s", k ? ", " : "", expr_source(field->e[k]));
         break;
     case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
+    case PARAM_HINGES:
     case PARAM_SHAPES: break;
     }
     fprintf(out, "\n");

@@ -30,6 +30,15 @@ static bool stands_on(const struct check *check, const char *hold, int body)
     return false;
 }
 
+/* Whether a body has a hinge to another one, or to what is not a body (-1). */
+static bool hinge_to(const struct scene *scene, int body, int other)
+{
+    const struct hinge_list *const hinges = &scene->solid[body].hinge;
+    for (int k = 0; k < hinges->n; k++)
+        if (scene_find_solid(scene, hinges->item[k].other) == other) return true;
+    return false;
+}
+
 /* A body without a clamp moves away, which is seldom intended in a case with gravity or a load,
  * unless it begins with a velocity. Clamps hold bodies, and bonds those that are joined to them.
  * Others stand on walls and on bodies that do not fall. */
@@ -40,14 +49,16 @@ static enum err warn_of_loose_bodies(struct check *check)
     char *const hold = arena_alloc(&check->shapes.temp, (size_t)scene->n_solid, sizeof *hold,
                                    "check", check->diag);
     if (!hold) return ERR_MEMORY;
-    for (int k = 0; k < scene->n_solid; k++) hold[k] = scene->solid[k].clamp.n ? HELD : LOOSE;
+    for (int k = 0; k < scene->n_solid; k++)
+        hold[k] = scene->solid[k].clamp.n || hinge_to(scene, k, -1) ? HELD : LOOSE;
     for (int round = 0; round < scene->n_solid; round++)
         for (int k = 0; k < scene->n_solid; k++) {
             if (hold[k] == LOOSE && effects & FX_CONTACT && stands_on(check, hold, k))
                 hold[k] = STANDS;
-            if (!scene->solid[k].joined[0]) continue;
-            const int to = scene_find_solid(scene, scene->solid[k].joined);
-            hold[k] = hold[to] = hold[k] > hold[to] ? hold[k] : hold[to];
+            const int joined = scene_find_solid(scene, scene->solid[k].joined);
+            for (int to = 0; to < scene->n_solid; to++)
+                if (to == joined || hinge_to(scene, k, to))
+                    hold[k] = hold[to] = hold[k] > hold[to] ? hold[k] : hold[to];
         }
     for (int k = 0; k < scene->n_solid; k++) {
         const struct scene_solid *const b = &scene->solid[k];
@@ -137,21 +148,14 @@ static void warn_of_hinge(struct check *check, int body)
     const struct scene_points *const p = &scene->points[KIND_SOLID];
     const struct shape *const clamp = scene->solid[body].clamp.item;
     long long held = 0;
-    int64_t nearest = -1;
-    double best = HUGE_VAL;
     if (scene->solid[body].clamp.n != 1 || !geometry_is_hinge(clamp, scene_solid_dp(scene, body)))
         return;
-    for (int64_t k = 0; k < p->n; k++) {
-        if (p->body[k] != body || !p->clamped[k]) continue;
-        const double r = elementary_hypot(p->x[k] - clamp->pt[0][0], p->y[k] - clamp->pt[0][1]);
-        held++;
-        if (r < best) best = r, nearest = k;
-    }
+    for (int64_t k = 0; k < p->n; k++) held += p->body[k] == body && p->clamped[k];
     if (held >= 2)
         warn_at(check->diag, check->scene, clamp->line,
                 "this small clamp holds %lld particles of [solid %s], so the body cannot turn "
-                "about it; a hinge holds one: clamp = circle %.6g, %.6g, 0.6*dp",
-                held, scene->solid[body].common.name, p->x[nearest], p->y[nearest]);
+                "about it; a hinge holds a point: hinge = %.6g, %.6g",
+                held, scene->solid[body].common.name, clamp->pt[0][0], clamp->pt[0][1]);
 }
 
 /* Whether a clamped particle of the body touches a particle of the wall. */

@@ -41,7 +41,7 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
                 sampler,
                 fail_at(sampler->diag, sampler->scene, clamps->item[c].line,
                         "clamp %d of [solid %s] contains no particle; it must cover a part of "
-                        "the body",
+                        "the body; `hinge = X, Y` holds any point of a body that may turn about it",
                         c + 1, region->name)));
     return ERR_OK;
 }

@@ -40,9 +40,9 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
     [PROBE_POSE] = {"pose", "cx_m,cy_m,angle_rad",
                     "position of the centre of mass of a solid, and its counter-clockwise rotation "
                     "by least squares over its particles, between -pi and pi"},
-    [PROBE_REACTION] =
-        {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-         "reaction force of its clamps on a solid, and its counter-clockwise moment about `point`"},
+    [PROBE_REACTION] = {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
+                        "reaction force of its clamps and hinges on a solid, and its "
+                        "counter-clockwise moment about `point`"},
     [PROBE_SURFACE_PRESSURE] =
         {"surface_pressure", "p_Pa,fx_N_per_m,fy_N_per_m",
          "mean pressure of the fluid along the line from `point` to `to`, such as the face of a "
@@ -350,7 +350,7 @@ static void reaction(const struct probe *pr, struct simulation *sim, double out[
     struct particles *const particles = &sim->kind[KIND_SOLID];
     const struct solid_forces_now now = solid_forces_now(&sim->solid, particles, sim->state.time);
     out[0] = out[1] = out[2] = 0;
-    add_forces(pr, particles, pr->body, now.clamp_x, now.clamp_y, out);
+    add_forces(pr, particles, pr->body, now.held_x, now.held_y, out);
 }
 
 /* T-75: the particles of a body have equal masses. Pose and its rate. */

@@ -36,6 +36,18 @@ static void write_expressions(struct json *j, const struct param *param,
     json_close(j, ']');
 }
 
+static void write_hinges(struct json *j, const char *key, const struct hinge_list *list)
+{
+    json_open(j, key, '[');
+    for (int k = 0; k < list->n; k++) {
+        json_open(j, NULL, '{');
+        json_numbers(j, "point", list->item[k].at, 2);
+        json_text(j, "other", list->item[k].other);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void write_value(struct json *j, const struct param *param, const void *value)
 {
     char name[SCENE_NAME];
@@ -50,6 +62,7 @@ static void write_value(struct json *j, const struct param *param, const void *v
     case PARAM_VECTOR: json_numbers(j, param->key, value, 2); break;
     case PARAM_EXPR: write_expressions(j, param, value); break;
     case PARAM_SHAPES: write_shapes(j, param->key, value); break;
+    case PARAM_HINGES: write_hinges(j, param->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;
         json_numbers(j, param->key, list->value, list->n);

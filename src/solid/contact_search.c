@@ -83,7 +83,7 @@ static bool joined_by_clamp(const struct contact *contact, int32_t point, int32_
 }
 
 /* The material keeps points apart that were initially within each other's kernel in one body. A
- * clamp does so for its particles and the wall. */
+ * clamp does so for its particles and the wall, a hinge for what begins within its kernel. */
 struct contact_law contact_pair_law(const struct contact *contact, int32_t point, int32_t edge)
 {
     const struct contact_edge *const e = &contact->edge[edge];
@@ -94,7 +94,9 @@ struct contact_law contact_pair_law(const struct contact *contact, int32_t point
     if (!law.on) return law;
     if (contact->group[point] == contact->group[e->a])
         law.on = !initially_within(contact, point, edge, contact->body[point]);
-    else if (joined_by_clamp(contact, point, edge))
+    else if (joined_by_clamp(contact, point, edge) ||
+             (contact->near_hinge[point] &&
+              contact->near_hinge[point] == contact->near_hinge[e->a]))
         law.on = false;
     else if (contact->initial_group[point] == contact->group[e->a])
         law.initial = contact->initial[point];

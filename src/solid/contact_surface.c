@@ -191,6 +191,23 @@ static enum err make_clouds(struct contact *contact, const struct particles *sol
     return ERR_OK;
 }
 
+/* Marks the points near hinges. */
+static enum err find_hinges(struct contact *contact, struct arena *a, struct diag *d)
+{
+    const struct hinges *const hinges = contact->solid->hinges;
+    contact->near_hinge =
+        arena_alloc(a, (size_t)contact->n_points, sizeof *contact->near_hinge, "contact", d);
+    if (!contact->near_hinge) return ERR_MEMORY;
+    for (int k = hinges ? hinges->n - 1 : -1; k >= 0; k--) {
+        const struct hinge *const h = &hinges->hinge[k];
+        const double reach2 = square(KERNEL_REACH * contact->solid->body[h->body[0]].h);
+        for (int64_t n = 0; n < contact->n_points; n++)
+            if (square(contact->X[n] - h->at[0]) + square(contact->Y[n] - h->at[1]) < reach2)
+                contact->near_hinge[n] = (int16_t)(k + 1);
+    }
+    return ERR_OK;
+}
+
 /* Marks the points near clamps. */
 static enum err find_clamps(struct contact *contact, struct arena *a, const struct particles *solid,
                             struct arena *temp, struct diag *d)
@@ -243,6 +260,7 @@ static enum err find_surface(struct contact *contact, struct arena *a,
     for (int k = 0; k < 2; k++) add_edges(contact, &of[k], link[k], n_links[k]);
     set_shares(contact);
     for (int64_t i = 0; i < of[1].n; i++) contact->wall_point[i] = of[1].point[i];
+    TRY(find_hinges(contact, a, d));
     return find_clamps(contact, a, solid, temp, d);
 }
 

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * Accelerations and the forces of clamps, for output. */
+ * Accelerations and the forces of clamps and hinges, for output. */
 #include <string.h>
 
 #include "solid/contact.h"
+#include "solid/hinges.h"
 #include "solid/loads.h"
 #include "solid/solid.h"
 
-/* All forces but those of clamps, as accelerations into sx, sy, with every particle free. */
+/* All forces but those of clamps and hinges, as accelerations into sx, sy, with every particle
+ * free. */
 static void forces_without_clamps(struct solid *solid, struct particles *particles, double time)
 {
     struct contact *const contact = solid->contact;
@@ -14,10 +16,12 @@ static void forces_without_clamps(struct solid *solid, struct particles *particl
     const double at = solid->time;
     for (int64_t i = 0; i < particles->n; i++) particles->free[i] = 1;
     if (solid->loads) solid->loads->released = true;
+    if (solid->hinges) solid->hinges->released = true;
     solid->time = time;
     solid_forces(solid, particles);
     solid->time = at;
     if (solid->loads) solid->loads->released = false;
+    if (solid->hinges) solid->hinges->released = false;
     if (contact) contact->power = power, contact->seconds = seconds;
 }
 
@@ -71,5 +75,6 @@ struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->free[i] == 0) hold(solid, particles, i, rest);
     if (solid->loads) hold_moving(solid, particles, time);
+    if (solid->hinges) hinges_hold(solid->hinges, now, &now[2], time);
     return (struct solid_forces_now){now[0], now[1], now[2], now[3]};
 }

@@ -6,6 +6,7 @@
 
 #include "solid/contact.h"
 #include "solid/contact_friction.h"
+#include "solid/hinges.h"
 #include "solid/implicit.h"
 #include "solid/loads.h"
 #include "case/effects.h"
@@ -240,11 +241,13 @@ static void vary_gravity(const struct solid *solid, struct particles *particles,
  * thread. */
 SPHFSI_INLINE bool calls_program(const struct solid *solid)
 {
-    return solid->calls_out && (solid->contact || solid->loads);
+    return solid->calls_out && (solid->contact || solid->loads || solid->hinges);
 }
 
-/* Actions from outside the solid, each a pass of its own. */
-static void outer_forces(const struct solid *solid, struct particles *particles, double time)
+/* Actions from outside the solid, each a pass of its own; hinges come last, against all others.
+ * dt: of the kick that follows; 0: none does. */
+static void outer_forces(const struct solid *solid, struct particles *particles, double time,
+                         double dt)
 {
     if (solid->contact) {
         const double start = wall_clock();
@@ -256,6 +259,10 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
     if (solid->loads) {
 #pragma omp single
         loads_forces(solid->loads, solid, particles, time);
+    }
+    if (FX_HINGE != 0 && solid->hinges) {
+#pragma omp single
+        hinges_forces(solid->hinges, solid, particles, time, dt);
     }
 }
 
@@ -318,7 +325,7 @@ void solid_forces_within(const struct solid *solid, struct particles *particles,
         pack_all_motion(&own);
         stress_sweeps(&own, true);
         force_sweeps(&own);
-        outer_forces(solid, particles, time);
+        outer_forces(solid, particles, time, 0);
     }
 }
 
@@ -345,7 +352,7 @@ void solid_forces(const struct solid *solid, struct particles *particles)
     {
         const struct chunk own = chunk_of(solid, particles);
         force_sweeps(&own);
-        outer_forces(solid, particles, solid->time);
+        outer_forces(solid, particles, solid->time, 0);
     }
 }
 
@@ -360,6 +367,7 @@ void solid_book_work(struct solid *solid, struct particles *particles, const dou
     }
     if (solid->loads)
         solid->work += loads_work(solid->loads, particles, vx, vy, dt, solid->work_on);
+    if (solid->hinges) solid->work += hinges_work(solid->hinges, vx, vy, dt, solid->work_on);
 }
 
 void solid_place_clamps(const struct solid *solid, struct particles *particles, double time)
@@ -390,8 +398,8 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
         const bool last = k + 1 == n;
         stress_sweeps(own, true);
         force_sweeps(own);
-        outer_forces(solid, particles, time + first);
-        if (solid->contact || solid->loads) {
+        outer_forces(solid, particles, time + first, dt);
+        if (solid->contact || solid->loads || solid->hinges) {
 #pragma omp single
             solid_book_work(solid, particles, particles->vx, particles->vy, dt);
         }

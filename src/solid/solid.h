@@ -44,11 +44,11 @@ SPHFSI_INLINE bool solid_steps_implicitly(const struct solid *solid)
  * since the last call. */
 void solid_operator(struct solid *solid, struct particles *particles, bool displaced);
 
-/* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from
+/* Accelerations now, m/s^2, and forces of clamps and hinges, N/m (0 where none acts), from
  * what solid_stress has found. They stay in the scratch of s until that is used again; p is as
  * it was. */
 struct solid_forces_now {
-    const double *ax, *ay, *clamp_x, *clamp_y;
+    const double *ax, *ay, *held_x, *held_y;
 };
 struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
                                          double time);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/cholesky.h"
 #include "base/point_grid.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
@@ -77,30 +78,13 @@ static void basis(double x, double y, double b[5])
     b[4] = 0.5 * y * y;
 }
 
-/* Solves M z = e_row for a symmetric positive matrix by Cholesky; false where it is (nearly)
- * singular. */
+/* Solves M z = e_row for the first n rows; false where M is (nearly) singular. */
 static bool solve_row(const double M[5][5], int n, int row, double z[5])
 {
-    double C[5][5];
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j <= i; j++) {
-            double sum = M[i][j];
-            for (int k = 0; k < j; k++) sum -= C[i][k] * C[j][k];
-            if (i == j && !(sum > 1e-4 * M[i][i])) return false;
-            C[i][j] = i == j ? sqrt(sum) : sum / C[j][j];
-        }
-    }
-    for (int i = 0; i < n; i++) {
-        double sum = i == row;
-        for (int k = 0; k < i; k++) sum -= C[i][k] * z[k];
-        z[i] = sum / C[i][i];
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        double sum = z[i];
-        for (int k = i + 1; k < n; k++) sum -= C[k][i] * z[k];
-        z[i] = sum / C[i][i];
-    }
-    return true;
+    double copy[5][5];
+    memcpy(copy, M, sizeof copy);
+    for (int i = 0; i < n; i++) z[i] = i == row;
+    return cholesky_solve(&copy[0][0], n, 5, 1e-4, z) == n;
 }
 
 /* Moment matrix of a particle with the weight |grad W|/r. Its linear block is L of Eq. 13c: two

@@ -134,6 +134,7 @@ struct solid {
     /* Actions from outside, each NULL if there is none; contact: if none is near. */
     struct contact *contact;
     struct loads *loads;
+    struct hinges *hinges;
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
@@ -207,6 +208,7 @@ struct contact {
     int32_t *load_head, *load_next, *point_edge;
     double *wall_row, *wall_damping;
     uint8_t *near_clamp; /* within the kernel of a clamped particle of its group */
+    int16_t *near_hinge; /* the hinge, from 1, within whose kernel it begins; 0: none */
     int64_t n_edges;
     struct contact_edge *edge;
     struct point_grid grid; /* of the edges' middles */
@@ -260,6 +262,38 @@ struct loads {
     double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
     bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
+};
+
+/* --- hinges --- */
+
+/* A point of a body that stays in place, on another body or on a moving wall. */
+struct hinge {
+    double at[2];     /* at t = 0, m */
+    int body[2];      /* the section, and the other one; -1: not a solid */
+    int bond[2];      /* of these bodies */
+    int motion;       /* of the wall; -1: none */
+    double target[2]; /* of the last forces: velocity after their kick, or acceleration */
+    int line;
+};
+
+/* A particle around a hinge. */
+struct hinge_node {
+    int32_t particle;
+    int hinge, end;          /* end: 1 of its body, 2 of the other one */
+    double weight, inv_mass; /* negative for the other body; 0 where a clamp holds the particle */
+    double value[2];         /* scratch: velocity or acceleration without the hinges */
+};
+
+struct hinges {
+    const struct scene *scene;
+    int n;
+    struct hinge *hinge;
+    int64_t n_nodes;
+    struct hinge_node *node; /* in the order of their particles */
+    double *matrix;          /* [2 n][2 n] */
+    double *force;           /* [2 n] of the last call, on the body, N/m */
+    double kick;             /* its dt */
+    bool released;           /* hinges_forces does nothing */
 };
 
 #endif

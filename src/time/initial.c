@@ -83,7 +83,9 @@ static void start_solid(struct simulation *sim)
             particles->free[i] * expr_or(b->velocity.e[0], particles->X[i], particles->Y[i], 0);
         particles->vy[i] =
             particles->free[i] * expr_or(b->velocity.e[1], particles->X[i], particles->Y[i], 0);
-        if (!particles->wx) continue;
+    }
+    if (sim->solid.hinges) hinges_start(sim->solid.hinges, particles);
+    for (int64_t i = 0; particles->wx && i < particles->n; i++) {
         particles->wx[i] = particles->vx[i];
         particles->wy[i] = particles->vy[i];
     }
@@ -110,7 +112,8 @@ static bool implicit_pays(const struct simulation *sim)
     const struct scene_numerics *const n = &scene->numerics;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, area = 0;
     bool possible = n->solid_steps == SOLID_STEPS_AUTO && sim->effects & FX_COUPLING &&
-                    n->multirate != MULTIRATE_OFF && n->solid_precision != SOLID_PRECISION_SINGLE;
+                    !(sim->effects & FX_HINGE) && n->multirate != MULTIRATE_OFF &&
+                    n->solid_precision != SOLID_PRECISION_SINGLE;
     for (int k = 0; k < scene->n_solid; k++)
         possible &= sim->solid.body[k].variational || !(sim->solid.body[k].kappa > 0);
     if (!possible) return false;
@@ -175,6 +178,11 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
 {
     TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
                      sim->effects & FX_IMPLICIT, d));
+    if (sim->effects & FX_HINGE) {
+        TRY(hinges_create(&sim->hinges, &sim->arena, sim->scene, &sim->solid,
+                          &sim->kind[KIND_SOLID], d));
+        sim->solid.hinges = &sim->hinges;
+    }
     start_solid(sim);
     solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
     return ERR_OK;

@@ -9,6 +9,7 @@
 #include "fluid/wall_motion.h"
 #include "particles/cells.h"
 #include "solid/contact.h"
+#include "solid/hinges.h"
 #include "solid/loads.h"
 #include "time/energy_account.h"
 
@@ -93,6 +94,7 @@ struct simulation {
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */
     struct contact contact;         /* of the solid; unused without it */
+    struct hinges hinges;           /* of the solid */
     struct loads loads;             /* of the solid; unused without loads and moving clamps */
     effect_set effects;             /* bits of case/effects.h */
     struct state state;

@@ -62,6 +62,7 @@ short ringing_bar 1e-3 ratio=4
 short rotating_patch 0.02 "dp=L/20"
 short accelerated_tank 0.02 "dp=20 mm"
 short still_water 0.01 "dp=20 mm" wall=60mm
+short hinged_flap 0.005 "dp=10 mm"
 integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
 integrators=symplectic short rolling_tank 0.01
 integrators=symplectic short elastic_valve 0.01 "dp=4 mm"

@@ -263,6 +263,15 @@ static void same_shapes(const struct shape_list *a, const struct shape_list *b)
     }
 }
 
+static void same_hinges(const struct hinge_list *a, const struct hinge_list *b)
+{
+    TEST_ASSERT_EQUAL_INT(a->n, b->n);
+    for (int k = 0; k < a->n; k++) {
+        TEST_ASSERT_EQUAL_MEMORY(a->item[k].at, b->item[k].at, sizeof a->item[k].at);
+        TEST_ASSERT_EQUAL_STRING(a->item[k].other, b->item[k].other);
+    }
+}
+
 static void same_value(const struct param *param, const char *mine, const char *its)
 {
     const void *a = mine + param->offset, *b = its + param->offset;
@@ -281,6 +290,7 @@ static void same_value(const struct param *param, const char *mine, const char *
     case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, param->key); break;
     case PARAM_EXPR: same_expressions(a, b); break;
     case PARAM_SHAPES: same_shapes(a, b); break;
+    case PARAM_HINGES: same_hinges(a, b); break;
     case PARAM_NUMBERS: {
         const struct number_list *p_list = a, *q_list = b;
         TEST_ASSERT_EQUAL_INT(p_list->n, q_list->n);

@@ -414,7 +414,6 @@ static const struct {
 };
 
 void setUp(void) {}
-
 void tearDown(void) {}
 
 static void test_each_is_refused_with_its_sentence(void)
@@ -449,6 +448,7 @@ static const char *wrong(const struct param *param, const char **value)
         return why;
     case PARAM_EXPR:
     case PARAM_NUMBERS: *value = "(1"; return param->count > 1 ? "" : "`(` is not closed";
+    case PARAM_HINGES: *value = "1"; return "`X, Y` or `X, Y, NAME` is expected; there is 1";
     case PARAM_SHAPES: *value = "cube 1"; return "";
     case PARAM_TEXT: break;
     }

@@ -104,6 +104,8 @@ static const struct {
     {TOP PLAIN_SOLID "clamp = box 0.05, 0.12, 0.07, 0.16\nclamp_motion = m\n[motion m]\n",
      FX_SOLID | FX_CONTACT | FX_CLAMP_MOTION, EFFECT_CLAMP_MOTION,
      "line 11: [solid s] clamp_motion"},
+    {TOP PLAIN_SOLID "hinge = 0.07, 0.15\n", FX_SOLID | FX_CONTACT | FX_HINGE, EFFECT_HINGE,
+     "line 10: [solid s] hinge"},
     {TOP FLUID WALL "[probe p]\nquantity = force\nbody = bed\n", FX_FLUID | FX_WALL | FX_WALL_FORCE,
      EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
