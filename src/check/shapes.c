@@ -85,26 +85,36 @@ static double thickness(const struct shape *shape)
     return HUGE_VAL;
 }
 
-/* Whether anything lies on both sides of a line, as far as the domain goes: a line along the middle
- * of a wall, between two corners of `side` and further by `off` to the left. */
-static bool has_two_sides(const struct check *check, const double side[2][2], double off)
+/* Whether anything lies in a direction from a place, as far as the domain goes. */
+static bool anything_beyond(const struct check *check, const double from[2], const double way[2],
+                            double first)
 {
     const struct scene *const scene = check->scene;
-    const double dp = scene->top.dp, dx = side[1][0] - side[0][0], dy = side[1][1] - side[0][1],
-                 length = elementary_hypot(dx, dy), left[2] = {-dy / length, dx / length},
-                 limit = scene->domain_upper[0] - scene->domain_lower[0] + scene->domain_upper[1] -
-                         scene->domain_lower[1];
+    const double *const low = scene->domain_lower, *const high = scene->domain_upper,
+                        dp = scene->top.dp, longest = high[0] - low[0] + high[1] - low[1];
+    for (double path = first; path < longest; path += 0.5 * dp) {
+        const double at[2] = {from[0] + path * way[0], from[1] + path * way[1]};
+        for (int c = 0; c < 2; c++)
+            if (!scene_periodic(scene, c) && (at[c] < low[c] || at[c] > high[c])) return false;
+        if (point_at(check, at, 0.5 * dp, POINT_ANY) >= 0) return true;
+    }
+    return false;
+}
+
+/* Whether something lies on both sides of the middle of a wall, which is a line between two corners
+ * and further by `off` to the left. */
+static bool has_two_sides(const struct check *check, const double corner[2][2], double off)
+{
+    const double dp = check->scene->top.dp, dx = corner[1][0] - corner[0][0],
+                 dy = corner[1][1] - corner[0][1], length = elementary_hypot(dx, dy),
+                 left[2] = {-dy / length, dx / length}, right[2] = {-left[0], -left[1]},
+                 first = fabs(off) + 0.5 * dp;
     for (double s = 0.5 * dp; s < length; s += dp) {
-        int sides = 0;
-        for (int way = -1; way <= 1; way += 2)
-            for (double path = fabs(off) + 0.5 * dp; path < limit; path += 0.5 * dp) {
-                const double at[2] = {side[0][0] + s * dx / length + (off + way * path) * left[0],
-                                      side[0][1] + s * dy / length + (off + way * path) * left[1]};
-                if (point_at(check, at, 0.5 * dp, POINT_ANY) < 0) continue;
-                sides++;
-                break;
-            }
-        if (sides == 2) return true;
+        const double middle[2] = {corner[0][0] + s * dx / length + off * left[0],
+                                  corner[0][1] + s * dy / length + off * left[1]};
+        if (anything_beyond(check, middle, left, first) &&
+            anything_beyond(check, middle, right, first))
+            return true;
     }
     return false;
 }

@@ -30,7 +30,7 @@ static bool is_wet(const struct sampler *sampler, const struct shape *line, doub
         const double *const a = line->pt[k], *const b = line->pt[k + 1];
         const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
         const double off = 0.5 * side * dp / length;
-        const int64_t parts = 1 + (int64_t)max2(0, min2(1e8, 2 * (length / dp - 2)));
+        const int64_t parts = 1 + (int64_t)max2(0, min2(1e6 / line->n, 2 * (length / dp - 2)));
         for (int64_t j = 1; j <= parts; j++) {
             const double s =
                 parts == 1
