@@ -66,8 +66,8 @@ static enum err note_slip(struct fluid *fluid, struct arena *a, const struct sce
 static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, int64_t clusters,
                                          struct diag *d)
 {
-    const int64_t most = CHUNK_CELLS * (CELL_CAPACITY / CLUSTER);
-    const size_t places = 1 + (size_t)(clusters < most ? clusters : most);
+    const int64_t largest = CHUNK_CELLS * (CELL_CAPACITY / CLUSTER);
+    const size_t places = 1 + (size_t)(clusters < largest ? clusters : largest);
     const size_t size = places * (size_t)pair_sums(fluid->effects) * CLUSTER * CLUSTER *
                         fluid->sweeps->packed_item_size;
     fluid->thread_bytes = size + sizeof *fluid->neighbour_scratch;
@@ -86,9 +86,9 @@ static enum err power_create(struct fluid *fluid, struct arena *a, int sections,
                              const struct particles *particles, const struct cells *cells,
                              struct diag *d)
 {
-    const int64_t most = (int64_t)cells->nx * cells->ny;
+    const int64_t in_all = (int64_t)cells->nx * cells->ny;
     const int32_t chunks =
-        fluid_chunk_count((int32_t)(particles->capacity < most ? particles->capacity : most));
+        fluid_chunk_count((int32_t)(particles->capacity < in_all ? particles->capacity : in_all));
     const size_t n = (size_t)(FLUID_POWERS * sections);
     fluid->sections = sections;
     fluid->power = arena_alloc(a, n, sizeof *fluid->power, "energy account", d);
@@ -209,10 +209,10 @@ double fluid_shift(const struct fluid *fluid, struct particles *particles, doubl
 /* T-9b by backward Euler. */
 void fluid_follow_density(const struct fluid *fluid, struct particles *particles, double dt)
 {
-    const double share = dt / (dt + fluid->k.model->acoustic_damper * fluid->k.h / fluid->k.c0);
+    const double fraction = dt / (dt + fluid->k.model->acoustic_damper * fluid->k.h / fluid->k.c0);
 #pragma omp parallel for simd schedule(static) num_threads(fluid->threads)
     for (int64_t i = 0; i < particles->n; i++)
-        particles->dens_slow[i] += share * (particles->dens[i] - particles->dens_slow[i]);
+        particles->dens_slow[i] += fraction * (particles->dens[i] - particles->dens_slow[i]);
 }
 
 /* Marks the nine cells around a cell of walls or structures; returns whether any of them contains
@@ -249,12 +249,12 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
 
 int32_t fluid_fullest_cell(const struct cells *cells)
 {
-    int32_t most = 0;
+    int32_t fullest = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int32_t k = 0; k < cells->kind[kind].n_active; k++)
-            if (cells->kind[kind].count[cells->kind[kind].active[k]] > most)
-                most = cells->kind[kind].count[cells->kind[kind].active[k]];
-    return most;
+            if (cells->kind[kind].count[cells->kind[kind].active[k]] > fullest)
+                fullest = cells->kind[kind].count[cells->kind[kind].active[k]];
+    return fullest;
 }
 
 static void pass_pack(struct fluid *fluid, struct particles kinds[KIND_COUNT],

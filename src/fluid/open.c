@@ -78,12 +78,12 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
     o->sum = arena_alloc(a, n, sizeof *o->sum, "open boundaries", d);
     o->count = arena_alloc(a, n, sizeof *o->count, "open boundaries", d);
     o->rate = arena_alloc(a, n, sizeof *o->rate, "open boundaries", d);
-    const size_t most = (size_t)o->capacity;
-    o->member = arena_alloc(a, most, sizeof *o->member, "open boundaries", d);
-    o->mirror_p = arena_alloc(a, most, sizeof *o->mirror_p, "open boundaries", d);
-    o->mirror_u = arena_alloc(a, most, sizeof *o->mirror_u, "open boundaries", d);
-    o->mirror_v = arena_alloc(a, most, sizeof *o->mirror_v, "open boundaries", d);
-    o->flow = arena_alloc(a, most, sizeof *o->flow, "open boundaries", d);
+    const size_t capacity = (size_t)o->capacity;
+    o->member = arena_alloc(a, capacity, sizeof *o->member, "open boundaries", d);
+    o->mirror_p = arena_alloc(a, capacity, sizeof *o->mirror_p, "open boundaries", d);
+    o->mirror_u = arena_alloc(a, capacity, sizeof *o->mirror_u, "open boundaries", d);
+    o->mirror_v = arena_alloc(a, capacity, sizeof *o->mirror_v, "open boundaries", d);
+    o->flow = arena_alloc(a, capacity, sizeof *o->flow, "open boundaries", d);
     if (!o->flow || !o->boundary || !o->at || !o->sum || !o->count || !o->rate || !o->member ||
         !o->mirror_p || !o->mirror_u || !o->mirror_v)
         return ERR_MEMORY;
@@ -109,15 +109,15 @@ static void given_acceleration(const struct open_moment at[OPEN_TIMES],
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (t[OPEN_AFTER] - t[OPEN_BEFORE]);
 }
 
-/* T-51: velocity of a buffer from the fluid around the foot of its particle. Velocities that varied
- * along the normal would compress the buffer, because it has none along the line. Without fluid
- * there the velocity does not change. */
-static void see_velocity(struct open *o, int64_t m, const struct fluid_constants *k,
-                         const struct particles *particles, const struct cells *cells,
-                         const double foot[2])
+/* T-51: velocity of a buffer from the fluid around its particle's projection on the line.
+ * Velocities that varied along the normal would compress the buffer, because it has none along the
+ * line. Without fluid there the velocity does not change. */
+static void mirror_velocity(struct open *o, int64_t m, const struct fluid_constants *k,
+                            const struct particles *particles, const struct cells *cells,
+                            const double on_line[2])
 {
     const double *const n = o->boundary[particles->open[o->member[m]] - 1].inward;
-    const struct across s = state_across(k, particles, cells, foot);
+    const struct across s = state_across(k, particles, cells, on_line);
     if (!(s.w > 0)) return;
     const double normal =
         linear_value(&s, s.u, s.ux, s.uy) * n[0] + linear_value(&s, s.v, s.vx, s.vy) * n[1];
@@ -128,29 +128,29 @@ static void see_velocity(struct open *o, int64_t m, const struct fluid_constants
 /* A buffer particle's pressure from the fluid at its mirror image in the line (T-52), and with a
  * given pressure its velocity. With a given velocity: the pressure that T-10 gives a wall with that
  * velocity (T-50). Without fluid there its fields do not change. */
-static void see(struct open *o, int64_t m, const struct fluid_constants *k,
-                const struct particles *particles, const struct cells *cells, double time)
+static void mirror_fields(struct open *o, int64_t m, const struct fluid_constants *k,
+                          const struct particles *particles, const struct cells *cells, double time)
 {
     const int32_t i = o->member[m];
     const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     const double x[2] = {particles->x[i], particles->y[i]};
-    double in, along, foot[2], mirror[2], a[2];
+    double in, along, on_line[2], mirror[2], a[2];
     scene_open_place(b, x, &in, &along);
     for (int axis = 0; axis < 2; axis++) {
-        foot[axis] = x[axis] - in * b->inward[axis];
-        mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
+        on_line[axis] = x[axis] - in * b->inward[axis];
+        mirror[axis] = on_line[axis] + fabs(in) * b->inward[axis];
     }
     const struct across s = state_across(k, particles, cells, mirror);
     o->mirror_u[m] = particles->vx[i];
     o->mirror_v[m] = particles->vy[i];
     if (b->kind == OPEN_PRESSURE) {
         o->mirror_p[m] = s.w > 0 ? s.p_w / s.w : (double)NAN;
-        see_velocity(o, m, k, particles, cells, foot);
+        mirror_velocity(o, m, k, particles, cells, on_line);
         return;
     }
     o->mirror_p[m] = eos_pressure(particles->dens[i], k->rho0, k->c0);
     if (!(s.w > 0)) return;
-    given_acceleration(o->at[particles->open[i] - 1], k, foot, time, a);
+    given_acceleration(o->at[particles->open[i] - 1], k, on_line, time, a);
     const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
     o->mirror_p[m] = (s.p_w + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
                                          (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
@@ -159,10 +159,10 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
 
 /* The given pressure at a point of the line, Pa. */
 static double given_pressure(const struct scene_open *b, const struct fluid_constants *k,
-                             const double foot[2], double time)
+                             const double on_line[2], double time)
 {
-    if (b->pressure) return scene_expr_at_time(b->pressure, foot[0], foot[1], time);
-    return max2(0, -k->rho0 * k->gravity[1] * (b->level - foot[1]));
+    if (b->pressure) return scene_expr_at_time(b->pressure, on_line[0], on_line[1], time);
+    return max2(0, -k->rho0 * k->gravity[1] * (b->level - on_line[1]));
 }
 
 /* T-52: pressure of a buffer particle such that it is `given` on the line; no tension at the end of
@@ -207,8 +207,8 @@ static void find_flow(struct open *o, const struct fluid_constants *k,
 }
 
 /* Counts a particle that is created (sign 1) or removed (-1). */
-static void book_particle(struct open *o, const struct fluid_constants *k,
-                          const struct particles *particles, int64_t i, double sign)
+static void count_particle(struct open *o, const struct fluid_constants *k,
+                           const struct particles *particles, int64_t i, double sign)
 {
     double *const sum = o->sum[particles->open[i] - 1];
     sum[OPEN_MOMENTUM_X] += sign * particle_mass(k, particles, i) * particles->vx[i];
@@ -224,15 +224,15 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
     const struct scene_open *const b = &o->boundary[number];
     double v[2] = {o->mirror_u[m], o->mirror_v[m]}, pressure = o->mirror_p[m], in, along;
     scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &in, &along);
-    const double foot[2] = {particles->x[i] - in * b->inward[0],
-                            particles->y[i] - in * b->inward[1]};
+    const double on_line[2] = {particles->x[i] - in * b->inward[0],
+                               particles->y[i] - in * b->inward[1]};
     if (b->kind == OPEN_PRESSURE) {
-        double given = given_pressure(b, k, foot, time);
+        double given = given_pressure(b, k, on_line, time);
         if (b->absorb > 0) /* T-53 */
             given += k->rho0 * k->c0 * (o->rate[number].flow - o->sum[number][OPEN_MEAN_FLOW]);
         pressure = odd_pressure(b, given, pressure);
     } else {
-        scene_open_velocity(&o->at[number][OPEN_NOW].boundary, foot, time, v);
+        scene_open_velocity(&o->at[number][OPEN_NOW].boundary, on_line, time, v);
     }
     particles->vx[i] = v[0];
     particles->vy[i] = v[1];
@@ -249,21 +249,21 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
 }
 
 void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
-              const struct cells *cells, double time, bool book)
+              const struct cells *cells, double time, bool counts)
 {
     fix_times(o, k, time);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++)
         particles->p[i] = eos_pressure(particles->dens[i], k->rho0, k->c0);
 #pragma omp parallel for schedule(static)
-    for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, particles, cells, time);
+    for (int64_t m = 0; m < o->n_members; m++) mirror_fields(o, m, k, particles, cells, time);
     find_flow(o, k, particles, cells);
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
         const double u = particles->vx[i], v = particles->vy[i],
                      energy = particle_energy(k, k->gravity, particles, i);
         set_particle(o, m, k, particles, time);
-        if (!book) continue;
+        if (!counts) continue;
         double *const sum = o->sum[particles->open[i] - 1];
         sum[OPEN_MOMENTUM_X] += particle_mass(k, particles, i) * (particles->vx[i] - u);
         sum[OPEN_MOMENTUM_Y] += particle_mass(k, particles, i) * (particles->vy[i] - v);
@@ -285,7 +285,7 @@ void open_hold(struct open *o, const struct fluid_constants *k, struct particles
     }
 }
 
-void open_book(struct open *o, double dt)
+void open_add_work(struct open *o, double dt)
 {
     for (int k = 0; k < o->n; k++) {
         double *const sum = o->sum[k];
@@ -347,7 +347,7 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k,
     particles->x[to] += (in - place) * b->inward[0] + aside * b->along[0];
     particles->y[to] += (in - place) * b->inward[1] + aside * b->along[1];
     o->count[number][OPEN_ENTERED]++;
-    book_particle(o, k, particles, to, 1);
+    count_particle(o, k, particles, to, 1);
     return ERR_OK;
 }
 
@@ -437,11 +437,11 @@ static void end_particles(struct open *o, const struct fluid_constants *k,
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < particles->n; i++) {
-        const bool crowded = particles->open[i] < 0;
-        if (crowded) particles->open[i] = -particles->open[i];
-        if (crowded || (particles->open[i] && !stays(o, particles, i, k->dp))) {
+        const bool found_no_room = particles->open[i] < 0;
+        if (found_no_room) particles->open[i] = -particles->open[i];
+        if (found_no_room || (particles->open[i] && !stays(o, particles, i, k->dp))) {
             o->count[particles->open[i] - 1][OPEN_LEFT]++;
-            book_particle(o, k, particles, i, -1);
+            count_particle(o, k, particles, i, -1);
             continue;
         }
         if (kept < i) particles_copy(particles, i, kept);
@@ -451,7 +451,7 @@ static void end_particles(struct open *o, const struct fluid_constants *k,
 }
 
 /* Marks fluid that is to be removed. The given velocity is then not all that passes the line. */
-static void turn_away(struct open *o, struct particles *particles, int64_t i, struct diag *d)
+static void mark_returned(struct open *o, struct particles *particles, int64_t i, struct diag *d)
 {
     const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
     if (!o->warned)
@@ -475,7 +475,7 @@ enum err open_exchange(struct open *o, const struct fluid_constants *k, struct p
         if (particles->open[i] == 0) {
             particles->open[i] = buffer_at(o, x, k->dp);
             if (particles->open[i] && strip_is_full(o, particles, i, k->dp))
-                turn_away(o, particles, i, d);
+                mark_returned(o, particles, i, d);
             continue;
         }
         scene_open_place(&o->boundary[particles->open[i] - 1], x, &in, &along);

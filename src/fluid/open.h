@@ -54,15 +54,15 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
                      struct diag *d) SPHFSI_CHECKED;
 
 /* Before an evaluation: sets velocities and densities of the buffers at a time, from the fluid
- * alone. `book`: the state is that between two steps, and its change counts in the account. */
+ * alone. `counts`: the state is that between two steps, and its change counts in the account. */
 void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
-              const struct cells *cells, double time, bool book);
+              const struct cells *cells, double time, bool counts);
 
 /* After it: forces do not move buffers; the rates store the constraint forces. */
 void open_hold(struct open *o, const struct fluid_constants *k, struct particles *particles);
 
 /* After a step: impulse and work of the last rates, and the mean flow. */
-void open_book(struct open *o, double dt);
+void open_add_work(struct open *o, double dt);
 
 /* Whether a buffer particle is so far inside the fluid that it must be relabelled. */
 bool open_due(const struct open *o, const struct particles *particles, double dp);

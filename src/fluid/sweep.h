@@ -90,9 +90,9 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
     four_double full = 1 + dens, factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
-        const four_double share = 1 / FOUR(particles->m, i);
-        factor = factor * share;
-        full = full * share;
+        const four_double inverse_mass = 1 / FOUR(particles->m, i);
+        factor = factor * inverse_mass;
+        full = full * inverse_mass;
     }
     const four_double fx_a = factor * odd_sum(s, deferred, SUM_X),
                       fy_a = factor * odd_sum(s, deferred, SUM_Y);

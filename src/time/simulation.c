@@ -88,7 +88,7 @@ static void add_exchange(struct simulation *sim)
 /* Work and impulse of the last step. */
 static void count_work(struct simulation *sim)
 {
-    if (sim->effects & FX_OPEN) open_book(&sim->open, sim->state.dt);
+    if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
     energy_after_step(sim);
     if (sim->effects & FX_COUPLING) add_exchange(sim);
 }
