@@ -17,20 +17,31 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
     if (impedance && *coupling->exchange_time == 0) *coupling->exchange_time = longest;
 }
 
+static void find_forces_on(const struct coupling *coupling, struct particles *particles,
+                           enum kind kind, const struct cells *cells)
+{
+    const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
+    if (!particles->fx) return;
+    particles_clear(particles->fx, particles->n); /* those without fluid nearby get no force */
+    particles_clear(particles->fy, particles->n);
+    particles_clear(particles->wet_x, particles->n);
+    particles_clear(particles->wet_y, particles->n);
+    (mixed ? find_force_mixed : find_force_double)(coupling->fluid, particles, kind, cells);
+}
+
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
-    force_sweep *const find_force = mixed ? find_force_mixed : find_force_double;
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        struct particles *const particles = &kinds[kind];
-        if (!particles->fx) continue;
-        particles_clear(particles->fx, particles->n); /* those without fluid nearby get no force */
-        particles_clear(particles->fy, particles->n);
-        particles_clear(particles->wet_x, particles->n);
-        particles_clear(particles->wet_y, particles->n);
-        find_force(coupling->fluid, particles, (enum kind)kind, cells);
-    }
+    find_forces_on(coupling, &kinds[KIND_SOLID], KIND_SOLID, cells);
+    if (coupling->fluid->effects & FX_MOTION)
+        find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells);
+}
+
+void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                          const struct cells *cells)
+{
+    if (!(coupling->fluid->effects & FX_MOTION))
+        find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells);
 }
 
 /* One component of T-36a: the force and its mean. The mean starts with the first force and ends

@@ -29,8 +29,12 @@ struct coupling {
     double *exchange_time;
 };
 
-/* After fluid_evaluate: the force of the fluid on structures, and on walls that have one. */
+/* After fluid_evaluate: the force of the fluid on structures, and on walls that move. */
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                          const struct cells *cells);
+
+/* And on walls at rest, which only output reads. */
+void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 
 /* Sets whether there are sub-steps and an impedance; `effects` has what the bounds of the step

@@ -89,7 +89,9 @@ void simulation_refresh(struct simulation *sim)
     if ((sim->effects & FX_FLUID) && !sim->cells_overfull) {
         double seconds[PHASE_COUNT];
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
+        const bool stale = !sim->evaluated;
         evaluate_fluid(sim, sim->state.time);
+        if (stale) coupling_show_forces(&sim->coupling, sim->kind, &sim->cells);
         sim->state.evaluations--;
         /* A caller's own forces and motions may change between two steps. */
         sim->evaluated = !sim->external[KIND_FLUID].at && !sim->external[KIND_SOLID].at &&
