@@ -50,7 +50,7 @@ short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm W=0.1m H=0.
     top=0.16m
 short hydrostatic_plate 0.004 "dp=25 mm"
 implicit=numerics.solid_steps=implicit
-multirates=auto integrators="symplectic verlet leapfrog" short hydrostatic_plate 0.004 \
+multirates=auto integrators="symplectic verlet leapfrog" short hydrostatic_plate 0.006 \
     "dp=25 mm" $implicit
 multirates=auto integrators="symplectic verlet" short cantilever 0.08 ratio=4 plate.law=svk \
     $implicit
