@@ -244,10 +244,9 @@ static void find_targets(struct hinges *hinges, const struct particles *particle
     for (int k = 0; k < 2 * hinges->n; k++) target[k] /= dt;
 }
 
-void hinges_forces(struct hinges *hinges, const struct solid *solid, struct particles *particles,
-                   double time, double dt)
+void hinges_forces(struct hinges *hinges, struct particles *particles, double time, double dt,
+                   bool resisted)
 {
-    const bool resisted = dt > 0 && solid->kick != solid_free_kick;
     if (hinges->released) return;
     find_targets(hinges, particles, time, dt);
     for (int k = 0; k < hinges->n; k++)

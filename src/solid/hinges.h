@@ -15,10 +15,10 @@ enum err hinges_create(struct hinges *hinges, struct arena *a, const struct scen
 void hinges_start(struct hinges *hinges, struct particles *particles);
 
 /* Adds the accelerations by hinges to sx, sy, which have all others. With dt: those that lead
- * each point to its place after the kick of dt that `solid` makes and a drift as long; without:
- * those by which it stays there. By one thread. */
-void hinges_forces(struct hinges *hinges, const struct solid *solid, struct particles *particles,
-                   double time, double dt);
+ * each point to its place after a kick of dt, which fluid resists or not, and a drift as long;
+ * without: those by which it stays there. By one thread. */
+void hinges_forces(struct hinges *hinges, struct particles *particles, double time, double dt,
+                   bool resisted);
 
 /* The same without dt for accelerations `by`; adds the forces, N/m. */
 void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time);

@@ -541,3 +541,13 @@ void implicit_step(struct solid *solid, struct particles *p, double dt)
     if (loads) loads->released = false;
     solid->within_step = NULL;
 }
+
+void solid_take_steps(struct solid *solid, struct particles *particles, double dt, int n,
+                      bool centred)
+{
+    if (!solid_steps_implicitly(solid)) {
+        solid_advance(solid, particles, dt, n, centred);
+        return;
+    }
+    for (int k = 0; k < n; k++, solid->time += dt) implicit_step(solid, particles, dt);
+}

@@ -37,6 +37,10 @@ enum err implicit_create(struct solid *solid, struct arena *a, const struct part
 /* A step of dt from the present time, which its caller advances. */
 void implicit_step(struct solid *solid, struct particles *particles, double dt);
 
+/* n steps of dt: implicit ones, or those of solid_advance. */
+void solid_take_steps(struct solid *solid, struct particles *particles, double dt, int n,
+                      bool centred);
+
 /* After the state has been read: the matrix that it was found with. */
 void implicit_resume(struct solid *solid, struct particles *particles);
 

@@ -7,7 +7,6 @@
 #include "solid/contact.h"
 #include "solid/contact_friction.h"
 #include "solid/hinges.h"
-#include "solid/implicit.h"
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "case/params.h"
@@ -262,7 +261,7 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
     }
     if (FX_HINGE != 0 && solid->hinges) {
 #pragma omp single
-        hinges_forces(solid->hinges, solid, particles, time, dt);
+        hinges_forces(solid->hinges, particles, time, dt, dt > 0 && solid->kick != solid_free_kick);
     }
 }
 
@@ -411,10 +410,6 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
 
 void solid_advance(struct solid *solid, struct particles *particles, double dt, int n, bool centred)
 {
-    if (solid_steps_implicitly(solid)) {
-        for (int k = 0; k < n; k++, solid->time += dt) implicit_step(solid, particles, dt);
-        return;
-    }
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     substeps(solid, particles, dt, n, centred);
     for (int k = 0; k < n; k++) solid->time += dt; /* as in the steps */
