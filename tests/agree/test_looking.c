@@ -113,9 +113,11 @@ static void refuses_ratio(const char *young, const char *more, const char *remed
 
 static void test_absurd_ratio_of_steps_is_refused(void)
 {
-    refuses_ratio("1e15 Pa", "", "; reduce young of the [solid]");
-    refuses_ratio("1 MPa", "[numerics]\nfixed_step = 10\n", "; reduce fixed_step");
-    refuses_ratio("1 MPa", "damping_time = 10\n", "; reduce the damping_time");
+#define EXPLICIT "[numerics]\nsolid_steps = explicit\n"
+    refuses_ratio("1e15 Pa", EXPLICIT, "; reduce young of the [solid]");
+    refuses_ratio("1 MPa", EXPLICIT "fixed_step = 10\n", "; reduce fixed_step");
+    refuses_ratio("1 MPa", "damping_time = 10\n" EXPLICIT, "; reduce the damping_time");
+#undef EXPLICIT
 }
 
 int main(void)

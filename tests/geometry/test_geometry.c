@@ -244,12 +244,12 @@ static void test_thin_outermost_walls_are_not(void)
              "shape = box 0, -0.01, 0.1, 0\nshape = polyline thickness 10 mm: 0, 0.1; 0.1, 0.1\n");
     must_read(text, NULL);
     TEST_ASSERT_EQUAL_STRING("", warnings);
-    static const char tank[] =
+    static const char bath[] =
         "[wall c]\nshape = polyline thickness -10 mm: 0, 0.2; 0, 0; 0.3, 0; 0.3, 0.2\n";
-    snprintf(text, sizeof text, "%s%s", top, tank);
+    snprintf(text, sizeof text, "%s%s", top, bath);
     must_read(text, NULL);
     TEST_ASSERT_EQUAL_STRING("", warnings);
-    snprintf(text, sizeof text, "%s%s[wall d]\nshape = box 0.1, 0, 0.11, 0.1\n", top, tank);
+    snprintf(text, sizeof text, "%s%s[wall d]\nshape = box 0.1, 0, 0.11, 0.1\n", top, bath);
     must_read(text, NULL);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "[wall d] is 0.01 m thick"), warnings);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "[wall c]"), warnings);

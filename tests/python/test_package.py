@@ -160,16 +160,17 @@ def test_runs():
     with contextlib.redirect_stderr(said):
         run = case.run("runs/a", threads=1)
     assert run.status == "finished" and run.failure() is None and not run.is_running
-    assert "%" in said.getvalue() and "t 0.02 s" in said.getvalue(), said.getvalue()
+    assert "%" in said.getvalue() and "t 0.02" in said.getvalue(), said.getvalue()
     raises(sphfsi.InputError, "runs/a", case.run, "runs/a")
     probes, ledger = run.probes(), run.ledger()
     assert probes["time_s"][0] == 0 and len(probes["time_s"]) > 100 and \
         "kinetic_J_per_m" in dir_of(ledger)
     assert dir_of(run.probes("M1")) == ["time_s", "M1_dx_m", "M1_dy_m"]
     raises(sphfsi.BadFile, "no column of a probe M7", run.probes, "M7")
-    assert np.allclose(run.times, [0, 0.005, 0.01, 0.015, 0.02])
+    late = np.array(run.times) - [0, 0.005, 0.01, 0.015, 0.02]
+    assert np.all((late >= 0) & (late < run.summary["time_step"]["largest"])), run.times
     shot = run.snapshot(0.011)
-    assert shot.time == 0.01 and len(shot.fluid) == 100 and len(shot.solid) == 45
+    assert shot.time == run.times[2] and len(shot.fluid) == 100 and len(shot.solid) == 45
     assert shot.fluid["velocity"].shape == (100, 3) and shot.solid.x.min() > 0.09
     if PROGRAM.is_file():
         subprocess.run([PROGRAM, TINY, "--set", "output.snapshot_interval=5 ms", "--out", "runs/b",

@@ -75,7 +75,7 @@ dp = 1 cm
 end_time = 0.5
 gravity = 9.81, 0
 [numerics]
-fixed_step = 10 ms
+fixed_step = 0.5 ms
 $water
 sound_speed = 30
 $tank

@@ -28,10 +28,11 @@ def check_summary(top):
     s = summary(top / "run", "--set", "title=" + title)
     assert s["title"] == s["parameters"]["title"] == title, s["title"]
     assert s["exit_reason"] == "finished" and s["message"] == ""
-    assert s["time"] == s["end_time"] == s["parameters"]["end_time"] == 0.02
+    assert s["end_time"] == s["parameters"]["end_time"] == 0.02
+    assert 0.02 <= s["time"] < 0.0205, s["time"]
     assert s["particles"]["fluid"] == 100 and s["particles"]["solid"] == 45
     assert s["particles"]["wall"] > 0 and s["fluid_left_domain"] == 0
-    assert s["steps"] >= 200 and s["solid_substeps"] >= s["steps"]
+    assert s["steps"] >= 70 and s["solid_substeps"] >= s["steps"]
     assert s["wall_seconds"] > 0 and s["particle_steps_per_second"] > 0
     assert set(s["phase_seconds"]) == {"sort", "packed", "wall", "fluid", "solid", "contact",
                                        "update",
@@ -43,7 +44,7 @@ def check_summary(top):
     assert len(s["state_hash"]) == 16 and int(s["state_hash"], 16) >= 0
     assert s["extremes"]["density_lowest"] <= s["extremes"]["density_highest"]
     assert abs(s["drift"]["mass"]) < 1e-9
-    assert s["ledger_end"]["time"] == 0.02 and s["ledger_start"]["time"] == 0
+    assert s["ledger_end"]["time"] == s["time"] and s["ledger_start"]["time"] == 0
     gate = s["parameters"]["solid"]["gate"]
     assert gate["young"] == 1e6 and gate["law"] == "paper"
     assert gate["shape"] == [{"kind": "box", "points": [[0.1, 0], [0.13, 0.15]]}]
@@ -54,10 +55,10 @@ def check_summary(top):
 def check_restart(top):
     """Numbers of the whole run stay those of the whole run."""
     out = top / "cut"
-    summary(out, "--until", "0.01")
+    cut = summary(out, "--until", "0.01")
     s = summary(out, "--restart")
     whole = summary(top / "whole")
-    assert s["restarted_from"].endswith(".ckpt") and s["start_time"] == 0.01
+    assert s["restarted_from"].endswith(".ckpt") and s["start_time"] == cut["time"] >= 0.01
     for key in ("state_hash", "steps", "solid_substeps", "ledger_start", "extremes", "drift",
                 "counters"):
         assert s[key] == whole[key], key

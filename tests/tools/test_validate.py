@@ -155,7 +155,7 @@ def test_runner(folder):
     """Finished runs of the same case stay; another setting runs anew; an interrupted one goes
     on."""
     job = Job(folder / "tiny", ROOT / "cases" / "still_water.cfg",
-              ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
+              ["dp=2 cm", "wall=8 cm", "end_time=20 ms"])
     runner = validation_runs.Runner(validation_kept.Kept(folder / "kept"))
     validation_runs.say = lambda text: None
     runner.run(job)
