@@ -225,9 +225,9 @@ static void say_cost(const struct simulation *sim, const struct unit_costs *c,
                      const struct sphfsi_options *o)
 {
     const struct forecast f = forecast_run(c, sim);
-    const int threads = thread_count();
-    session_say(o, "cost with %d thread%s, measured in 0.3 s of trial steps", threads,
-                threads == 1 ? "" : "s");
+    const int threads = sim->team.most;
+    session_say(o, "cost with %s%d thread%s, measured in 0.3 s of trial steps",
+                threads > 1 ? "up to " : "", threads, threads == 1 ? "" : "s");
     for (int k = 0; k < PHASE_COUNT; k++)
         if (k != PHASE_output && c->phase_fraction[k] > 0)
             session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
@@ -358,7 +358,7 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
 {
     const struct forecast f = forecast_run(c, sim);
     json_open(j, "cost", '{');
-    json_integer(j, "threads", thread_count());
+    json_integer(j, "threads", sim->team.most);
     json_number(j, "time_step", f.dt);
     json_number(j, "steps", f.steps);
     json_number(j, "solid_substeps", f.substeps);

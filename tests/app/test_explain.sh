@@ -48,7 +48,7 @@ done
 [ "$(grep -c '% of a step' "$dir/said")" -ge 3 ] || fail "no phases"
 grep -q ' 0.0 % of a step  deformation' "$dir/said" && fail "phases that take nothing are listed"
 explain --threads 2
-says 'cost with 2 threads'
+says 'cost with up to 2 threads'
 explain --until 1e6
 says 'disk at most [0-9.]* GB'
 
