@@ -339,7 +339,7 @@ static void look_along(struct gaps *g, int region, int line, const double from[2
 {
     const struct check *const check = g->check;
     const struct scene_lattice *const l = &check->shapes.regions[region].lattice;
-    const double dp = check->scene->top.dp, hair = 1e-3 * dp;
+    const double dp = check->scene->top.dp, aside = 1e-3 * dp;
     double a[2], b[2];
     place_of_lattice(l, from[0], from[1], a);
     place_of_lattice(l, to[0], to[1], b);
@@ -350,11 +350,11 @@ static void look_along(struct gaps *g, int region, int line, const double from[2
             const double s = ((double)k + 0.5) / (double)parts,
                          way[2] = {side * (a[1] - b[1]) / length, side * (b[0] - a[0]) / length},
                          at[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])},
-                         front[2] = {at[0] + hair * way[0], at[1] + hair * way[1]},
+                         front[2] = {at[0] + aside * way[0], at[1] + aside * way[1]},
                          far[2] = {at[0] + 1.3 * dp * way[0], at[1] + 1.3 * dp * way[1]};
             /* Behind a gap there are particles further from the face than its own. */
             if (point_at(check, far, 1.5 * dp, POINT_BODY) < 0 ||
-                drawn_at(check, at[0] - hair * way[0], at[1] - hair * way[1]) != region ||
+                drawn_at(check, at[0] - aside * way[0], at[1] - aside * way[1]) != region ||
                 drawn_at(check, front[0], front[1]) >= 0)
                 continue;
             warn_of_gap(g, region, line, front, way);

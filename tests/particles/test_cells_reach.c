@@ -155,7 +155,7 @@ static const char falling[] =
     "[solid beam]\nshape = box -0.05, 0.1, 0.05, 0.2\ndensity = 1500\nyoung = 1 MPa\n"
     "poisson = 0.35\nvelocity = 0, -3\n";
 
-/* The room that is left after each step against what measuring finds; and the same scene with a
+/* The skin that is left after each step against what measuring finds; and the same scene with a
  * measuring at each step, which must sort when this one does and end with its bits. */
 static void check_room(const char *scene, const char *integrator, const char *more, int steps,
                        int least_unmeasured)
@@ -171,14 +171,14 @@ static void check_room(const char *scene, const char *integrator, const char *mo
             if (measured) sim->skin_left = 0;
             rig_steps(&rig, 1, 10);
             if (measured) continue;
-            const double room = sim->skin_left;
+            const double left = sim->skin_left;
             for (int kind = 0; kind < KIND_COUNT; kind++)
                 cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
             const double found = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h);
-            assert_at_most(found + 1e-12, room, "room");
+            assert_at_most(found + 1e-12, left, "skin left");
             const bool looks = step % 20 == 0;
             TEST_ASSERT_FALSE(looks && pair_unseen());
-            unmeasured += room < found - 1e-12;
+            unmeasured += left < found - 1e-12;
         }
         if (!measured) assert_at_most(unmeasured, least_unmeasured, "steps without measuring");
         hash[measured] = simulation_hash(sim);
@@ -189,9 +189,9 @@ static void check_room(const char *scene, const char *integrator, const char *mo
     TEST_ASSERT_TRUE(sorts[0] > 1);
 }
 
-/* Cells are not measured while no particle can have gone far enough: what is taken off their room
+/* Cells are not measured while no particle can have gone far enough: what is taken off their skin
  * is never less than what is found by measuring them. (With symplectic they always are.) */
-static void test_room_is_never_overstated(void)
+static void test_skin_left_is_never_overstated(void)
 {
     check_room(tank, "integrator=leapfrog", "dp=2cm", 600, 100);
     check_room(tank, "integrator=leapfrog", "w.shifting=2", 200, 20);
@@ -272,7 +272,7 @@ int main(void)
     RUN_TEST(test_no_pair_is_unseen);
     RUN_TEST(test_common_motion_is_free);
     RUN_TEST(test_leap_is_noticed);
-    RUN_TEST(test_room_is_never_overstated);
+    RUN_TEST(test_skin_left_is_never_overstated);
     RUN_TEST(test_no_pair_is_unseen_at_the_midpoint);
     return UNITY_END();
 }

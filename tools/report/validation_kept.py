@@ -135,7 +135,7 @@ class Kept:
 
     def __init__(self, folder):
         self.folder, self.found = Path(folder), {}  # name: the run, or why there is none
-        self.room = tempfile.TemporaryDirectory(prefix="sphfsi-kept-")
+        self.scratch = tempfile.TemporaryDirectory(prefix="sphfsi-kept-")
 
     def path(self, job):
         return self.folder / f"{job.name}.zip"
@@ -155,7 +155,7 @@ class Kept:
         return self.found[job.name]
 
     def unpack(self, job):
-        path, place = self.path(job), Path(self.room.name) / job.name
+        path, place = self.path(job), Path(self.scratch.name) / job.name
         if not path.is_file():
             raise NotRun
         try:
