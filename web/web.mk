@@ -2,7 +2,7 @@
 # What steps a simulation, without the files of runs: no HDF5, one thread. `fused` needs relaxed SIMD;
 # `exact` computes multiply-add in software. Both give the native program's bits.
 WEB_SRC := web/exports.c $(filter-out src/base/run_dir.c,$(wildcard $(patsubst %,src/%/*.c,base expr \
-             particles case geometry fluid solid coupling time check))) src/output/probes.c src/output/fluid_sample.c \
+             particles case geometry fluid solid implicit coupling time check))) src/output/probes.c src/output/fluid_sample.c \
              src/output/point_data.c \
              $(patsubst %,src/app/%.c,api call session due)
 WEB_FLAGS := -target wasm32-wasi -msimd128 -D_WASI_EMULATED_SIGNAL $(filter-out -pthread -fPIC,$(COMMON)) \

@@ -6,7 +6,7 @@
 
 #include "coupling/impulse.h"
 #include "coupling/motion.h"
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest)
 {
@@ -103,8 +103,8 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
         particles->vx0[i] = particles->vx[i];
         particles->vy0[i] = particles->vy[i];
     }
-    if (impedance) impulse_begin(coupling, solid_steps_implicitly(coupling->solid) ? 0 : dt / n);
-    solid_take_steps(coupling->solid, particles, dt / n, n, coupling->centred);
+    if (impedance) impulse_begin(coupling, implicit_is_next(coupling->solid) ? 0 : dt / n);
+    implicit_advance(coupling->solid, particles, dt / n, n, coupling->centred);
     if (impedance) impulse_end(coupling);
     const double moved = solid_set_positions(particles);
     motion_after_substeps(coupling, dt);

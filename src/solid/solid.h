@@ -32,13 +32,6 @@ void solid_gradient(const struct solid *solid, struct particles *particles);
 /* Both for the present displacements and velocities of p, with actions from outside at a time. */
 void solid_forces_within(const struct solid *solid, struct particles *particles, double time);
 
-/* Whether the next step is an implicit one: the springs of contact are not in its matrix, so while
- * surfaces are near each other there are explicit sub-steps. */
-SPHFSI_INLINE bool solid_steps_implicitly(const struct solid *solid)
-{
-    return solid->implicit && !solid->contact;
-}
-
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
  * other results only the packed fields are updated. displaced: not only velocities have changed
  * since the last call. */

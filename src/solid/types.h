@@ -139,7 +139,7 @@ struct solid {
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
     solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
-    struct implicit *implicit;   /* NULL: explicit steps only */
+    struct implicit *implicit;   /* data of implicit/; NULL: explicit steps only */
     solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/penetration.h"
 #include "time/timestep.h"
 #include "time/energy.h"

@@ -6,7 +6,7 @@
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/advance.h"
 #include "time/evaluation.h"
 #include "time/sorting.h"

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/advance.h"
 #include "time/guards.h"
 #include "time/initial.h"

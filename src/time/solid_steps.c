@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/evaluation.h"
 #include "time/guards.h"
 #include "time/timestep.h"
@@ -33,7 +33,7 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     if (by->solid_step && !sim->solid.implicit) {
         for (int k = 0; k < n; k++) by->solid_step(sim, dt);
     } else {
-        solid_take_steps(&sim->solid, &sim->kind[KIND_SOLID], dt, n, sim->coupling.centred);
+        implicit_advance(&sim->solid, &sim->kind[KIND_SOLID], dt, n, sim->coupling.centred);
         sim->state.solid_evaluations += n;
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "coupling/bounds.h"
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/timestep.h"
 
 #include <math.h>
@@ -210,7 +210,7 @@ static bool fewer_is_safe(const struct simulation *sim, double fewer)
 int timestep_substeps(struct simulation *sim, double dt)
 {
     struct state *const st = &sim->state;
-    if (!(sim->effects & FX_MULTIRATE) || solid_steps_implicitly(&sim->solid)) return 1;
+    if (!(sim->effects & FX_MULTIRATE) || implicit_is_next(&sim->solid)) return 1;
     /* Enough for the longest step so far: shorter steps do not change the number. */
     const double most = ceil(max2(st->dt_max, dt) / sim->dt_solid * (1 - 1e-9));
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;

@@ -18,7 +18,8 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-LAYERS = "base expr particles case geometry fluid solid coupling time output check app".split()
+LAYERS = ("base expr particles case geometry fluid solid implicit coupling time output check "
+          "app").split()
 LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg "
            "stdbool stddef stdint stdio stdlib string sys/auxv time unistd".split())
 INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')
@@ -174,7 +175,7 @@ def draw(root, path):
         axes.text(0.1, k, folder, va="center", fontsize=11, weight="bold")
         axes.text(1.9, k, f"{len(held)} files, {lines:,} lines", va="center", ha="right",
                   fontsize=8)
-    colours = plt.get_cmap("tab10")
+    colours = plt.get_cmap("tab20")
     for (above, below), n in sorted(count.items()):
         right = above - below > 1
         start, end = (2, above - 0.05), (2, below + 0.05)

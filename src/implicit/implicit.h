@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of the solid: one that conserves energy and momentum takes the place of its
  * sub-steps (T-90). */
-#ifndef SPHFSI_SOLID_IMPLICIT_H
-#define SPHFSI_SOLID_IMPLICIT_H
+#ifndef SPHFSI_IMPLICIT_IMPLICIT_H
+#define SPHFSI_IMPLICIT_IMPLICIT_H
 
-#include "solid/envelope.h"
+#include "implicit/envelope.h"
 #include "solid/solid.h"
 
 /* Particles on which the gradient at a particle depends, itself included, and its derivatives. */
@@ -34,11 +34,18 @@ struct implicit {
 enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,
                          struct diag *d) SPHFSI_CHECKED;
 
+/* Whether the next step is an implicit one: the springs of contact are not in its matrix, so while
+ * surfaces are near each other there are explicit sub-steps. */
+SPHFSI_INLINE bool implicit_is_next(const struct solid *solid)
+{
+    return solid->implicit && !solid->contact;
+}
+
 /* A step of dt from the present time, which its caller advances. */
 void implicit_step(struct solid *solid, struct particles *particles, double dt);
 
 /* n steps of dt: implicit ones, or those of solid_advance. */
-void solid_take_steps(struct solid *solid, struct particles *particles, double dt, int n,
+void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
                       bool centred);
 
 /* After the state has been read: the matrix that it was found with. */

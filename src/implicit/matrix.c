@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "solid/packed.h"
 
 static const char what[] = "matrix of the solid";

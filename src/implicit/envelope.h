@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Symmetric matrices of which each row is stored from its first entry to the diagonal, and their
  * factors L D L^T. The sums have one order on every machine. */
-#ifndef SPHFSI_SOLID_ENVELOPE_H
-#define SPHFSI_SOLID_ENVELOPE_H
+#ifndef SPHFSI_IMPLICIT_ENVELOPE_H
+#define SPHFSI_IMPLICIT_ENVELOPE_H
 
 #include "base/base.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "solid/envelope.h"
+#include "implicit/envelope.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * step, solved by Newton's method with a factored matrix that is kept while it serves. */
 #include "base/real_double.h"
 
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 
 #include <float.h>
 #include <math.h>
@@ -542,10 +542,10 @@ void implicit_step(struct solid *solid, struct particles *p, double dt)
     solid->within_step = NULL;
 }
 
-void solid_take_steps(struct solid *solid, struct particles *particles, double dt, int n,
+void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
                       bool centred)
 {
-    if (!solid_steps_implicitly(solid)) {
+    if (!implicit_is_next(solid)) {
         solid_advance(solid, particles, dt, n, centred);
         return;
     }

@@ -2,7 +2,7 @@
  * Implicit steps of solids (T-90 to T-93): the factors and the tangent, what a step conserves, the
  * period, and the work of loads and clamps. */
 #include "rig.h"
-#include "solid/implicit.h"
+#include "implicit/implicit.h"
 #include "time/energy.h"
 #include "unity.h"
 
@@ -294,12 +294,12 @@ static void test_contact_is_explicit(void)
                    "ball.artificial_viscosity=0");
     bool touched = false;
     const double before = energy();
-    TEST_ASSERT_TRUE(solid_steps_implicitly(&rig.sim.solid));
+    TEST_ASSERT_TRUE(implicit_is_next(&rig.sim.solid));
     for (int k = 0; k < 20000 && rig.sim.state.time < 0.2; k++) {
         rig_steps(&rig, 1, 0.2);
-        touched |= !solid_steps_implicitly(&rig.sim.solid);
+        touched |= !implicit_is_next(&rig.sim.solid);
     }
-    TEST_ASSERT_TRUE(touched && solid_steps_implicitly(&rig.sim.solid));
+    TEST_ASSERT_TRUE(touched && implicit_is_next(&rig.sim.solid));
     double up = 0;
     for (int64_t i = 0; i < p->n; i++) up += p->vy[i] / (double)p->n;
     TEST_ASSERT_TRUE(up > 0.5);
