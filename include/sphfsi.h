@@ -270,6 +270,10 @@ SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
  * Markdown. The other options may be zero. */
 SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 
+/** Prints them as one JSON text through the message callback: type, unit, range, default and
+ * meaning of each key. */
+SPHFSI_API enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options);
+
 /** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has
  * this name. sphfsi_template_name: the k-th name; NULL behind the last. */
 SPHFSI_API const char *sphfsi_template(const char *name);

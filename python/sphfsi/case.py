@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Callable, Mapping, TextIO
 
 from .budget import find_dp
+from .keys import check_changes
 from .library import Call, check, ffi, lib, log, text
 from .refine import Refinement
 from .run import Run
@@ -116,6 +117,10 @@ class Case:
         return Case(self.path, text=self.text, **merged)
 
     def _call(self, **options: Any) -> Call:
+        if self.text is not None:
+            check_changes(self.changes, self.text)
+        elif self.path is not None and self.path.is_file():
+            check_changes(self.changes, self.path.read_text(encoding="utf-8", errors="replace"))
         return Call(case_path=self.path, case_text=self.text, sets=_sets(self.changes), **options)
 
     def effective(self, *, until: float = 0.0) -> str:

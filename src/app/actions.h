@@ -62,6 +62,9 @@ enum err inspect_file(const char *path, const struct sphfsi_options *o, struct d
  */
 void manual_keys(const struct sphfsi_options *o);
 
+/* The same as one JSON text (docs/formats.md). */
+enum err manual_keys_json(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
+
 /* Writes the example of a key to `text`: from src/app/data/key_examples.cfg, or its default; "". */
 struct param;
 void manual_example(const struct param *param, char *text, size_t size);

@@ -138,6 +138,14 @@ enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
     return call_end(&c, e);
 }
 
+enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options)
+{
+    struct call c;
+    enum err e = call_begin(&c, "keys", options);
+    if (!e) e = manual_keys_json(&c.options, &c.diag);
+    return call_end(&c, e);
+}
+
 const char *sphfsi_template_name(int k) { return k < 0 ? NULL : manual_template_name(k); }
 
 const char *sphfsi_template(const char *name)

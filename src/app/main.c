@@ -30,14 +30,14 @@ static const char usage[] =
     "  --cite            print the sources of the methods that the case uses\n"
     "  --inspect FILE    say what a checkpoint holds, or the newest of a run's folder\n"
     "  --new NAME        print a commented case to start from; without a name, list them\n"
-    "  --keys            print all sections and keys of a case file\n"
+    "  --keys [--json]   print all sections and keys of a case file\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
     "             129, 130 or 143 interrupted with a checkpoint\n"
     "SIGUSR1: write a checkpoint and continue\n";
 
 /* What the program does: RUN unless an option says otherwise. */
-enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, VERSION, HELP };
+enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, KEYS_JSON, VERSION, HELP };
 
 /* Whether an option takes an operand. */
 enum takes { NOTHING, OPERAND, MAYBE };
@@ -54,8 +54,8 @@ static const struct option {
     {"--explain", NOTHING, EXPLAIN}, {"--effective", NOTHING, EFFECTIVE},
     {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
     {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
-    {"--version", NOTHING, VERSION}, {"--help", NOTHING, HELP},
-    {"-h", NOTHING, HELP},
+    {"--json", NOTHING, KEYS_JSON},  {"--version", NOTHING, VERSION},
+    {"--help", NOTHING, HELP},       {"-h", NOTHING, HELP},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
@@ -193,6 +193,8 @@ static int apply(struct command *c, const struct option *option, const char *ope
     const char *const name = option->name;
     const char *const word = operand ? operand : ""; /* only --restart may go without */
     if (option->mode != RUN) {
+        if (option->mode == KEYS_JSON && c->mode != KEYS)
+            return complain("%s follows --keys%s", name, "");
         c->mode = option->mode;
         c->operand = operand;
     } else if (strcmp(name, "--out") == 0) {
@@ -323,7 +325,8 @@ static enum sphfsi_status carry_out(struct command *c)
     case CITE: return sphfsi_cite(o);
     case INSPECT: return sphfsi_inspect(c->operand, o);
     case NEW: return print_template(c);
-    case KEYS: sphfsi_keys(o); break;
+    case KEYS: return sphfsi_keys(o);
+    case KEYS_JSON: return sphfsi_keys_json(o);
     case VERSION: puts(sphfsi_version()); break;
     case HELP: fputs(usage, stdout); break;
     }

@@ -5,10 +5,12 @@
 #include "app/embedded.h"
 #include "case/effects.h"
 #include "case/params.h"
+#include "output/json.h"
 #include "output/probes.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const section_meanings[][2] = {
@@ -200,15 +202,21 @@ static void say_key(const struct param *param, const struct sphfsi_options *o)
                 example[0] ? "`" : "");
 }
 
+static const char *section_meaning(enum section_id id)
+{
+    for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
+        if (strcmp(section_meanings[k][0], section_table[id].word) == 0)
+            return section_meanings[k][1];
+    return NULL;
+}
+
 static void say_section(enum section_id id, const struct sphfsi_options *o)
 {
     const struct section_info *const info = &section_table[id];
     char title[SCENE_NAME];
     snprintf(title, sizeof title, "### [%s%s]", info->word, info->named ? " NAME" : "");
     say_paragraph(o, id == SECTION_top ? "### Top of the file" : title);
-    for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
-        if (strcmp(section_meanings[k][0], info->word) == 0)
-            say_paragraph(o, section_meanings[k][1]);
+    if (section_meaning(id)) say_paragraph(o, section_meaning(id));
     say_paragraph(o, "| key | type | unit | default | range | meaning | example |");
     session_say(o, "|---|---|---|---|---|---|---|");
     for (int k = 0; k < PARAM_COUNT; k++)
@@ -261,6 +269,78 @@ void manual_keys(const struct sphfsi_options *o)
     for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
     say_quantities(o);
     list_effects(o);
+}
+
+/* --- the keys as JSON --- */
+
+static void write_range(struct json *j, const struct param *param)
+{
+    if (param->type == PARAM_CHOICE) {
+        char name[SCENE_NAME];
+        json_open(j, "choices", '[');
+        for (int k = 0; param_choice_name(param, k, name); k++) json_text(j, NULL, name);
+        json_close(j, ']');
+    } else if (param->type == PARAM_REAL || param->type == PARAM_INTEGER) {
+        json_number(j, param->low.open ? "exclusiveMinimum" : "minimum", param->low.value);
+        json_number(j, param->high.open ? "exclusiveMaximum" : "maximum", param->high.value);
+    }
+}
+
+/* The default as a text of a case, and what the default scheme sets instead by kind of scene. */
+static void write_default(struct json *j, const struct param *param)
+{
+    static const char *const names[] = {"default with solids", "default with fluid",
+                                        "default with fluid and solids"};
+    char text[SCENE_TEXT];
+    double value;
+    default_of(param, text, sizeof text);
+    if (param->number.needed)
+        json_integer(j, "needed", 1);
+    else if (text[0])
+        json_text(j, "default", text);
+    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++)
+        if (scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, param->section, param->key, &value)) {
+            value_of(param, value, text, sizeof text);
+            json_text(j, names[k], text);
+        }
+}
+
+static void write_key(struct json *j, const struct param *param)
+{
+    char type[64];
+    param_type_text(param, type, sizeof type);
+    json_open(j, param->key, '{');
+    json_text(j, "type", type);
+    if (!pure(param)) json_text(j, "unit", param->unit);
+    write_range(j, param);
+    write_default(j, param);
+    json_text(j, "meaning", param->meaning);
+    json_close(j, '}');
+}
+
+enum err manual_keys_json(const struct sphfsi_options *o, struct diag *d)
+{
+    char *text = NULL;
+    size_t size;
+    struct json j = {.file = open_memstream(&text, &size)};
+    if (!j.file) return diag_fail(d, ERR_MEMORY, "keys: no memory for their text");
+    json_open(&j, NULL, '{');
+    for (int id = 0; id < SECTION_COUNT; id++) {
+        json_open(&j, section_table[id].word, '{');
+        if (section_meaning(id)) json_text(&j, "meaning", section_meaning(id));
+        json_integer(&j, "named", section_table[id].named);
+        json_open(&j, "keys", '{');
+        for (int k = 0; k < PARAM_COUNT; k++)
+            if (param_table[k].section == (enum section_id)id) write_key(&j, &param_table[k]);
+        json_close(&j, '}');
+        json_close(&j, '}');
+    }
+    json_close(&j, '}');
+    enum err e = ERR_OK;
+    if (fclose(j.file) != 0) e = diag_fail(d, ERR_MEMORY, "keys: no memory for their text");
+    if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
+    free(text);
+    return e;
 }
 
 /* --- templates of cases: the files of cases/templates --- */

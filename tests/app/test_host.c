@@ -403,6 +403,7 @@ static void null_is_refused(void)
     REFUSED(sphfsi_preview(NULL));
     REFUSED(sphfsi_cite(NULL));
     REFUSED(sphfsi_keys(NULL));
+    REFUSED(sphfsi_keys_json(NULL));
     REFUSED(sphfsi_inspect(NULL, &o));
     REFUSED(sphfsi_inspect("/dev/null", NULL));
     TEST_ASSERT_NULL(none);

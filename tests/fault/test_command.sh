@@ -54,6 +54,7 @@ sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg
 [ ! -e runs/wrong ] || fail "a wrong case leaves a folder"
 refuses 1 "nearest one is --preview" --previw gate.cfg
 refuses 1 "takes no value" --keys=all
+refuses 1 "json follows --keys" --json
 
 "$sphfsi" cantilever.cfg --quiet --until 1e-3 --threads 1 >out 2>&1 || fail "a short run"
 [ ! -s out ] || fail "--quiet says: $(cat out)"
@@ -62,6 +63,7 @@ refuses 1 "takes no value" --keys=all
 grep -q $'\033' out err && fail "colours or cursor movements in a file"
 
 "$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
+"$sphfsi" --keys --json | grep -q '"exclusiveMaximum": 0.5' || fail "--keys --json gives no range"
 "$sphfsi" --keys >keys || fail "--keys"
 grep -qF '| `end_time` | number | s | **needed** |' keys || fail "--keys gives no needed key"
 for cell in '`0.3`; `scheme = paper`: `0`' '`neo_hookean`; `scheme = paper`: `paper`' \
@@ -80,7 +82,7 @@ grep -q "fields.vtkhdf: 21 snapshots of" out || fail "--explain: $(grep vtkhdf o
 # A report that cannot be written is a failure.
 if [ -c /dev/full ]; then
     for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" \
-        "--explain cantilever.cfg" "--effective cantilever.cfg"; do
+        "--explain cantilever.cfg" "--effective cantilever.cfg" "--keys --json"; do
         # shellcheck disable=SC2086
         "$sphfsi" $report >/dev/full 2>err
         [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] || fail "$report to a full device: $(cat err)"

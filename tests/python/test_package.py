@@ -232,6 +232,18 @@ def test_interrupt():
 
 def test_errors():
     raises(sphfsi.InputError, "unknown key `yung`", sphfsi.Case(TINY, gate={"yung": 1}).simulation)
+    for words, changes in {
+        "gate: unknown key `pressure` of [solid]; it has like, shape,": {"gate": {"pressure": 1}},
+        "of [output]; did you mean `probe_interval`?": {"output": {"probe_intervall": 1}},
+        "solid gate: young = -1.0: give a number above 0 Pa": {"solid gate": {"young": -1.0}},
+        "gate: poisson = 0.5: give a number below 0.5: Poisson": {"gate": {"poisson": 0.5}},
+        "gate: law = 3: give one of paper, svk, neo_hookean: stress law": {"gate": {"law": 3}},
+        "top: gravity = (0, 1, 2): give two numbers": {"gravity": (0, 1, 2)},
+        "top: dp = None: give a number": {"dp": None},
+        "output: snapshot_compression = 1.5: give a whole number":
+            {"output": {"snapshot_compression": 1.5}},
+    }.items():
+        raises(sphfsi.InputError, words, sphfsi.Case(TINY, **changes).effective)
     raises(sphfsi.InputError, "nowhere.cfg", sphfsi.Case("nowhere.cfg").effective)
     raises(sphfsi.InputError, "case_path or case_text", sphfsi.Case().effective)
     raises(OSError, "", sphfsi.Case(TINY).preview, "/nowhere/x.svg")
