@@ -2,95 +2,121 @@
 #include "solid/contact.h"
 
 #include "base/elementary.h"
-#include "solid/contact_friction.h"
-#include "solid/contact_law.h"
+#include "solid/contact_pair.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- potential of a pair --- */
+
+/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is the least reach R; r = R less the
+ * overlap. */
+static double elastic_energy(double stiffness, double min_reach, double r)
+{
+    if (!(r < min_reach)) return 0;
+    const double s = r / min_reach;
+    return stiffness * square(min_reach) * (s - 1 - elementary_log(s));
+}
+
+/* Its derivative, k R (R/r - 1), and its second derivative, k (R/r)^2. */
+static double elastic_force(double stiffness, double min_reach, double r)
+{
+    return stiffness * min_reach * (min_reach / r - 1);
+}
+static double elastic_stiffness(double stiffness, double min_reach, double r)
+{
+    return stiffness * square(min_reach / min2(r, min_reach));
+}
+
+/* Velocity of a point relative to a place on an edge. */
+static void relative_velocity(const struct contact_foot *foot, double v[2])
+{
+    for (int c = 0; c < 2; c++)
+        v[c] = foot->point->v[c] - ((1 - foot->at) * foot->a->v[c] + foot->at * foot->b->v[c]);
+}
 
 /* --- forces of a pair --- */
 
 /* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach
  * `reach`, with the relative velocity v. The dashpot may reduce the repulsion but not turn it
  * into attraction. */
-static void point_force(const struct contact_constants *q, const double offset[2], double reach,
-                        const double v[2], double f[2])
+static void point_force(const struct contact_constants *q, const struct contact_foot *foot,
+                        const double offset[2], double reach, const double v[2], double f[2])
 {
     f[0] = f[1] = 0;
     const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
-                 left = r - (reach - q->min_reach);
-    if (!(left < q->min_reach) || left <= 0) return;
+                 left = r - (reach - foot->min_reach);
+    if (!(left < foot->min_reach) || left <= 0) return;
     const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
-    const double normal = max2(0, elastic_force(q, left) - q->damping * along);
+    const double normal =
+        max2(0, elastic_force(q->stiffness, foot->min_reach, left) - q->damping * along);
     f[0] = normal * n[0];
     f[1] = normal * n[1];
 }
 
 /* The same for an end of the edge. */
-static void end_force(const struct contact *contact, const struct contact_law *law,
-                      const struct contact_constants *q, int32_t point, int32_t end, double f[2])
+static void end_force(const struct contact_constants *q, const struct contact_foot *foot,
+                      const struct contact_point *end, double reach, double f[2])
 {
-    const double offset[2] = {contact->x[point] - contact->x[end],
-                              contact->y[point] - contact->y[end]};
-    const double v[2] = {contact->vx[point] - contact->vx[end],
-                         contact->vy[point] - contact->vy[end]};
-    point_force(q, offset, contact_reach(contact, law, point, end), v, f);
+    const struct contact_point *const p = foot->point;
+    const double offset[2] = {p->x[0] - end->x[0], p->x[1] - end->x[1]};
+    const double v[2] = {p->v[0] - end->v[0], p->v[1] - end->v[1]};
+    point_force(q, foot, offset, reach, v, f);
+}
+
+/* Whether the point of a pair is within reach of the edge. */
+static bool touches(const struct contact *contact, const struct contact_pair *pair,
+                    struct contact_foot *foot, struct contact_constants *q)
+{
+    if (!contact_foot(contact, pair->point, pair->edge, foot) || !(foot->distance < foot->reach))
+        return false;
+    *q = contact_constants_of(contact, foot->law, foot->point, foot->a->body);
+    return true;
 }
 
 /* T-61a: an edge acts with its full force, less the fraction that its end points exert, which
  * the edges that meet there divide among them. The place on the edge is that of the largest
  * overlap (T-61b), so its change contributes nothing to the derivative of the potential. */
-static bool pair_force(const struct contact *contact, int32_t point, int32_t edge,
-                       struct contact_force *out)
+static void pair_force(const struct contact *contact, struct contact_pair *pair)
 {
-    const struct contact_law law = contact_pair_law(contact, point, edge);
-    if (!law.on) return false;
-    const struct contact_foot foot = contact_foot(contact, &law, point, edge);
-    if (!(foot.distance < foot.reach)) return false;
-    const struct contact_constants q =
-        contact_constants_of(contact, &law, point, edge, foot.min_reach);
-    const int32_t a = contact->edge[edge].a, b = contact->edge[edge].b;
-    const double s = foot.at, offset[2] = {foot.x, foot.y};
+    struct contact_foot foot;
+    struct contact_constants q;
     double v[2], f[2], fa[2], fb[2];
-    relative_velocity(contact, point, edge, s, v);
-    point_force(&q, offset, foot.reach, v, f);
-    out->distance = foot.distance;
-    end_force(contact, &law, &q, point, a, fa);
-    end_force(contact, &law, &q, point, b, fb);
-    for (int k = 0; k < 2; k++) {
-        const double ga = contact->share[a] * fa[k], gb = contact->share[b] * fb[k];
-        out->p[k] = f[k] - ga - gb;
-        out->a[k] = ga - (1 - s) * f[k];
-        out->b[k] = gb - s * f[k];
+    pair->touches = touches(contact, pair, &foot, &q);
+    if (!pair->touches) return;
+    relative_velocity(&foot, v);
+    point_force(&q, &foot, foot.offset, foot.reach, v, f);
+    end_force(&q, &foot, foot.a, foot.reach_a, fa);
+    end_force(&q, &foot, foot.b, foot.reach_b, fb);
+    pair->distance = foot.distance;
+    for (int c = 0; c < 2; c++) {
+        const double ga = foot.a->share * fa[c], gb = foot.b->share * fb[c];
+        pair->force[0][c] = f[c] - ga - gb;
+        pair->force[1][c] = ga - (1 - foot.at) * f[c];
+        pair->force[2][c] = gb - foot.at * f[c];
     }
-    return true;
 }
 
-/* Of T-61 at a place of an edge where the reach is `reach`. */
-static double place_energy(const struct contact *contact, const struct contact_constants *q,
-                           int32_t point, int32_t a, int32_t b, double s, double reach)
+/* Of T-61 at the place s of an edge from a to b where the reach is `reach`. */
+static double place_energy(const struct contact_constants *q, const struct contact_foot *foot,
+                           const struct contact_point *a, const struct contact_point *b, double s,
+                           double reach)
 {
-    const double offset[2] = {contact->x[point] - ((1 - s) * contact->x[a] + s * contact->x[b]),
-                              contact->y[point] - ((1 - s) * contact->y[a] + s * contact->y[b])};
-    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->min_reach);
-    return left < q->min_reach ? elastic_energy(q, left) : 0;
+    const double *const x = foot->point->x;
+    const double r = elementary_hypot(x[0] - ((1 - s) * a->x[0] + s * b->x[0]),
+                                      x[1] - ((1 - s) * a->x[1] + s * b->x[1]));
+    return elastic_energy(q->stiffness, foot->min_reach, r - (reach - foot->min_reach));
 }
 
-static double pair_energy(const struct contact *contact, int32_t point, int32_t edge)
+static double pair_energy(const struct contact *contact, const struct contact_pair *pair)
 {
-    const struct contact_law law = contact_pair_law(contact, point, edge);
-    if (!law.on) return 0;
-    const struct contact_foot foot = contact_foot(contact, &law, point, edge);
-    if (!(foot.distance < foot.reach)) return 0;
-    const struct contact_constants q =
-        contact_constants_of(contact, &law, point, edge, foot.min_reach);
-    const int32_t a = contact->edge[edge].a, b = contact->edge[edge].b;
-    const double at_a = contact_reach(contact, &law, point, a),
-                 at_b = contact_reach(contact, &law, point, b);
-    return place_energy(contact, &q, point, a, b, foot.at, foot.reach) -
-           contact->share[a] * place_energy(contact, &q, point, a, a, 0, at_a) -
-           contact->share[b] * place_energy(contact, &q, point, b, b, 0, at_b);
+    struct contact_foot foot;
+    struct contact_constants q;
+    if (!touches(contact, pair, &foot, &q)) return 0;
+    return place_energy(&q, &foot, foot.a, foot.b, foot.at, foot.reach) -
+           foot.a->share * place_energy(&q, &foot, foot.a, foot.a, 0, foot.reach_a) -
+           foot.b->share * place_energy(&q, &foot, foot.b, foot.b, 0, foot.reach_b);
 }
 
 /* --- forces --- */
@@ -100,17 +126,14 @@ static void list_if_stale(struct contact *contact)
     if (!contact->stale) return;
 #pragma omp barrier
 #pragma omp single
-    contact_list(contact);
+    contact_list(contact, contact->margin);
 }
 
 /* All threads together. */
 static void find_forces(struct contact *contact)
 {
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < contact->n_pairs; k++) {
-        struct contact_force *const f = &contact->force[k];
-        f->touches = pair_force(contact, contact->pair_point[k], contact->pair_edge[k], f);
-    }
+    for (int64_t k = 0; k < contact->n_pairs; k++) pair_force(contact, &contact->pair[k]);
 }
 
 void contact_forces(struct contact *contact, struct particles *particles, double time)
@@ -123,15 +146,15 @@ void contact_forces(struct contact *contact, struct particles *particles, double
     {
         contact->power = 0;
         for (int64_t k = 0; k < contact->n_pairs; k++) {
-            const struct contact_force *const f = &contact->force[k];
-            if (!f->touches) continue;
-            const int32_t point = contact->pair_point[k],
-                          a = contact->edge[contact->pair_edge[k]].a;
+            const struct contact_pair *const pair = &contact->pair[k];
+            if (!pair->touches) continue;
+            const int32_t a = contact->edge[pair->edge].a, b = contact->edge[pair->edge].b;
+            const int other = contact->point[a].body;
             contact->touched |=
-                contact->body[a] < contact->n_solids && contact->body[point] != contact->body[a];
-            contact_add_force(contact, particles, point, f->p);
-            contact_add_force(contact, particles, a, f->a);
-            contact_add_force(contact, particles, contact->edge[contact->pair_edge[k]].b, f->b);
+                other < contact->n_solids && contact->point[pair->point].body != other;
+            contact_add_force(contact, particles, pair->point, pair->force[0]);
+            contact_add_force(contact, particles, a, pair->force[1]);
+            contact_add_force(contact, particles, b, pair->force[2]);
         }
         if (contact->friction) contact_friction_forces(contact, particles);
     }
@@ -152,13 +175,11 @@ double contact_energy(struct contact *contact, const struct particles *particles
     if (contact->known) {
         list_if_stale(contact);
     } else {
-        for (int k = 0; k < CONTACT_WITH; k++) contact->margin[k] = SKIN * contact->spacing;
-        contact_list(contact);
+        contact_list(contact, SKIN * contact->spacing);
         contact->near = contact->n_pairs > 0;
     }
     double sum = 0;
-    for (int64_t k = 0; k < contact->n_pairs; k++)
-        sum += pair_energy(contact, contact->pair_point[k], contact->pair_edge[k]);
+    for (int64_t k = 0; k < contact->n_pairs; k++) sum += pair_energy(contact, &contact->pair[k]);
     if (!contact->friction) return sum;
     find_forces(contact);
     return sum + contact_friction_energy(contact, particles);
@@ -166,92 +187,40 @@ double contact_energy(struct contact *contact, const struct particles *particles
 
 /* --- before a step --- */
 
-/* Mean displacement since the list was made, and mean velocity, of a group's points. */
-struct contact_mean {
-    double n, x, y, vx, vy;
-};
-
-static void find_means(struct contact *contact)
-{
-    memset(contact->mean, 0, (size_t)contact->n_groups * sizeof *contact->mean);
-    for (int64_t k = 0; k < contact->n_solid_points; k++) {
-        struct contact_mean *const m = &contact->mean[contact->group[k]];
-        m->n++;
-        m->x += contact->x[k] - contact->at_x[k];
-        m->y += contact->y[k] - contact->at_y[k];
-        m->vx += contact->vx[k];
-        m->vy += contact->vy[k];
-    }
-    for (int g = 0; g < contact->n_groups; g++) {
-        struct contact_mean *const m = &contact->mean[g];
-        const double per = m->n > 0 ? 1 / m->n : 0;
-        *m = (struct contact_mean){m->n, per * m->x, per * m->y, per * m->vx, per * m->vy};
-    }
-}
-
-/* Largest distance that two points may have approached since the list was made, and their speed. */
-struct relative_motion {
-    double moved[CONTACT_WITH], speed[CONTACT_WITH];
-};
-
-static struct relative_motion relative_motion_of(const struct contact *contact)
-{
-    double far2[3] = {0}, speed2[3] = {0}; /* relative to their group; of solids; of walls */
-    for (int64_t k = 0; k < contact->n_solid_points; k++) {
-        const struct contact_mean *const m = &contact->mean[contact->group[k]];
-        const double x = contact->x[k] - contact->at_x[k], y = contact->y[k] - contact->at_y[k];
-        far2[0] = max2(far2[0], square(x - m->x) + square(y - m->y));
-        far2[1] = max2(far2[1], x * x + y * y);
-        speed2[0] =
-            max2(speed2[0], square(contact->vx[k] - m->vx) + square(contact->vy[k] - m->vy));
-        speed2[1] = max2(speed2[1], square(contact->vx[k]) + square(contact->vy[k]));
-    }
-    for (int64_t k = contact->n_solid_points; k < contact->n_moving_points; k++) {
-        far2[2] = max2(far2[2], square(contact->x[k] - contact->at_x[k]) +
-                                    square(contact->y[k] - contact->at_y[k]));
-        speed2[2] = max2(speed2[2], square(contact->vx[k]) + square(contact->vy[k]));
-    }
-    return (struct relative_motion){
-        .moved = {2 * sqrt(far2[0]), sqrt(far2[1]) + sqrt(max2(far2[1], far2[2]))},
-        .speed = {2 * sqrt(speed2[0]), sqrt(speed2[1]) + sqrt(max2(speed2[1], speed2[2]))},
-    };
-}
-
 /* Fraction of the distance to a surface that a point may move in a step (T-62b). */
 #define ADVANCE 0.25
 
 static double moves_freely(const struct contact *contact, const struct particles *particles,
-                           int32_t point)
+                           const struct contact_point *point)
 {
-    return point < contact->n_solid_points ? particles->free[contact->index[point]] : 0;
+    return point->body < contact->n_solids ? particles->free[point->index] : 0;
 }
 
 /* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
  * step. */
-static void add_rows(struct contact *contact, const struct particles *particles, int64_t pair,
-                     const struct contact_constants *q, const struct contact_foot *foot,
-                     double left)
+static void add_rows(struct contact *contact, const struct particles *particles,
+                     const struct contact_pair *pair, const struct contact_foot *foot, double left)
 {
-    const int32_t k = contact->pair_point[pair];
-    const struct contact_edge *const e = &contact->edge[contact->pair_edge[pair]];
+    const struct contact_edge *const e = &contact->edge[pair->edge];
+    const struct contact_constants q =
+        contact_constants_of(contact, foot->law, foot->point, foot->a->body);
     const double s = foot->at;
-    const double own = s == 0 ? 1 - contact->share[e->a] : s == 1 ? 1 - contact->share[e->b] : 1;
-    const double both = moves_freely(contact, particles, k) +
-                        (1 - s) * moves_freely(contact, particles, e->a) +
-                        s * moves_freely(contact, particles, e->b);
-    const double stiffness = own * both * elastic_stiffness(q, left);
-    const double damping = own * both * q->damping;
-    contact_add_row(contact, particles, k, 1, stiffness, damping);
+    const double own = s == 0 ? 1 - foot->a->share : s == 1 ? 1 - foot->b->share : 1;
+    const double both = moves_freely(contact, particles, foot->point) +
+                        (1 - s) * moves_freely(contact, particles, foot->a) +
+                        s * moves_freely(contact, particles, foot->b);
+    const double stiffness = own * both * elastic_stiffness(q.stiffness, foot->min_reach, left);
+    const double damping = own * both * q.damping;
+    contact_add_row(contact, particles, pair->point, 1, stiffness, damping);
     contact_add_row(contact, particles, e->a, 1 - s, stiffness, damping);
     contact_add_row(contact, particles, e->b, s, stiffness, damping);
 }
 
-static void find_depth(struct contact *contact, int32_t point, int32_t edge, double overlap)
+static void find_depth(struct contact *contact, const struct contact_foot *foot, double overlap)
 {
-    if (!(overlap > contact->deepest.overlap)) return;
-    contact->deepest =
-        (struct contact_depth){overlap, contact->x[point], contact->y[point], contact->body[point],
-                               contact->body[contact->edge[edge].a]};
+    if (overlap > contact->deepest.overlap)
+        contact->deepest = (struct contact_depth){overlap, foot->point->x[0], foot->point->x[1],
+                                                  foot->point->body, foot->a->body};
 }
 
 /* Distance beyond the reach within which a pair matters in the coming time `span`. */
@@ -260,93 +229,72 @@ static double distance_near(const struct contact *contact, double speed, double 
     return max2((NEAR - 1) * contact->reach, GAIN * contact->spacing) + 1.5 * span * speed;
 }
 
-/* An overlap in parts of that at which the law of a pair that begins apart is infinite. */
-static double overlap_of(const struct contact *contact, const struct contact_law *law,
-                         int32_t point, int32_t edge, double overlap)
+static void watch_pair(struct contact *contact, const struct particles *particles,
+                       struct contact_pair *pair, double longest, double span)
 {
-    const struct contact_edge *const e = &contact->edge[edge];
-    struct contact_law apart = *law;
-    apart.initial = (double)INFINITY;
-    const double gap = law->reach - law->spacing;
-    const double min_reach = min2(contact_reach(contact, &apart, point, e->a),
-                                  contact_reach(contact, &apart, point, e->b));
-    return (overlap - gap) / (min_reach - gap);
-}
-
-static void watch_pair(struct contact *contact, const struct particles *particles, int64_t pair,
-                       double longest, double span)
-{
-    contact->force[pair].near = false;
-    const int32_t point = contact->pair_point[pair], edge = contact->pair_edge[pair];
-    const struct contact_law law = contact_pair_law(contact, point, edge);
-    const struct contact_foot foot = contact_foot(contact, &law, point, edge);
-    const double r = foot.distance, left = contact_clearance(&foot), min_reach = foot.min_reach;
+    struct contact_foot foot;
     double v[2];
-    relative_velocity(contact, point, edge, foot.at, v);
+    pair->near = false;
+    if (!contact_foot(contact, pair->point, pair->edge, &foot)) return;
+    const double r = foot.distance, left = contact_clearance(&foot), min_reach = foot.min_reach;
+    relative_velocity(&foot, v);
     if (r > foot.reach + distance_near(contact, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     contact->near = true;
-    find_depth(contact, point, edge, overlap_of(contact, &law, point, edge, min_reach - left));
-    const double closing = r > 0 ? max2(0, -(v[0] * foot.x + v[1] * foot.y) / r) : 0;
+    /* The overlap in parts of that at which the law of a pair that begins apart is infinite. */
+    const double gap = foot.law->reach - foot.law->spacing;
+    find_depth(contact, &foot, (min_reach - left - gap) / (contact_reach_apart(&foot) - gap));
+    const double closing =
+        r > 0 ? max2(0, -(v[0] * foot.offset[0] + v[1] * foot.offset[1]) / r) : 0;
     if (closing > 0)
         contact->approach =
             min2(contact->approach,
                  (max2(0, left - min_reach) + ADVANCE * min2(left, min_reach)) / closing);
     const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, min_reach));
     if (then > NEAR * min_reach) return;
-    contact->force[pair].near = true;
-    contact->force[pair].distance = r;
-    const struct contact_constants q = contact_constants_of(contact, &law, point, edge, min_reach);
-    add_rows(contact, particles, pair, &q, &foot, then);
+    pair->near = true;
+    pair->distance = r;
+    add_rows(contact, particles, pair, &foot, then);
 }
 
 /* Notes the depth of a point behind the nearest edge of another body if it has passed the
  * surface, from the pairs of this point. */
 static void watch_side(struct contact *contact, int64_t first, int64_t end)
 {
-    double nearest = (double)INFINITY;
-    int32_t edge = 0;
+    struct contact_foot nearest = {.distance = (double)INFINITY};
     bool inside = false;
-    const int32_t point = contact->pair_point[first];
     for (int64_t k = first; k < end; k++) {
-        if (contact_with(contact, point, contact->pair_edge[k]) == CONTACT_SELF) continue;
-        const struct contact_foot f = contact_nearest(contact, point, contact->pair_edge[k]);
-        if (!(f.distance < nearest)) continue;
-        const struct contact_edge *const e = &contact->edge[contact->pair_edge[k]];
-        const double side = (contact->x[e->b] - contact->x[e->a]) * f.y -
-                            (contact->y[e->b] - contact->y[e->a]) * f.x;
-        nearest = f.distance;
-        edge = contact->pair_edge[k];
-        inside = e->sided && f.at > 0 && f.at < 1 && side > 0;
+        const struct contact_pair *const pair = &contact->pair[k];
+        const struct contact_foot f = contact_nearest(contact, pair->point, pair->edge);
+        if (f.point->group == f.a->group || !(f.distance < nearest.distance)) continue;
+        const double side =
+            (f.b->x[0] - f.a->x[0]) * f.offset[1] - (f.b->x[1] - f.a->x[1]) * f.offset[0];
+        nearest = f;
+        inside = contact->edge[pair->edge].sided && f.at > 0 && f.at < 1 && side > 0;
     }
-    if (inside && nearest > 0)
-        find_depth(contact, point, edge,
-                   1 + nearest / contact_pair_law(contact, point, edge).spacing);
+    if (!inside || !(nearest.distance > 0)) return;
+    const double spacing = contact_law_of(contact, nearest.point->body, nearest.a->body)->spacing;
+    find_depth(contact, &nearest, 1 + nearest.distance / spacing);
 }
 
 static void watch_pairs(struct contact *contact, const struct particles *particles, double longest,
                         double span)
 {
-    memset(contact->row, 0, (size_t)contact->n_solid_points * sizeof *contact->row);
-    memset(contact->row_damping, 0, (size_t)contact->n_solid_points * sizeof *contact->row);
-    if (contact->friction)
-        memset(contact->wall_row, 0, (size_t)contact->n_solid_points * sizeof *contact->wall_row);
-    if (contact->friction)
-        memset(contact->wall_damping, 0,
-               (size_t)contact->n_solid_points * sizeof *contact->wall_row);
+    for (int64_t k = 0; k < contact->n_solid_points; k++) {
+        struct contact_point *const p = &contact->point[k];
+        p->row = p->row_damping = p->wall_row = p->wall_damping = 0;
+    }
     for (int64_t first = 0, end; first < contact->n_pairs; first = end) {
         for (end = first;
-             end < contact->n_pairs && contact->pair_point[end] == contact->pair_point[first];
+             end < contact->n_pairs && contact->pair[end].point == contact->pair[first].point;
              end++)
-            watch_pair(contact, particles, end, longest, span);
+            watch_pair(contact, particles, &contact->pair[end], longest, span);
         watch_side(contact, first, end);
         if (contact->friction) contact_friction_rows(contact, particles, first, end);
     }
     for (int64_t k = 0; k < contact->n_solid_points; k++) {
-        contact->omega2 =
-            max2(contact->omega2, contact->row[k] + (contact->friction ? contact->wall_row[k] : 0));
-        contact->damping =
-            max2(contact->damping,
-                 contact->row_damping[k] + (contact->friction ? contact->wall_damping[k] : 0));
+        const struct contact_point *const p = &contact->point[k];
+        contact->omega2 = max2(contact->omega2, p->row + p->wall_row);
+        contact->damping = max2(contact->damping, p->row_damping + p->wall_damping);
     }
 }
 
@@ -354,24 +302,25 @@ bool contact_watch(struct contact *contact, const struct particles *particles, d
                    double longest, double span)
 {
     contact_place(contact, particles, time);
-    find_means(contact);
-    const struct relative_motion motion = relative_motion_of(contact);
-    double want[CONTACT_WITH];
-    bool holds = contact->known;
-    for (int k = 0; k < CONTACT_WITH; k++) {
-        want[k] = distance_near(contact, motion.speed[k], span);
-        holds = holds && contact->margin[k] - motion.moved[k] >= want[k];
+    double moved2[2] = {0}, speed2[2] = {0}; /* of solids, of walls */
+    for (int64_t k = 0; k < contact->n_moving_points; k++) {
+        const struct contact_point *const p = &contact->point[k];
+        const int of = k >= contact->n_solid_points;
+        moved2[of] =
+            max2(moved2[of], square(p->x[0] - p->listed[0]) + square(p->x[1] - p->listed[1]));
+        speed2[of] = max2(speed2[of], square(p->v[0]) + square(p->v[1]));
     }
-    if (!holds) {
-        for (int k = 0; k < CONTACT_WITH; k++)
-            contact->margin[k] = want[k] + SKIN * contact->spacing;
-        contact_list(contact);
-    }
+    /* The most that two points may have approached since the list was made, and their speed. */
+    const double moved = sqrt(moved2[0]) + sqrt(max2(moved2[0], moved2[1])),
+                 speed = sqrt(speed2[0]) + sqrt(max2(speed2[0], speed2[1])),
+                 want = distance_near(contact, speed, span);
+    if (!contact->known || !(contact->margin - moved >= want))
+        contact_list(contact, want + SKIN * contact->spacing);
     contact->near = false;
     contact->omega2 = contact->damping = 0;
     contact->approach = (double)INFINITY;
     contact->deepest = (struct contact_depth){0};
-    if (contact->n_pairs) watch_pairs(contact, particles, longest, span);
+    watch_pairs(contact, particles, longest, span);
     return contact->near;
 }
 
@@ -384,8 +333,8 @@ void contact_forget(struct contact *contact, const struct particles *walls)
     for (int64_t i = 0; i < walls->n && contact->n_walls; i++) {
         const int32_t k = contact->wall_point[walls->id[i] - first];
         if (k < contact->n_moving_points) continue;
-        contact->x[k] = walls->x[i];
-        contact->y[k] = walls->y[i];
+        contact->point[k].x[0] = walls->x[i];
+        contact->point[k].x[1] = walls->y[i];
     }
     contact->known = false;
 }
@@ -401,45 +350,35 @@ void contact_name(const struct contact *contact, int body, char text[CONTACT_NAM
 
 /* --- start --- */
 
-/* Modulus of a layer between two surfaces that is as stiff as half a spacing of each body, in
- * series; a wall is rigid. Of two equal bodies each is compressed by half of the overlap. */
-static double layer_modulus(const struct contact *contact, int a, int b, double spacing)
+/* How much a layer between two surfaces yields that is as stiff as half a spacing of each body, in
+ * series, and how much in shear; a wall is rigid. Of two equal bodies each is compressed by half of
+ * the overlap. */
+static void layer_yields(const struct contact *contact, int a, int b, double *yields,
+                         double *shears)
 {
-    const struct solid_body *const one = &contact->solid->body[a];
-    double yields = one->dp / one->young;
-    if (b < contact->n_solids) yields += contact->solid->body[b].dp / contact->solid->body[b].young;
-    return 2 * spacing / yields;
-}
-
-/* Stiffness of the same layer in shear, in parts of that in compression. */
-static double layer_shear(const struct contact *contact, int a, int b)
-{
-    const struct solid_body *const one = &contact->solid->body[a], *const two =
-                                                                       &contact->solid->body[b];
-    double yields = one->dp / one->young, shears = one->dp / one->mu;
-    if (b < contact->n_solids) {
-        yields += two->dp / two->young;
-        shears += two->dp / two->mu;
-    }
-    return yields / shears;
+    const struct solid_body *const body = contact->solid->body;
+    *yields = body[a].dp / body[a].young;
+    *shears = body[a].dp / body[a].mu;
+    if (b >= contact->n_solids) return;
+    *yields += body[b].dp / body[b].young;
+    *shears += body[b].dp / body[b].mu;
 }
 
 /* A pressure p leaves an overlap of spacing p/(stiffness E + p), E of the layer (T-61). */
 static void set_law(struct contact *contact, const struct scene_contact *from, int a, int b)
 {
-    const bool wall = b >= contact->n_solids;
-    const struct solid_body *const one = &contact->solid->body[a];
-    const double spacing = 0.5 * (one->dp + contact_dp(contact, b));
+    const double spacing = 0.5 * (contact_dp(contact, a) + contact_dp(contact, b));
     /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
-    const bool own = !wall && one->bond == contact->solid->body[b].bond;
+    const bool own = contact->group[a] == contact->group[b];
     const double reach = spacing + (own ? from->gap : scene_contact_gap(contact->scene, from));
-    const int n = contact->n_solids + contact->n_walls;
-    contact->law[a * n + b] = contact->law[b * n + a] = (struct contact_law){
+    double yields, shears;
+    layer_yields(contact, a, b, &yields, &shears);
+    *contact_law_of(contact, a, b) = *contact_law_of(contact, b, a) = (struct contact_law){
         .on = true,
         .spacing = spacing,
         .reach = reach,
-        .stiffness = from->stiffness * layer_modulus(contact, a, b, spacing),
-        .shear = layer_shear(contact, a, b),
+        .stiffness = from->stiffness * (2 * spacing / yields),
+        .shear = yields / shears,
         .damping = from->damping,
         .friction = from->friction,
     };
@@ -450,44 +389,32 @@ static void set_law(struct contact *contact, const struct scene_contact *from, i
 static void set_laws(struct contact *contact)
 {
     for (int a = 0; a < contact->n_solids; a++)
-        for (int b = a; b < contact->n_solids + contact->n_walls; b++) {
+        for (int b = a; b < contact->n_bodies; b++) {
             const struct scene_contact *const from = scene_contact_of(contact->scene, a, b);
             if (from) set_law(contact, from, a, b);
         }
 }
 
-/* Lists the pairs that begin within their reach of another group. */
-static void list_initial_pairs(struct contact *contact)
+/* Whether a pair of the list is of two groups and begins within its reach. */
+static bool begins_near(const struct contact *contact, const struct contact_pair *pair)
 {
-    contact->margin[CONTACT_SELF] = -contact->reach;
-    contact->margin[CONTACT_OTHER] = 0;
-    for (int64_t k = 0; k < contact->n_points; k++) contact->initial_group[k] = -1;
-    contact_list(contact);
-}
-
-/* Whether a pair of the list begins within its reach; its distance. */
-static bool begins_near(const struct contact *contact, int64_t pair, double *distance)
-{
-    const int32_t point = contact->pair_point[pair], edge = contact->pair_edge[pair];
-    const struct contact_law law = contact_pair_law(contact, point, edge);
-    const struct contact_foot foot = contact_foot(contact, &law, point, edge);
-    *distance = contact_nearest(contact, point, edge).distance;
-    return foot.distance < foot.reach;
+    struct contact_foot foot;
+    return contact_foot(contact, pair->point, pair->edge, &foot) &&
+           foot.point->group != foot.a->group && foot.distance < foot.reach;
 }
 
 /* Bodies that begin with less than a layer of fluid between them anywhere need not keep one. */
 static void drop_layers(struct contact *contact)
 {
-    const int n = contact->n_solids + contact->n_walls;
-    double r;
-    list_initial_pairs(contact);
+    contact_list(contact, 0);
     for (int64_t k = 0; k < contact->n_pairs; k++) {
-        const int a = contact->body[contact->pair_point[k]],
-                  b = contact->body[contact->edge[contact->pair_edge[k]].a];
-        const struct scene_contact *const from = scene_contact_of(contact->scene, a, b);
-        struct contact_law *const law = &contact->law[a * n + b];
-        if (begins_near(contact, k, &r))
-            law->reach = contact->law[b * n + a].reach = law->spacing + from->gap;
+        const struct contact_pair *const pair = &contact->pair[k];
+        const int a = contact->point[pair->point].body,
+                  b = contact->point[contact->edge[pair->edge].a].body;
+        struct contact_law *const law = contact_law_of(contact, a, b);
+        if (begins_near(contact, pair))
+            law->reach = contact_law_of(contact, b, a)->reach =
+                law->spacing + scene_contact_of(contact->scene, a, b)->gap;
     }
 }
 
@@ -495,39 +422,19 @@ static void drop_layers(struct contact *contact)
  * not fit, and particles clamped within a wall, start without repulsion and keep that distance. */
 static void set_initial_distances(struct contact *contact)
 {
-    list_initial_pairs(contact);
+    contact_list(contact, 0);
     for (int64_t k = 0; k < contact->n_pairs; k++) {
-        const int32_t point = contact->pair_point[k],
-                      group = contact->group[contact->edge[contact->pair_edge[k]].a];
-        double r;
-        if (!begins_near(contact, k, &r)) continue;
-        if (contact->initial_group[point] >= 0 && r >= contact->initial[point]) continue;
-        contact->initial[point] = r;
-        contact->initial_group[point] = group;
+        const struct contact_pair *const pair = &contact->pair[k];
+        const struct contact_foot f = contact_nearest(contact, pair->point, pair->edge);
+        struct contact_point *const point = &contact->point[pair->point];
+        if (!begins_near(contact, pair)) continue;
+        if (point->initial_group >= 0 && f.distance >= point->initial) continue;
+        point->initial = f.distance;
+        point->initial_group = f.a->group;
     }
-    contact->margin[CONTACT_SELF] = contact->margin[CONTACT_OTHER] = 0;
     contact->known = false;
     contact->n_pairs = 0;
     contact->stale = 1;
-}
-
-static enum err create_list(struct contact *contact, struct arena *a, struct diag *d)
-{
-    const size_t n = (size_t)contact->n_solid_points, edges = (size_t)contact->n_edges;
-    const size_t groups = (size_t)contact->n_groups, walls = (size_t)contact->n_walls;
-    contact->row = arena_alloc(a, n, sizeof *contact->row, "contact", d);
-    contact->row_damping = arena_alloc(a, n, sizeof *contact->row, "contact", d);
-    contact->middle_x = arena_alloc(a, edges, sizeof *contact->middle_x, "contact", d);
-    contact->middle_y = arena_alloc(a, edges, sizeof *contact->middle_y, "contact", d);
-    contact->skip = arena_alloc(a, edges, sizeof *contact->skip, "contact", d);
-    contact->mean = arena_alloc(a, groups, sizeof *contact->mean, "contact", d);
-    contact->motion = arena_alloc(a, walls, sizeof *contact->motion, "contact", d);
-    if (!contact->row || !contact->row_damping || !contact->middle_x || !contact->middle_y ||
-        !contact->skip || !contact->mean || !contact->motion)
-        return ERR_MEMORY;
-    TRY(contact_list_resize(contact, 4 * contact->n_solid_points + 64, d));
-    return point_grid_create(&contact->grid, contact->reach, contact->n_edges, contact->middle_x,
-                             contact->middle_y, a, d);
 }
 
 static bool meets_walls(const struct scene *scene)
@@ -538,23 +445,44 @@ static bool meets_walls(const struct scene *scene)
     return false;
 }
 
+/* Bonded solids form one group; so do walls that move together or are at rest. */
+static enum err bodies_create(struct contact *contact, struct arena *a, struct diag *d)
+{
+    const struct scene *const scene = contact->scene;
+    contact->n_solids = scene->n_solid;
+    contact->n_walls = meets_walls(scene) ? scene->n_wall : 0;
+    contact->n_bodies = contact->n_solids + contact->n_walls;
+    const size_t n = (size_t)contact->n_bodies;
+    contact->law = arena_alloc(a, n * n, sizeof *contact->law, "contact", d);
+    contact->group = arena_alloc(a, n, sizeof *contact->group, "contact", d);
+    contact->motion =
+        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->motion, "contact", d);
+    if (!contact->law || !contact->group || !contact->motion) return ERR_MEMORY;
+    for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
+    for (int k = 0; k < contact->n_walls; k++)
+        contact->group[contact->n_solids + k] =
+            contact->n_solids + 1 + scene_find_motion(scene, scene->wall[k].motion);
+    return ERR_OK;
+}
+
 enum err contact_create(struct contact *contact, struct arena *a, const struct scene *scene,
                         const struct solid *solid, const struct particles *particles,
                         struct diag *d)
 {
-    *contact =
-        (struct contact){.scene = scene, .arena = a, .solid = solid, .n_solids = scene->n_solid};
+    *contact = (struct contact){.scene = scene, .arena = a, .solid = solid};
     contact->friction = particles->stick_edge;
-    contact->n_walls = meets_walls(scene) ? scene->n_wall : 0;
-    contact->n_groups = scene->n_solid + scene->n_motion + 1;
-    const size_t n = (size_t)(contact->n_solids + contact->n_walls);
-    contact->law = arena_alloc(a, n * n, sizeof *contact->law, "contact", d);
-    if (!contact->law) return ERR_MEMORY;
+    TRY(bodies_create(contact, a, d));
     set_laws(contact);
     TRY(contact_surface_create(contact, a, particles, d));
     contact->reach += 2 * contact->max_outer;
-    TRY(create_list(contact, a, d));
+    const size_t edges = (size_t)contact->n_edges;
+    contact->middle_x = arena_alloc(a, edges, sizeof *contact->middle_x, "contact", d);
+    contact->middle_y = arena_alloc(a, edges, sizeof *contact->middle_y, "contact", d);
+    if (!contact->middle_x || !contact->middle_y) return ERR_MEMORY;
+    TRY(point_grid_create(&contact->grid, contact->reach, contact->n_edges, contact->middle_x,
+                          contact->middle_y, a, d));
+    TRY(contact_list_resize(contact, 4 * contact->n_solid_points + 64, d));
     drop_layers(contact);
     set_initial_distances(contact);
-    return contact->friction ? contact_friction_create(contact, a, d) : ERR_OK;
+    return ERR_OK;
 }

@@ -4,7 +4,97 @@
 #ifndef SPHFSI_SOLID_CONTACT_H
 #define SPHFSI_SOLID_CONTACT_H
 
+#include "base/point_grid.h"
 #include "solid/types.h"
+
+/* Constants of two bodies, of a body and a wall, or of a body and itself. */
+struct contact_law {
+    bool on;
+    double spacing;   /* mean of both spacings, m */
+    double reach;     /* distance below which they repel each other: the spacing and the gap, m */
+    double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
+    double shear;     /* the same across the normal, in parts of it */
+    double damping;   /* fraction of the critical damping */
+    double friction;  /* Coulomb's coefficient */
+};
+
+/* A particle at a surface. */
+struct contact_point {
+    int32_t index;           /* among the particles of its kind */
+    int32_t body;            /* walls behind solids */
+    int32_t group;           /* the same for bonded solids, and for walls that move together */
+    int32_t edge;            /* one of those that end here */
+    double X[2], x[2], v[2]; /* initial position; present position and velocity */
+    double listed[2];        /* position when the list was made */
+    double width;            /* length of outline that it stands for, m, T-61 */
+    double share;            /* (n - 1)/n of the n edges that end here, T-61a */
+    double outer;            /* distance from the outline less half a spacing, m, T-61b */
+    double initial;          /* initial distance from another group if below the reach, m */
+    int32_t initial_group;   /* and that group; -1: none */
+    bool near_clamp;         /* within the kernel of a clamped particle of its group */
+    int16_t near_hinge;      /* the hinge, from 1, within whose kernel it begins; 0: none */
+    double row, row_damping; /* sums of the bound of the step, T-62a */
+    double wall_row, wall_damping; /* what friction with walls adds to them */
+    int32_t first_load;            /* of the list of forces on a solid's point; -1: none */
+};
+
+/* A piece of a surface: the line between two neighbouring points. A particle without a neighbour is
+ * a line from itself to itself. */
+struct contact_edge {
+    int32_t a, b;
+    bool sided; /* the outside is to the right from a to b; else on both sides */
+};
+
+/* A point near an edge, and the forces of both: on the point and on the ends of the edge, N/m. */
+struct contact_pair {
+    int32_t point, edge;
+    double force[3][2], distance;
+    bool touches, near;   /* within this step */
+    int32_t next_load[3]; /* the load that follows each force in the list of its point */
+};
+
+/* The largest overlap of a step. */
+struct contact_depth {
+    double overlap; /* in spacings */
+    double x, y;
+    int body, other; /* walls behind solids */
+};
+
+struct contact {
+    const struct scene *scene;
+    struct arena *arena; /* of the list */
+    const struct solid *solid;
+    int n_solids, n_walls, n_bodies; /* n_bodies: both */
+    struct contact_law *law;         /* [n_bodies][n_bodies] */
+    int32_t *group;                  /* [n_bodies] */
+    bool friction;                   /* some pair has it */
+    double reach, spacing;           /* largest of all laws */
+    /* Points: those of solids first, then those of walls that move. */
+    int64_t n_solid_points, n_moving_points, n_points;
+    struct contact_point *point;
+    int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: inside */
+    double max_outer;    /* the largest of them, m */
+    int64_t n_edges;
+    struct contact_edge *edge;
+    struct point_grid grid; /* of the edges' middles */
+    double *middle_x, *middle_y;
+    /* The list: every pair nearer than its reach and the margin when points were where it says. */
+    bool known;
+    double margin;
+    int64_t n_pairs, max_pairs;
+    struct contact_pair *pair;
+    struct motion_state *motion; /* [n_walls] now */
+    int stale;                   /* some point has moved by half of the margin */
+    bool list_full;              /* no memory for a longer list */
+    double power;                /* of moving walls at the last call of contact_forces, W/m */
+    bool touched;                /* two bodies have exchanged a force; the account resets it */
+    /* What the next step must respect, from contact_watch. */
+    bool near;              /* some surfaces may touch */
+    double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
+    double approach;        /* longest step in which nothing can pass through a surface, s */
+    struct contact_depth deepest;
+    double seconds; /* of its forces since the last query */
+};
 
 /* Laws and surfaces of solids and walls. */
 enum err contact_create(struct contact *contact, struct arena *a, const struct scene *scene,
@@ -24,6 +114,10 @@ void contact_forget(struct contact *contact, const struct particles *walls);
 /* Adds the accelerations of contact to sx, sy, with walls at their positions at `time`. Inside a
  * parallel region all threads call it together. */
 void contact_forces(struct contact *contact, struct particles *particles, double time);
+
+/* Lets the places that friction holds points to slide where a spring exceeds friction, after the
+ * forces of a step. By one thread. */
+void contact_slide(struct contact *contact, struct particles *particles);
 
 /* Energy of contact, J/m, with walls at their positions at `time`. */
 double contact_energy(struct contact *contact, const struct particles *particles, double time);

@@ -1,10 +1,9 @@
-/* SPDX-License-Identifier: MIT */
-#include "solid/contact_friction.h"
-
-#include "solid/contact_law.h"
+/* SPDX-License-Identifier: MIT
+ * Coulomb friction (T-62c, T-62d): a tangential spring with a slider between a point of a solid
+ * and a place that moves with the surface which it presses. */
+#include "solid/contact_pair.h"
 
 #include <math.h>
-#include <string.h>
 
 /* What a surface presses a point of a solid with. */
 struct normal_load {
@@ -15,42 +14,27 @@ struct normal_load {
 /* More surfaces than these at one point have no friction. */
 enum { MAX_LOADS = 4 };
 
-enum err contact_friction_create(struct contact *contact, struct arena *a, struct diag *d)
-{
-    const size_t n = (size_t)contact->n_solid_points;
-    contact->load_head = arena_alloc(a, n, sizeof *contact->load_head, "contact", d);
-    contact->wall_row = arena_alloc(a, n, sizeof *contact->wall_row, "contact", d);
-    contact->wall_damping = arena_alloc(a, n, sizeof *contact->wall_row, "contact", d);
-    contact->point_edge =
-        arena_alloc(a, (size_t)contact->n_points, sizeof *contact->point_edge, "contact", d);
-    if (!contact->load_head || !contact->wall_row || !contact->wall_damping || !contact->point_edge)
-        return ERR_MEMORY;
-    for (int64_t k = 0; k < contact->n_edges; k++)
-        contact->point_edge[contact->edge[k].a] = contact->point_edge[contact->edge[k].b] =
-            (int32_t)k;
-    return ERR_OK;
-}
-
 /* --- what presses a point --- */
 
+/* A load is force `part` of a pair, numbered 3 pair + part. */
 static void add_load(struct contact *contact, int32_t point, int64_t pair, int part)
 {
-    const int64_t slot = CONTACT_LOADS * pair + part;
-    contact->load_next[slot] = contact->load_head[point];
-    contact->load_head[point] = (int32_t)slot;
+    contact->pair[pair].next_load[part] = contact->point[point].first_load;
+    contact->point[point].first_load = (int32_t)(3 * pair + part);
 }
 
 /* A wall is rigid and its points have no state: what they press is on the solid's points. */
 static void list_loads(struct contact *contact)
 {
-    memset(contact->load_head, 0xff, (size_t)contact->n_solid_points * sizeof *contact->load_head);
+    for (int64_t k = 0; k < contact->n_solid_points; k++) contact->point[k].first_load = -1;
     for (int64_t k = 0; k < contact->n_pairs; k++) {
-        if (!contact->force[k].touches) continue;
-        if (contact->pair_point[k] < contact->n_solid_points) {
-            add_load(contact, contact->pair_point[k], k, 0);
+        const struct contact_pair *const pair = &contact->pair[k];
+        if (!pair->touches) continue;
+        if (pair->point < contact->n_solid_points) {
+            add_load(contact, pair->point, k, 0);
         } else {
-            add_load(contact, contact->edge[contact->pair_edge[k]].a, k, 1);
-            add_load(contact, contact->edge[contact->pair_edge[k]].b, k, 2);
+            add_load(contact, contact->edge[pair->edge].a, k, 1);
+            add_load(contact, contact->edge[pair->edge].b, k, 2);
         }
     }
 }
@@ -59,7 +43,7 @@ static void list_loads(struct contact *contact)
 static int load_of_surface(const struct contact *contact, int32_t edge, double distance,
                            struct normal_load on[MAX_LOADS], int *n)
 {
-    const int32_t group = contact->group[contact->edge[edge].a];
+    const int32_t group = contact->point[contact->edge[edge].a].group;
     int k = 0;
     while (k < *n && on[k].group != group) k++;
     if (k == MAX_LOADS) return k;
@@ -71,46 +55,48 @@ static int load_of_surface(const struct contact *contact, int32_t edge, double d
 static int loads_on(const struct contact *contact, int32_t point, struct normal_load on[MAX_LOADS])
 {
     int n = 0;
-    for (int32_t slot = contact->load_head[point]; slot >= 0; slot = contact->load_next[slot]) {
-        const int64_t pair = slot / CONTACT_LOADS;
-        const int part = slot % CONTACT_LOADS;
-        const struct contact_force *const from = &contact->force[pair];
-        const double *const f = part == 0 ? from->p : part == 1 ? from->a : from->b;
-        const int32_t edge =
-            part ? contact->point_edge[contact->pair_point[pair]] : contact->pair_edge[pair];
+    for (int32_t next, load = contact->point[point].first_load; load >= 0; load = next) {
+        const struct contact_pair *const pair = &contact->pair[load / 3];
+        const int part = load % 3;
+        const int32_t edge = part ? contact->point[pair->point].edge : pair->edge;
         const int k =
-            load_of_surface(contact, edge, part ? (double)INFINITY : from->distance, on, &n);
-        if (k == MAX_LOADS) continue;
-        on[k].force[0] += f[0];
-        on[k].force[1] += f[1];
+            load_of_surface(contact, edge, part ? (double)INFINITY : pair->distance, on, &n);
+        next = pair->next_load[part];
+        for (int c = 0; c < 2 && k < MAX_LOADS; c++) on[k].force[c] += pair->force[part][c];
     }
     return n;
 }
 
 /* --- places that move with an edge --- */
 
-/* The first end and the line to the other, or a line of 1 m if both are the same. */
-static void frame_of(const struct contact *contact, int32_t edge, double e[2])
+/* The line from the first end to the other, or a line of 1 m if both are the same. */
+static void line_of(const struct contact *contact, int32_t edge, double e[2])
 {
-    const int32_t a = contact->edge[edge].a, b = contact->edge[edge].b;
-    e[0] = a == b ? 1 : contact->x[b] - contact->x[a];
-    e[1] = a == b ? 0 : contact->y[b] - contact->y[a];
+    const double *const a = contact->point[contact->edge[edge].a].x,
+                        *const b = contact->point[contact->edge[edge].b].x;
+    e[0] = a == b ? 1 : b[0] - a[0];
+    e[1] = a == b ? 0 : b[1] - a[1];
 }
 
 /* Along the edge and across it, both in its lengths. */
-static void place_on(const struct contact *contact, int32_t edge, double x, double y,
+static void place_on(const struct contact *contact, int32_t edge, const double x[2],
                      double place[2])
 {
-    const int32_t a = contact->edge[edge].a;
+    const double *const a = contact->point[contact->edge[edge].a].x;
     double e[2];
-    frame_of(contact, edge, e);
-    const double dx = x - contact->x[a], dy = y - contact->y[a],
-                 length2 = e[0] * e[0] + e[1] * e[1];
+    line_of(contact, edge, e);
+    const double dx = x[0] - a[0], dy = x[1] - a[1], length2 = e[0] * e[0] + e[1] * e[1];
     place[0] = (e[0] * dx + e[1] * dy) / length2;
     place[1] = (e[0] * dy - e[1] * dx) / length2;
 }
 
 /* --- force --- */
+
+/* Component c of a vector's part across the direction n. */
+static double across(const double n[2], const double v[2], int c)
+{
+    return v[c] - (v[0] * n[0] + v[1] * n[1]) * n[c];
+}
 
 /* A tangential spring with the displacement u across the normal n, a dashpot and a slider. */
 struct spring {
@@ -118,27 +104,19 @@ struct spring {
     double n[2], u[2], normal_force, force, stiffness, damping, friction;
 };
 
-static struct contact_law law_of(const struct contact *contact, int32_t point, int32_t edge)
-{
-    return contact->law[contact->body[point] * (contact->n_solids + contact->n_walls) +
-                        contact->body[contact->edge[edge].a]];
-}
-
 /* Both halves of the force between a solid and a wall act on the points of the solid. */
-static double halves(const struct contact *contact, int32_t edge)
-{
-    return contact->edge[edge].a < contact->n_solid_points ? 1 : 1 / CONTACT_HALF;
-}
-
 static struct spring spring_constants(const struct contact *contact, int32_t point, int32_t edge)
 {
-    const struct contact_law law = law_of(contact, point, edge);
-    const struct contact_constants q = contact_constants_of(contact, &law, point, edge, 0);
+    const struct contact_point *const p = &contact->point[point];
+    const int body = contact->point[contact->edge[edge].a].body;
+    const struct contact_law *const law = contact_law_of(contact, p->body, body);
+    const struct contact_constants q = contact_constants_of(contact, law, p, body);
+    const double halves = body < contact->n_solids ? 1 : 1 / CONTACT_HALF;
     return (struct spring){
         .edge = edge,
-        .stiffness = halves(contact, edge) * law.shear * q.stiffness,
-        .damping = halves(contact, edge) * q.tangential_damping,
-        .friction = q.friction,
+        .stiffness = halves * law->shear * q.stiffness,
+        .damping = halves * q.tangential_damping,
+        .friction = law->friction,
     };
 }
 
@@ -146,10 +124,9 @@ static struct spring spring_constants(const struct contact *contact, int32_t poi
 static int32_t spring_edge(const struct contact *contact, const struct particles *particles,
                            int32_t point, int32_t group)
 {
-    const int64_t edge = particles->stick_edge[contact->index[point]] - 1;
-    return edge >= 0 && edge < contact->n_edges && contact->group[contact->edge[edge].a] == group
-               ? (int32_t)edge
-               : -1;
+    const int64_t edge = particles->stick_edge[contact->point[point].index] - 1;
+    if (edge < 0 || edge >= contact->n_edges) return -1;
+    return contact->point[contact->edge[edge].a].group == group ? (int32_t)edge : -1;
 }
 
 /* normal_force = 0: there is no friction. */
@@ -157,22 +134,21 @@ static struct spring spring_at(const struct contact *contact, const struct parti
                                int32_t point, const struct normal_load *on)
 {
     const int32_t edge = spring_edge(contact, particles, point, on->group),
-                  i = contact->index[point];
+                  i = contact->point[point].index;
     struct spring h = spring_constants(contact, point, edge < 0 ? on->edge : edge);
     const double *const f = on->force;
     h.normal_force = h.friction > 0 ? sqrt(f[0] * f[0] + f[1] * f[1]) : 0;
     if (!(h.normal_force > 0)) return h;
-    for (int k = 0; k < 2; k++) h.n[k] = f[k] / h.normal_force;
+    for (int c = 0; c < 2; c++) h.n[c] = f[c] / h.normal_force;
     if (edge < 0) return h;
-    const int32_t a = contact->edge[edge].a;
+    const double *const x = contact->point[point].x, *const a =
+                                                         contact->point[contact->edge[edge].a].x;
+    const double along = particles->stick_along[i], aside = particles->stick_across[i];
     double e[2];
-    frame_of(contact, edge, e);
-    const double x =
-        contact->x[a] + particles->stick_along[i] * e[0] - particles->stick_across[i] * e[1];
-    const double y =
-        contact->y[a] + particles->stick_along[i] * e[1] + particles->stick_across[i] * e[0];
-    const double d[2] = {contact->x[point] - x, contact->y[point] - y};
-    for (int k = 0; k < 2; k++) h.u[k] = across(h.n, d, k);
+    line_of(contact, edge, e);
+    const double d[2] = {x[0] - (a[0] + along * e[0] - aside * e[1]),
+                         x[1] - (a[1] + along * e[1] + aside * e[0])};
+    for (int c = 0; c < 2; c++) h.u[c] = across(h.n, d, c);
     h.force = h.stiffness * sqrt(h.u[0] * h.u[0] + h.u[1] * h.u[1]);
     return h;
 }
@@ -183,13 +159,14 @@ static void add_friction(struct contact *contact, struct particles *particles, i
                          const struct spring *h)
 {
     const int32_t a = contact->edge[h->edge].a, b = contact->edge[h->edge].b;
-    const double w[2] = {contact->vx[b] - contact->vx[a], contact->vy[b] - contact->vy[a]};
-    double at[2];
-    place_on(contact, h->edge, contact->x[point], contact->y[point], at);
-    const double v[2] = {contact->vx[point] - (contact->vx[a] + at[0] * w[0] - at[1] * w[1]),
-                         contact->vy[point] - (contact->vy[a] + at[0] * w[1] + at[1] * w[0])};
-    double f[2];
-    for (int k = 0; k < 2; k++) f[k] = -h->stiffness * h->u[k] - h->damping * across(h->n, v, k);
+    const double *const vp = contact->point[point].v, *const va = contact->point[a].v,
+                        *const vb = contact->point[b].v;
+    const double w[2] = {vb[0] - va[0], vb[1] - va[1]};
+    double at[2], f[2];
+    place_on(contact, h->edge, contact->point[point].x, at);
+    const double v[2] = {vp[0] - (va[0] + at[0] * w[0] - at[1] * w[1]),
+                         vp[1] - (va[1] + at[0] * w[1] + at[1] * w[0])};
+    for (int c = 0; c < 2; c++) f[c] = -h->stiffness * h->u[c] - h->damping * across(h->n, v, c);
     const double size = sqrt(f[0] * f[0] + f[1] * f[1]), most = h->friction * h->normal_force;
     const double less = size > most ? most / size : 1;
     f[0] *= less;
@@ -253,16 +230,17 @@ void contact_slide(struct contact *contact, struct particles *particles)
         struct normal_load on[MAX_LOADS];
         const int n = loads_on(contact, point, on),
                   k = load_with_spring(contact, particles, point, on, n);
-        const int32_t i = contact->index[point];
+        const int32_t i = contact->point[point].index;
         if (k < 0) {
             particles->stick_edge[i] = 0;
             continue;
         }
         const struct spring h = spring_at(contact, particles, point, &on[k]);
         const double most = h.friction * h.normal_force, less = h.force > most ? most / h.force : 1;
+        const double *const x = contact->point[point].x;
         double place[2];
-        place_on(contact, on[k].edge, contact->x[point] - less * h.u[0],
-                 contact->y[point] - less * h.u[1], place);
+        place_on(contact, on[k].edge, (const double[]){x[0] - less * h.u[0], x[1] - less * h.u[1]},
+                 place);
         particles->stick_edge[i] = on[k].edge + 1;
         particles->stick_along[i] = place[0];
         particles->stick_across[i] = place[1];
@@ -271,24 +249,18 @@ void contact_slide(struct contact *contact, struct particles *particles)
 
 /* --- before a step --- */
 
-static double per_mass(const struct contact *contact, const struct particles *particles,
-                       int32_t point)
-{
-    return particles->free[contact->index[point]] / contact->solid->body[contact->body[point]].mass;
-}
-
 /* The rows of T-62a of a point that holds to a solid: the weights are those of add_friction(). */
 static void add_spring_rows(struct contact *contact, const struct particles *particles,
                             int32_t point, const struct spring *h)
 {
     const int32_t a = contact->edge[h->edge].a, b = contact->edge[h->edge].b;
     double at[2];
-    place_on(contact, h->edge, contact->x[point], contact->y[point], at);
+    place_on(contact, h->edge, contact->point[point].x, at);
     const double to_b = sqrt(square(at[0]) + square(at[1]));
     const double to_a = sqrt(square(1 - at[0]) + square(at[1]));
-    const double all = particles->free[contact->index[point]] +
-                       to_a * particles->free[contact->index[a]] +
-                       to_b * particles->free[contact->index[b]];
+    const double all = particles->free[contact->point[point].index] +
+                       to_a * particles->free[contact->point[a].index] +
+                       to_b * particles->free[contact->point[b].index];
     contact_add_row(contact, particles, point, all, h->stiffness, h->damping);
     contact_add_row(contact, particles, a, to_a * all, h->stiffness, h->damping);
     contact_add_row(contact, particles, b, to_b * all, h->stiffness, h->damping);
@@ -299,29 +271,30 @@ static void add_wall_spring(struct contact *contact, const struct particles *par
                             int32_t point, int32_t edge)
 {
     const struct spring h = spring_constants(contact, point, edge);
+    struct contact_point *const p = &contact->point[point];
+    const double per_mass = contact_inv_mass(contact, particles, p);
     if (!(h.friction > 0)) return;
-    contact->wall_row[point] =
-        max2(contact->wall_row[point], h.stiffness * per_mass(contact, particles, point));
-    contact->wall_damping[point] =
-        max2(contact->wall_damping[point], h.damping * per_mass(contact, particles, point));
+    p->wall_row = max2(p->wall_row, h.stiffness * per_mass);
+    p->wall_damping = max2(p->wall_damping, h.damping * per_mass);
 }
 
 void contact_friction_rows(struct contact *contact, const struct particles *particles,
                            int64_t first, int64_t end)
 {
-    const int32_t point = contact->pair_point[first];
+    const int32_t point = contact->pair[first].point;
     struct normal_load on[MAX_LOADS];
     int n = 0;
     for (int64_t k = first; k < end; k++) {
-        const int32_t edge = contact->pair_edge[k];
-        if (!contact->force[k].near) continue;
+        const struct contact_pair *const pair = &contact->pair[k];
+        const struct contact_edge *const e = &contact->edge[pair->edge];
+        if (!pair->near) continue;
         if (point >= contact->n_solid_points) {
-            add_wall_spring(contact, particles, contact->edge[edge].a, contact->point_edge[point]);
-            add_wall_spring(contact, particles, contact->edge[edge].b, contact->point_edge[point]);
-        } else if (contact->edge[edge].a >= contact->n_solid_points) {
-            add_wall_spring(contact, particles, point, edge);
+            add_wall_spring(contact, particles, e->a, contact->point[point].edge);
+            add_wall_spring(contact, particles, e->b, contact->point[point].edge);
+        } else if (e->a >= contact->n_solid_points) {
+            add_wall_spring(contact, particles, point, pair->edge);
         } else {
-            load_of_surface(contact, edge, contact->force[k].distance, on, &n);
+            load_of_surface(contact, pair->edge, pair->distance, on, &n);
         }
     }
     for (int k = 0; k < n; k++) {

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "solid/contact.h"
-#include "solid/contact_friction.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
 #include "case/effects.h"

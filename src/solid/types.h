@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * The data of a solid: bodies, packs and slots, contact and loads. What acts on
+ * The data of a solid: bodies, packs and slots, loads and hinges. What acts on
  * them is declared in the header of its name. */
 #ifndef SPHFSI_SOLID_TYPES_H
 #define SPHFSI_SOLID_TYPES_H
 
 #include "particles/particles.h"
 #include "case/scene.h"
-#include "base/point_grid.h"
 #include "base/simd.h"
 
 /* Constants of one body, SI. */
@@ -143,98 +142,6 @@ struct solid {
     solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
-};
-
-/* --- contact --- */
-
-/* Constants of two bodies, of a body and a wall, or of a body and itself. */
-struct contact_law {
-    bool on;
-    double spacing;   /* mean of both spacings, m */
-    double reach;     /* distance below which they repel each other: the spacing and the gap, m */
-    double initial;   /* of a pair that initial nearer, its distance then; else infinite, m */
-    double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
-    double shear;     /* the same across the normal, in parts of it */
-    double damping;   /* fraction of the critical damping */
-    double friction;  /* Coulomb's coefficient */
-};
-
-/* A piece of a surface: the line between two neighbouring points. A particle without a neighbour is
- * a line from itself to itself. */
-struct contact_edge {
-    int32_t a, b;
-    bool sided; /* the outside is to the right from a to b; else on both sides */
-};
-
-/* The forces of one pair: on the point and on both ends of the edge, N/m. */
-struct contact_force {
-    double p[2], a[2], b[2], distance;
-    bool touches, near; /* within this step */
-};
-
-/* The largest overlap of a step. */
-struct contact_depth {
-    double overlap; /* in spacings */
-    double x, y;
-    int body, other; /* walls behind solids */
-};
-
-/* Pairs of a body with itself, and with others: they move relative to each other at different
- * speeds. */
-enum contact_with { CONTACT_SELF, CONTACT_OTHER, CONTACT_WITH };
-
-struct contact {
-    const struct scene *scene;
-    struct arena *arena; /* of the list */
-    const struct solid *solid;
-    int n_solids, n_walls, n_groups;
-    struct contact_law *law; /* [n_solids + n_walls][n_solids + n_walls] */
-    /* Particles at a surface: those of solids first, then those of walls that move. */
-    int64_t n_solid_points, n_moving_points, n_points;
-    int32_t *index;      /* among the particles of its kind */
-    int32_t *body;       /* walls behind solids */
-    int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: inside */
-    int32_t *group; /* solids that are bonded, and walls that move together, have the same number */
-    double *X, *Y, *x, *y, *vx, *vy; /* initial position; present position and velocity */
-    double *initial;                 /* initial distance from another group if below the reach, m */
-    int32_t *initial_group;          /* and that group; -1: none */
-    double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
-    double *outer;    /* distance of the point from the outline less half a spacing, m, T-61b */
-    double max_outer; /* the largest of them, m */
-    double *width;    /* length of outline that the point stands for, m, T-61 */
-    bool friction;    /* some pair has it; else the next five are NULL */
-    /* Lists of the forces on each solid point, three for each pair; an edge of
-     * each point; and what friction with walls adds to `row` and `row_damping`. */
-    int32_t *load_head, *load_next, *point_edge;
-    double *wall_row, *wall_damping;
-    uint8_t *near_clamp; /* within the kernel of a clamped particle of its group */
-    int16_t *near_hinge; /* the hinge, from 1, within whose kernel it begins; 0: none */
-    int64_t n_edges;
-    struct contact_edge *edge;
-    struct point_grid grid; /* of the edges' middles */
-    double *middle_x, *middle_y;
-    uint8_t *skip;         /* [n_edges] of walls far away */
-    double reach, spacing; /* largest of all laws */
-    /* The list: every pair nearer than its reach and `margin` when points were at at_x, at_y. */
-    bool known;
-    double margin[CONTACT_WITH];
-    double *at_x, *at_y;
-    int64_t n_pairs, max_pairs;
-    int32_t *pair_point, *pair_edge;
-    struct contact_force *force; /* [max_pairs] */
-    double *row, *row_damping;   /* [n_solid_points] sums of the bound of the step */
-    struct contact_mean *mean;   /* [n_groups] */
-    struct motion_state *motion; /* [n_walls] now */
-    int stale;                   /* some point has moved by half of the margin */
-    bool list_full;              /* no memory for a longer list */
-    double power;                /* of moving walls at the last call of contact_forces, W/m */
-    bool touched;                /* two bodies have exchanged a force; the account resets it */
-    /* What the next step must respect, from contact_watch. */
-    bool near;              /* some surfaces may touch */
-    double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
-    double approach;        /* longest step in which nothing can pass through a surface, s */
-    struct contact_depth deepest;
-    double seconds; /* of its forces since the last query */
 };
 
 /* --- loads and prescribed motion --- */

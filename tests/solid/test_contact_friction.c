@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Friction in contact makes no energy and turns nothing by itself (T-62c, T-62d). */
 #include "contact_rig.h"
-#include "solid/contact_friction.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

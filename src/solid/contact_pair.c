@@ -1,0 +1,293 @@
+/* SPDX-License-Identifier: MIT
+ * The distance and the law of a point and an edge, and the list of near ones. */
+#include "solid/contact_pair.h"
+
+#include "particles/kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* --- distance --- */
+
+/* The place on an edge where the distance less the reach is smallest if the reach rises by
+ * `rise` from a to b (T-61c). */
+static struct contact_foot foot_of(const struct contact *contact, int32_t point, int32_t edge,
+                                   double rise)
+{
+    const struct contact_point *const p = &contact->point[point],
+                                      *const a = &contact->point[contact->edge[edge].a],
+                                      *const b = &contact->point[contact->edge[edge].b];
+    const double ex = b->x[0] - a->x[0], ey = b->x[1] - a->x[1], length2 = ex * ex + ey * ey;
+    const double px = p->x[0] - a->x[0], py = p->x[1] - a->x[1];
+    struct contact_foot f = {.point = p, .a = a, .b = b, .offset = {px, py}};
+    if (length2 > 0) f.at = (px * ex + py * ey) / length2;
+    if (length2 > rise * rise)
+        f.at += fabs(px * ey - py * ex) / length2 * rise / sqrt(length2 - rise * rise);
+    else if (rise != 0)
+        f.at = rise > 0;
+    f.at = min2(1, max2(0, f.at));
+    /* At an end of an edge: bitwise equal to the result of the neighbouring edge. */
+    if (f.at == 1) {
+        f.offset[0] = p->x[0] - b->x[0];
+        f.offset[1] = p->x[1] - b->x[1];
+    } else if (f.at > 0) {
+        f.offset[0] -= f.at * ex;
+        f.offset[1] -= f.at * ey;
+    }
+    f.distance = sqrt(f.offset[0] * f.offset[0] + f.offset[1] * f.offset[1]);
+    return f;
+}
+
+struct contact_foot contact_nearest(const struct contact *contact, int32_t point, int32_t edge)
+{
+    return foot_of(contact, point, edge, 0);
+}
+
+/* Distance below which a point and an end of an edge repel each other (T-61b). At least half a
+ * spacing remains for the overlap. */
+static double reach_of(const struct contact_law *law, const struct contact_point *point,
+                       const struct contact_point *end)
+{
+    return law->reach + max2(point->outer + end->outer, -0.5 * law->spacing);
+}
+
+double contact_reach_apart(const struct contact_foot *foot)
+{
+    return min2(reach_of(foot->law, foot->point, foot->a),
+                reach_of(foot->law, foot->point, foot->b));
+}
+
+/* --- law --- */
+
+/* Whether a point was initially within the kernel of an end of an edge, with the smoothing length
+ * of a body. */
+static bool initially_within(const struct contact *contact, const struct contact_point *point,
+                             const struct contact_point *const end[2], int body)
+{
+    const double reach2 = square(KERNEL_REACH * contact->solid->body[body].h);
+    for (int k = 0; k < 2; k++)
+        if (square(point->X[0] - end[k]->X[0]) + square(point->X[1] - end[k]->X[1]) <= reach2)
+            return true;
+    return false;
+}
+
+/* Whether a clamp holds the solid of a pair to its wall there. */
+static bool joined_by_clamp(const struct contact *contact, const struct contact_point *point,
+                            const struct contact_point *const end[2])
+{
+    const bool first = point->body < contact->n_solids;
+    const int one = first ? point->body : end[0]->body,
+              wall = (first ? end[0]->body : point->body) - contact->n_solids;
+    if (wall < 0 || !(first ? point->near_clamp : end[0]->near_clamp || end[1]->near_clamp))
+        return false;
+    return strcmp(contact->scene->solid[one].clamp_motion, contact->scene->wall[wall].motion) ==
+               0 &&
+           initially_within(contact, point, end, one);
+}
+
+/* The distance at which a pair begins, if it is to keep that in place of its reach; else infinite.
+ * 0: they do not interact. The material keeps points apart that were initially within each other's
+ * kernel in one body. A clamp does so for its particles and the wall, a hinge for what begins
+ * within its kernel. */
+static double initial_distance(const struct contact *contact, const struct contact_point *point,
+                               const struct contact_point *const end[2])
+{
+    if (point->group == end[0]->group)
+        return initially_within(contact, point, end, point->body) ? 0 : (double)INFINITY;
+    if (joined_by_clamp(contact, point, end) ||
+        (point->near_hinge && point->near_hinge == end[0]->near_hinge))
+        return 0;
+    return point->initial_group == end[0]->group ? point->initial : (double)INFINITY;
+}
+
+bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
+                  struct contact_foot *foot)
+{
+    const struct contact_point *const p = &contact->point[point],
+                                      *const end[2] = {&contact->point[contact->edge[edge].a],
+                                                       &contact->point[contact->edge[edge].b]};
+    const struct contact_law *const law = contact_law_of(contact, p->body, end[0]->body);
+    const double initial = law->on ? initial_distance(contact, p, end) : 0;
+    if (!(initial > 0)) return false;
+    const double at_a = min2(initial, reach_of(law, p, end[0])),
+                 at_b = min2(initial, reach_of(law, p, end[1]));
+    *foot = foot_of(contact, point, edge, at_b - at_a);
+    foot->law = law;
+    foot->reach_a = at_a;
+    foot->reach_b = at_b;
+    foot->reach = foot->at == 1 ? at_b : at_a + foot->at * (at_b - at_a);
+    foot->min_reach = min2(at_a, at_b);
+    return true;
+}
+
+/* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
+ * mass m of the pair, m_a m_b/(m_a + m_b). */
+struct contact_constants contact_constants_of(const struct contact *contact,
+                                              const struct contact_law *law,
+                                              const struct contact_point *point, int other_body)
+{
+    const int body[] = {point->body, other_body};
+    double per_mass = 0;
+    for (int k = 0; k < 2; k++)
+        if (body[k] < contact->n_solids) per_mass += 1 / contact->solid->body[body[k]].mass;
+    const double k = law->stiffness * point->width / law->spacing,
+                 critical = 2 * sqrt(k * (1 / per_mass));
+    return (struct contact_constants){
+        .stiffness = CONTACT_HALF * k,
+        .damping = CONTACT_HALF * law->damping * critical,
+        .tangential_damping = law->friction > 0 ? CONTACT_HALF * 0.5 * critical : 0,
+    };
+}
+
+/* --- forces on particles --- */
+
+double contact_inv_mass(const struct contact *contact, const struct particles *particles,
+                        const struct contact_point *point)
+{
+    if (point->body >= contact->n_solids) return 0;
+    return particles->free[point->index] / contact->solid->body[point->body].mass;
+}
+
+void contact_add_force(struct contact *contact, struct particles *particles, int32_t point,
+                       const double f[2])
+{
+    const struct contact_point *const p = &contact->point[point];
+    if (p->body >= contact->n_solids) {
+        contact->power -= f[0] * p->v[0] + f[1] * p->v[1];
+        return;
+    }
+    const double per_mass = contact_inv_mass(contact, particles, p);
+    particles->sx[p->index] += f[0] * per_mass;
+    particles->sy[p->index] += f[1] * per_mass;
+}
+
+void contact_add_row(struct contact *contact, const struct particles *particles, int32_t point,
+                     double weight, double stiffness, double damping)
+{
+    struct contact_point *const p = &contact->point[point];
+    const double per_mass = contact_inv_mass(contact, particles, p);
+    p->row += weight * stiffness * per_mass;
+    p->row_damping += weight * damping * per_mass;
+}
+
+/* --- list --- */
+
+/* The box around the solids' surfaces, widened: walls outside need no search. */
+struct box {
+    double low[2], high[2];
+};
+
+static struct box box_of_solids(const struct contact *contact, double more)
+{
+    struct box box = {{(double)INFINITY, (double)INFINITY}, {-(double)INFINITY, -(double)INFINITY}};
+    for (int64_t k = 0; k < contact->n_solid_points; k++)
+        for (int c = 0; c < 2; c++) {
+            box.low[c] = min2(box.low[c], contact->point[k].x[c] - more);
+            box.high[c] = max2(box.high[c], contact->point[k].x[c] + more);
+        }
+    return box;
+}
+
+static bool in_box(const struct box *box, double x, double y)
+{
+    return x >= box->low[0] && x <= box->high[0] && y >= box->low[1] && y <= box->high[1];
+}
+
+enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct diag *d)
+{
+    struct contact_pair *const pair =
+        arena_alloc(contact->arena, (size_t)max_pairs, sizeof *pair, "contact", d);
+    if (!pair) return ERR_MEMORY;
+    if (contact->n_pairs) memcpy(pair, contact->pair, (size_t)contact->n_pairs * sizeof *pair);
+    contact->pair = pair;
+    contact->max_pairs = max_pairs;
+    return ERR_OK;
+}
+
+/* Lists a point and an edge if they are near enough; the edges of a point, whose pairs begin at
+ * `first`, in ascending order. */
+static void list_pair(struct contact *contact, int32_t point, int32_t edge, int64_t first)
+{
+    struct contact_foot foot;
+    if (!contact_foot(contact, point, edge, &foot) ||
+        !(foot.distance < foot.reach + contact->margin))
+        return;
+    struct diag d = {0};
+    /* Without memory for a longer list the run stops. */
+    if (contact->n_pairs == contact->max_pairs &&
+        contact_list_resize(contact, 2 * contact->max_pairs, &d)) {
+        contact->list_full = true;
+        return;
+    }
+    int64_t at = contact->n_pairs++;
+    for (; at > first && contact->pair[at - 1].edge > edge; at--)
+        contact->pair[at].edge = contact->pair[at - 1].edge;
+    contact->pair[at].edge = edge;
+    contact->pair[contact->n_pairs - 1].point = point;
+}
+
+void contact_list(struct contact *contact, double margin)
+{
+    double half2 = 0;
+    for (int64_t k = 0; k < contact->n_edges; k++) {
+        const struct contact_edge *const e = &contact->edge[k];
+        const double *const a = contact->point[e->a].x, *const b = contact->point[e->b].x;
+        contact->middle_x[k] = 0.5 * (a[0] + b[0]);
+        contact->middle_y[k] = 0.5 * (a[1] + b[1]);
+        half2 = max2(half2, 0.25 * (square(a[0] - b[0]) + square(a[1] - b[1])));
+    }
+    const double reach = contact->reach + margin + sqrt(half2);
+    const struct box box = box_of_solids(contact, reach);
+    contact->margin = margin;
+    contact->grid.side = reach;
+    point_grid_clear(&contact->grid);
+    for (int64_t k = contact->n_edges - 1; k >= 0; k--)
+        if (in_box(&box, contact->middle_x[k], contact->middle_y[k]))
+            point_grid_insert(&contact->grid, k);
+    contact->n_pairs = 0;
+    for (int64_t k = 0; k < contact->n_points; k++) {
+        struct contact_point *const p = &contact->point[k];
+        memcpy(p->listed, p->x, sizeof p->listed);
+        if (!in_box(&box, p->x[0], p->x[1])) continue;
+        const int64_t first = contact->n_pairs;
+        struct point_visit v = point_grid_visit(&contact->grid, p->x[0], p->x[1], reach);
+        while (point_grid_next(&contact->grid, &v))
+            list_pair(contact, (int32_t)k, (int32_t)v.k, first);
+    }
+    contact->stale = 0;
+    contact->known = true;
+}
+
+/* --- positions of points --- */
+
+void contact_place(struct contact *contact, const struct particles *particles, double time)
+{
+    const double far2 = square(0.5 * contact->margin);
+    if (contact->n_moving_points > contact->n_solid_points) {
+#pragma omp single
+        for (int k = 0; k < contact->n_walls; k++)
+            contact->motion[k] =
+                motion_at(contact->scene,
+                          scene_find_motion(contact->scene, contact->scene->wall[k].motion), time);
+    }
+#pragma omp for schedule(static)
+    for (int64_t k = 0; k < contact->n_moving_points; k++) {
+        struct contact_point *const p = &contact->point[k];
+        if (k < contact->n_solid_points) {
+            p->x[0] = p->X[0] + particles->ux[p->index];
+            p->x[1] = p->X[1] + particles->uy[p->index];
+            p->v[0] = particles->vx[p->index];
+            p->v[1] = particles->vy[p->index];
+        } else {
+            const struct motion_point at =
+                motion_of_point(&contact->motion[p->body - contact->n_solids], p->X[0], p->X[1]);
+            memcpy(p->x, at.x, sizeof p->x);
+            memcpy(p->v, at.v, sizeof p->v);
+        }
+        /* A NaN counts as far. */
+        if (!(square(p->x[0] - p->listed[0]) + square(p->x[1] - p->listed[1]) <= far2)) {
+#pragma omp atomic write
+            contact->stale = 1;
+        }
+    }
+}
