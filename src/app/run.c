@@ -344,7 +344,7 @@ static enum err start_restart(struct run *r)
     /* An uninterrupted run would not have the snapshot of an earlier end. */
     const double kept = r->image.snapshot_of_end ? nextafter(time, -1) : time;
     /* First, so that a kill in between leaves no checkpoint that is newer than the rows. */
-    TRY(checkpoint_remove_later(r->folder.path, r->s->state.steps, r->diag));
+    TRY(checkpoint_remove_others(r->folder.path, r->s->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, kept,
                          &r->written[OUT_SNAPSHOT], r->diag));
     r->written[OUT_CHECKPOINT] = time;
@@ -379,7 +379,6 @@ static enum err load_checkpoint(struct run *r)
                   "%s was written by version %s, but this is %s: results may differ "
                   "in their last digits",
                   r->restarted_from, info.version, SPHFSI_VERSION);
-    if (!fork) TRY(checkpoint_snapshots(&r->image, r->diag));
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
              : checkpoint_apply(&r->image, r->s, r->diag));
     /* The last step of a finished run passes its end. */

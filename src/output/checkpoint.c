@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/checkpoint.h"
-#include "output/checkpoint_files.h"
 #include "output/ranges.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
 enum { FORMAT = 8, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
+enum { KEEP = 2 }; /* checkpoints in the folder of a run */
 
 /* Owners of blocks: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
@@ -49,17 +52,11 @@ _Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) 
                    sizeof(struct file_footer) == 16,
                "docs/formats.md gives these sizes");
 
-/* Fields of moving walls only. */
-enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
-
 static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
-static const char carried_name[] = "rows";
 
 static uint64_t checksum(const void *bytes, size_t n) { return hash_bytes(HASH_START, bytes, n); }
 
 static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
-
-/* --- capture --- */
 
 static enum err reserve(struct image *m, size_t bytes, struct diag *d)
 {
@@ -77,116 +74,133 @@ static enum item item_of(const char *type)
     return strcmp(type, "int64_t") == 0 ? ITEM_INT64 : ITEM_INT32;
 }
 
-/* Appends a block to reserved memory; checkpoint_seal fills in the checksums. */
-static void put_block(struct image *m, const char *name, unsigned owner, enum item item,
-                      const void *data, size_t count)
-{
-    struct block_header head = {.owner = owner, .item = item, .count = count};
-    snprintf(head.name, sizeof head.name, "%s", name);
-    const size_t bytes = count * item_size[item];
-    memcpy(m->bytes + m->size, &head, sizeof head);
-    memset(m->bytes + m->size + sizeof head + bytes, 0, padded(bytes) - bytes);
-    if (bytes) memcpy(m->bytes + m->size + sizeof head, data, bytes);
-    m->size += sizeof head + padded(bytes);
-}
+/* --- what a checkpoint has --- */
 
-/* State of a run beside its particles: blocks of numbers, what rows carry last. */
-struct numbers {
+/* What a fork, whose case may have other fields and outputs, does with a block. */
+enum in_fork { FORK_LOADS, FORK_LOADS_IF_THERE, FORK_SKIPS };
+
+/* A block of a file in the memory of the program. */
+struct part {
     const char *name;
+    unsigned owner;
     enum item item;
     void *data;
     size_t count;
+    enum in_fork in_fork;
 };
 
-enum { MAX_NUMBERS = 64 };
+enum { MAX_PARTS = 512 };
 
-/* Lists them; returns how many. */
-static int list_numbers(struct simulation *sim, struct numbers list[MAX_NUMBERS])
+struct parts {
+    int n;
+    struct part item[MAX_PARTS];
+};
+
+static void add(struct parts *list, struct part part)
+{
+    ASSERT(list->n < MAX_PARTS);
+    list->item[list->n++] = part;
+}
+
+static void list_run(struct parts *list, struct image *m, struct simulation *sim)
 {
     struct state *const state = &sim->state;
     struct open *const open = &sim->open;
-    int n = 0;
+    const unsigned run = OWNER_STATE;
+    const size_t n_open = (size_t)open->n, n_carried = (size_t)sim->carried.n;
+    add(list,
+        (struct part){"snapshots_missed", run, ITEM_INT64, &m->snapshots_missed, 1, FORK_SKIPS});
+    add(list,
+        (struct part){"snapshot_of_end", run, ITEM_INT64, &m->snapshot_of_end, 1, FORK_SKIPS});
 #define STATE(type, name, low, high, unit, meaning) \
-    list[n++] = (struct numbers){#name, item_of(#type), &state->name, 1};
+    add(list, (struct part){#name, run, item_of(#type), &state->name, 1, FORK_LOADS});
 #include "time/state.def"
 #undef STATE
-    list[n++] = (struct numbers){"bound_steps", ITEM_INT64, state->bound_steps, BOUND_COUNT};
-    list[n++] = (struct numbers){"energy", ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS};
-    if (open->n > 0) {
-        const size_t boundaries = (size_t)open->n;
-        list[n++] = (struct numbers){"open_sum", ITEM_DOUBLE, open->sum, boundaries * OPEN_SUMS};
-        list[n++] =
-            (struct numbers){"open_count", ITEM_INT64, open->count, boundaries * OPEN_COUNTS};
-        list[n++] = (struct numbers){"open_next_id", ITEM_INT64, &open->next_id, 1};
+    add(list,
+        (struct part){"bound_steps", run, ITEM_INT64, state->bound_steps, BOUND_COUNT, FORK_LOADS});
+    add(list,
+        (struct part){"energy", run, ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS, FORK_LOADS});
+    if (n_open > 0) {
+        add(list,
+            (struct part){"open_sum", run, ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, FORK_LOADS});
+        add(list, (struct part){"open_count", run, ITEM_INT64, open->count, n_open * OPEN_COUNTS,
+                                FORK_LOADS});
+        add(list, (struct part){"open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS});
     }
-    if (sim->carried.n > 0)
-        list[n++] =
-            (struct numbers){carried_name, ITEM_DOUBLE, sim->carried.value, (size_t)sim->carried.n};
-    ASSERT(n <= MAX_NUMBERS);
-    return n;
+    if (n_carried > 0)
+        add(list,
+            (struct part){"rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS});
 }
 
-/* The most bytes of an image: of every block, including those of fields that are not kept. */
-static size_t image_bytes(const struct simulation *sim, const struct numbers *list, int n,
-                          size_t case_length)
+/* All state, in the order of the file. */
+static void list_parts(struct parts *list, struct image *m, struct simulation *sim)
 {
-    size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer) + padded(case_length) +
-                   2 * sizeof(int64_t) + (size_t)(n + 3) * sizeof(struct block_header);
-    for (int k = 0; k < n; k++) bytes += padded(list[k].count * item_size[list[k].item]);
-    for (int k = 0; k < KIND_COUNT; k++)
-        for (int f = 0; f < field_count; f++)
-            bytes +=
-                sizeof(struct block_header) + padded((size_t)sim->kind[k].n * field_table[f].size);
-    return bytes;
-}
-
-static uint32_t put_particles(struct image *m, const struct simulation *sim)
-{
-    uint32_t blocks = 0;
-    for (int k = 0; k < KIND_COUNT; k++)
+    static const unsigned new_in_fork[KIND_COUNT] = {
+        [KIND_FLUID] = G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX,
+        [KIND_SOLID] = G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX,
+        [KIND_WALL] = G_REFERENCE | G_RATE | G_FORCE, /* those of moving walls */
+    };
+    list->n = 0;
+    list_run(list, m, sim);
+    for (unsigned k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++) {
-            const struct field_info *info = &field_table[f];
-            const void *data = field_array(&sim->kind[k], info);
+            const struct field_info *const info = &field_table[f];
+            void *const data = field_array(&sim->kind[k], info);
+            const bool may_lack = info->group & new_in_fork[k];
             if (!data || info->keep != KEEP_STATE) continue;
-            put_block(m, info->name, (unsigned)k, item_of(info->type), data,
-                      (size_t)sim->kind[k].n);
-            blocks++;
+            add(list,
+                (struct part){info->name, k, item_of(info->type), data, (size_t)sim->kind[k].n,
+                              may_lack ? FORK_LOADS_IF_THERE : FORK_LOADS});
         }
-    return blocks;
+}
+
+/* --- capture --- */
+
+/* Appends a block to reserved memory; checkpoint_seal fills in the checksums. */
+static void put_block(struct image *m, const struct part *part)
+{
+    struct block_header head = {.owner = part->owner, .item = part->item, .count = part->count};
+    snprintf(head.name, sizeof head.name, "%s", part->name);
+    const size_t bytes = part->count * item_size[part->item];
+    memcpy(m->bytes + m->size, &head, sizeof head);
+    memset(m->bytes + m->size + sizeof head + bytes, 0, padded(bytes) - bytes);
+    if (bytes) memcpy(m->bytes + m->size + sizeof head, part->data, bytes);
+    m->size += sizeof head + padded(bytes);
 }
 
 enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d)
 {
-    struct numbers list[MAX_NUMBERS];
-    const int n = list_numbers(sim, list);
-    const size_t case_length = strlen(case_text) + 1; /* with its 0 */
-    TRY(reserve(m, image_bytes(sim, list, n, case_length), d));
+    struct parts list;
+    list_parts(&list, m, sim);
+    const struct part text = {
+        "case",    OWNER_CASE, ITEM_BYTE, (void *)(uintptr_t)case_text, strlen(case_text) + 1,
+        FORK_SKIPS};
     struct file_header head = {
         .format = FORMAT,
         .byte_order = BYTE_ORDER_MARK,
         .header_size = sizeof(struct file_header),
         .block_header_size = sizeof(struct block_header),
-        .case_hash = checksum(case_text, case_length),
+        .blocks = 1 + (uint32_t)list.n,
+        .case_hash = checksum(case_text, text.count),
         .time = sim->state.time,
         .steps = sim->state.steps,
     };
+    const struct file_footer foot = {.sum = 0};
+    head.file_size =
+        sizeof head + sizeof foot + head.blocks * sizeof(struct block_header) + padded(text.count);
+    for (int k = 0; k < list.n; k++)
+        head.file_size += padded(list.item[k].count * item_size[list.item[k].item]);
+    TRY(reserve(m, head.file_size, d));
     memcpy(head.magic, magic, sizeof magic);
     snprintf(head.version, sizeof head.version, "%s", version);
     for (int k = 0; k < KIND_COUNT; k++) head.count[k] = sim->kind[k].n;
+    memcpy(m->bytes, &head, sizeof head);
     m->size = sizeof head;
-    put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
-    put_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, &m->snapshots_missed, 1);
-    put_block(m, "snapshot_of_end", OWNER_STATE, ITEM_INT64, &m->snapshot_of_end, 1);
-    for (int k = 0; k < n; k++)
-        put_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].data, list[k].count);
-    head.blocks = 3 + (uint32_t)n + put_particles(m, sim);
-    const struct file_footer foot = {.sum = 0};
+    put_block(m, &text);
+    for (int k = 0; k < list.n; k++) put_block(m, &list.item[k]);
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
-    ASSERT(m->size <= m->capacity && m->size % 8 == 0);
-    head.file_size = m->size;
-    memcpy(m->bytes, &head, sizeof head);
     return ERR_OK;
 }
 
@@ -197,6 +211,13 @@ struct block {
     size_t at, payload; /* offsets in the image */
 };
 
+static size_t payload_bytes(const struct block *b)
+{
+    return b->head.count * item_size[b->head.item];
+}
+
+static size_t block_end(const struct block *b) { return b->payload + padded(payload_bytes(b)); }
+
 /* Reads the header of the block at offset `at`; false if no whole block begins there. */
 static bool block_at(const struct image *m, size_t at, struct block *b)
 {
@@ -206,18 +227,82 @@ static bool block_at(const struct image *m, size_t at, struct block *b)
     b->at = at;
     b->payload = at + sizeof b->head;
     const size_t rest = end - b->payload;
-    if (b->head.item >= ITEM_COUNT || b->head.count > rest / item_size[b->head.item]) return false;
-    return padded(b->head.count * item_size[b->head.item]) <= rest;
+    return b->head.item < ITEM_COUNT && b->head.count <= rest / item_size[b->head.item] &&
+           padded(payload_bytes(b)) <= rest;
 }
 
-static size_t block_end(const struct block *b)
+static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
 {
-    return b->payload + padded(b->head.count * item_size[b->head.item]);
+    for (size_t at = sizeof(struct file_header); block_at(m, at, b); at = block_end(b))
+        if (b->head.owner == owner && strcmp(b->head.name, name) == 0) return true;
+    return false;
 }
 
-static size_t payload_bytes(const struct block *b)
+/* --- files of a folder --- */
+
+static void name_file(char name[NAME_TEXT], int64_t steps)
 {
-    return b->head.count * item_size[b->head.item];
+    snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
+}
+
+/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the
+ * number. */
+static int64_t steps_of(const struct dirent *entry)
+{
+    char name[NAME_TEXT];
+    int64_t steps;
+    if (entry->d_type != DT_REG && entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
+        return -1;
+    if (sscanf(entry->d_name, "step-%18" SCNd64, &steps) != 1 || steps < 0) return -1;
+    name_file(name, steps);
+    return strcmp(entry->d_name, name) == 0 ? steps : -1;
+}
+
+/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1.
+ */
+static enum err next_file(const char *folder, int64_t *steps, struct diag *d)
+{
+    const int64_t limit = *steps;
+    DIR *dir = opendir(folder);
+    if (!dir) return diag_fail(d, ERR_IO, "%s: cannot be read: %s", folder, strerror(errno));
+    *steps = -1;
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        const int64_t found = steps_of(entry);
+        if (found > *steps && found < limit) *steps = found;
+    }
+    closedir(dir);
+    return ERR_OK;
+}
+
+/* Removes unfinished checkpoints of killed runs. */
+static void remove_parts(const char *folder)
+{
+    static const char end[] = ".ckpt.part";
+    DIR *dir = opendir(folder);
+    if (!dir) return;
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        const size_t length = strlen(entry->d_name);
+        if (strncmp(entry->d_name, "step-", 5) == 0 && length > sizeof end &&
+            strcmp(entry->d_name + length - (sizeof end - 1), end) == 0)
+            unlinkat(dirfd(dir), entry->d_name, 0);
+    }
+    closedir(dir);
+}
+
+enum err checkpoint_remove_others(const char *folder, int64_t newest, struct diag *d)
+{
+    char name[NAME_TEXT], path[PATH_BYTES];
+    int kept = 0;
+    remove_parts(folder);
+    for (int64_t steps = INT64_MAX;;) {
+        TRY(next_file(folder, &steps, d));
+        if (steps < 0) return ERR_OK;
+        if (steps <= newest && ++kept <= KEEP) continue;
+        name_file(name, steps);
+        TRY(path_join(path, folder, name, d));
+        if (unlink(path) != 0)
+            return diag_fail(d, ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
+    }
 }
 
 /* --- store --- */
@@ -246,7 +331,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
     char name[NAME_TEXT];
     const struct image_info info = checkpoint_info(m);
     checkpoint_seal(m);
-    checkpoint_name(name, info.steps);
+    name_file(name, info.steps);
     TRY(atomic_file_open(&out, folder, name, d));
     /* atomic_file_commit reports a short write, by ferror. */
     if (fwrite(m->bytes, 1, m->size, out.file) != m->size && !ferror(out.file)) {
@@ -256,7 +341,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
     TRY(atomic_file_commit(&out, d));
     memcpy(path, out.path, PATH_BYTES);
     struct diag why = {.code = ERR_OK}; /* a failure to remove does not stop the run */
-    if (checkpoint_remove_older(folder, info.steps, &why)) diag_warn(d, "%s", why.text);
+    if (checkpoint_remove_others(folder, info.steps, &why)) diag_warn(d, "%s", why.text);
     return ERR_OK;
 }
 
@@ -294,17 +379,6 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     return ERR_OK;
 }
 
-static enum err check_footer(const struct image *m, const char *path, struct diag *d)
-{
-    struct file_footer foot;
-    memcpy(&foot, m->bytes + m->size - sizeof foot, sizeof foot);
-    if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0)
-        return damaged(d, path, "its footer is damaged");
-    if (foot.sum != checksum(m->bytes, m->size - sizeof foot))
-        return damaged(d, path, "its checksum is wrong");
-    return ERR_OK;
-}
-
 /* Every block is complete, has correct checksums and a terminated name; no bytes follow the last
  * block. */
 static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
@@ -330,8 +404,13 @@ static enum err check_blocks(const struct image *m, const char *path, struct dia
 
 enum err checkpoint_check(const struct image *m, const char *name, struct diag *d)
 {
+    struct file_footer foot;
     TRY(check_header(m, name, d));
-    TRY(check_footer(m, name, d));
+    memcpy(&foot, m->bytes + m->size - sizeof foot, sizeof foot);
+    if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0)
+        return damaged(d, name, "its footer is damaged");
+    if (foot.sum != checksum(m->bytes, m->size - sizeof foot))
+        return damaged(d, name, "its checksum is wrong");
     return check_blocks(m, name, d);
 }
 
@@ -353,9 +432,9 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
     int damaged_ones = 0;
     for (int64_t steps = INT64_MAX;; damaged_ones++) {
         struct diag why = {.code = ERR_OK};
-        TRY(checkpoint_next(folder, &steps, d));
+        TRY(next_file(folder, &steps, d));
         if (steps < 0) break;
-        checkpoint_name(name, steps);
+        name_file(name, steps);
         TRY(path_join(path, folder, name, d));
         const enum err e = checkpoint_read(m, path, &why);
         if (e == ERR_OK) return ERR_OK;
@@ -374,13 +453,6 @@ enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES],
     if (stat(at, &info) == 0 && S_ISDIR(info.st_mode)) return checkpoint_newest(m, at, path, d);
     snprintf(path, PATH_BYTES, "%s", at);
     return checkpoint_read(m, at, d);
-}
-
-static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
-{
-    for (size_t at = sizeof(struct file_header); block_at(m, at, b); at = block_end(b))
-        if (b->head.owner == owner && strcmp(b->head.name, name) == 0) return true;
-    return false;
 }
 
 struct image_info checkpoint_info(const struct image *m)
@@ -421,68 +493,62 @@ bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info
 
 /* --- apply --- */
 
-static enum err load_block(const struct image *m, const char *name, unsigned owner, enum item item,
-                           size_t count, void *to, struct diag *d)
+static enum err load_part(const struct image *m, const struct part *part, struct diag *d)
 {
     struct block b;
-    if (!find_block(m, name, owner, &b))
+    if (!find_block(m, part->name, part->owner, &b))
         return diag_fail(d, ERR_INPUT, "checkpoint: it has no block %s, which this case needs",
-                         name);
-    if (b.head.item != item || b.head.count != count)
+                         part->name);
+    if (b.head.item != part->item || b.head.count != part->count)
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: block %s holds %" PRIu64
                          " items of type %u, but this case needs %zu of type %u",
-                         name, b.head.count, b.head.item, count, item);
-    if (count) memcpy(to, m->bytes + b.payload, count * item_size[item]);
+                         part->name, b.head.count, b.head.item, part->count, part->item);
+    if (part->count) memcpy(part->data, m->bytes + b.payload, payload_bytes(&b));
     return ERR_OK;
 }
 
-enum err checkpoint_snapshots(struct image *m, struct diag *d)
+/* Sets a field that the run of the checkpoint did not have. Reference positions are the present
+ * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces,
+ * and gradients until they are found. */
+static void set_missing(const struct particles *particles, const struct part *part)
 {
-    TRY(load_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, 1, &m->snapshots_missed, d));
-    TRY(load_block(m, "snapshot_of_end", OWNER_STATE, ITEM_INT64, 1, &m->snapshot_of_end, d));
-    TRY(range_check("snapshots_missed", (double)m->snapshots_missed, 0, COUNTS, d));
-    return range_check("snapshot_of_end", (double)m->snapshot_of_end, 0, 1, d);
-}
-
-/* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the
- * present ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean
- * forces, and gradients until they are found. */
-static void set_missing_field(struct particles *particles, const struct field_info *info)
-{
-    void *const data = field_array(particles, info);
-    const void *position = data == particles->X   ? particles->x
-                           : data == particles->Y ? particles->y
-                                                  : NULL;
+    const void *position = part->data == particles->X   ? particles->x
+                           : part->data == particles->Y ? particles->y
+                                                        : NULL;
+    const size_t bytes = part->count * item_size[part->item];
     if (position)
-        memcpy(data, position, (size_t)particles->n * info->size);
+        memcpy(part->data, position, bytes);
     else
-        memset(data, 0, (size_t)particles->n * info->size);
+        memset(part->data, 0, bytes);
 }
 
-static enum err load_particles(const struct image *m, struct particles *particles, enum kind kind,
-                               int64_t n, bool fork, struct diag *d)
+enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, struct diag *d)
 {
-    if (n < 0 || n > particles->capacity)
-        return diag_fail(d, ERR_INPUT,
-                         "checkpoint: it has %" PRId64 " %s particles, but the case has %" PRId64,
-                         n, kind_names[kind], particles->capacity);
-    particles->n = n;
-    for (int f = 0; f < field_count; f++) {
-        const struct field_info *info = &field_table[f];
-        void *data = field_array(particles, info);
-        if (!data || info->keep != KEEP_STATE) continue;
-        struct block b;
-        const unsigned optional =
-            kind == KIND_WALL
-                ? MOVING
-                : (unsigned)(G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX);
-        if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
-            set_missing_field(particles, info);
-        else
-            TRY(load_block(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
+    const struct image_info info = checkpoint_info(m);
+    struct parts list;
+    struct block b;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        const int64_t n = info.count[k], most = sim->kind[k].capacity;
+        if (n < 0 || n > most)
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: it has %" PRId64 " %s particles, but the case has "
+                             "%" PRId64,
+                             n, kind_names[k], most);
+        sim->kind[k].n = n;
     }
-    return ERR_OK;
+    list_parts(&list, m, sim);
+    for (const struct part *part = list.item; part < list.item + list.n; part++) {
+        if (fork && part->in_fork == FORK_SKIPS) continue;
+        if (fork && part->in_fork == FORK_LOADS_IF_THERE &&
+            !find_block(m, part->name, part->owner, &b))
+            set_missing(&sim->kind[part->owner], part);
+        else
+            TRY(load_part(m, part, d));
+    }
+    TRY(range_check("snapshots_missed", (double)m->snapshots_missed, 0, COUNTS, d));
+    TRY(range_check("snapshot_of_end", (double)m->snapshot_of_end, 0, 1, d));
+    return ranges_check(sim, d);
 }
 
 static enum err check_kind(const struct simulation *sim, enum kind kind, struct diag *d)
@@ -515,21 +581,7 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-enum err checkpoint_load(const struct image *m, struct simulation *sim, bool fork, struct diag *d)
-{
-    const struct image_info info = checkpoint_info(m);
-    for (int k = 0; k < KIND_COUNT; k++)
-        TRY(load_particles(m, &sim->kind[k], (enum kind)k, info.count[k], fork, d));
-    struct numbers list[MAX_NUMBERS];
-    const int n = list_numbers(sim, list);
-    for (int k = 0; k < n; k++) /* The probes of a fork may be others: they begin anew. */
-        if (!fork || list[k].name != carried_name)
-            TRY(load_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].count, list[k].data,
-                           d));
-    return ranges_check(sim, d);
-}
-
-enum err checkpoint_apply(const struct image *m, struct simulation *sim, struct diag *d)
+enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d)
 {
     TRY(checkpoint_load(m, sim, false, d));
     if (sim->effects & FX_FLUID) TRY(checkpoint_check_cells(sim, d));

@@ -66,12 +66,9 @@ struct block_info {
  * Returns false after the last block. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info);
 
-/* Reads what it has of snapshots. */
-enum err checkpoint_snapshots(struct image *m, struct diag *d) SPHFSI_CHECKED;
-
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
  * the new case is loaded as at rest. Used by the two functions below. */
-enum err checkpoint_load(const struct image *m, struct simulation *sim, bool fork, struct diag *d)
+enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, struct diag *d)
     SPHFSI_CHECKED;
 
 /* Whether each particle is in the cell that it was loaded with, or near it. ERR_INPUT: the grid is
@@ -80,18 +77,17 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SP
 
 /* Loads a valid image into a simulation of the same case from simulation_create, and recomputes
  * derived fields (simulation_resume). */
-enum err checkpoint_apply(const struct image *m, struct simulation *sim, struct diag *d)
-    SPHFSI_CHECKED;
+enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* The same for a case with other physics. Particles are sorted again if the grid is another one; a
  * motion must continue from the present position of its wall; dissipation is counted from this
  * time. */
-enum err checkpoint_fork(const struct image *m, struct simulation *sim, struct diag *d)
-    SPHFSI_CHECKED;
+enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* For a restart: removes checkpoints of more than `steps` steps, and unfinished ones of killed
- * runs. */
-enum err checkpoint_remove_later(const char *folder, int64_t steps, struct diag *d) SPHFSI_CHECKED;
+/* Removes the checkpoints of more than `newest` steps, of the others all but the last two, and
+ * unfinished ones of killed runs. */
+enum err checkpoint_remove_others(const char *folder, int64_t newest, struct diag *d)
+    SPHFSI_CHECKED;
 
 void checkpoint_free(struct image *m);
 

@@ -124,7 +124,7 @@ static enum err sort_again(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-enum err checkpoint_fork(const struct image *m, struct simulation *sim, struct diag *d)
+enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d)
 {
     const struct particles *const solid = &sim->kind[KIND_SOLID];
     double *const free = sim->solid.scratch[0];

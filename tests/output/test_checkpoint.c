@@ -218,11 +218,11 @@ static void missed_snapshots_are_counted_on(void)
     image.snapshots_missed = 7;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
     image.snapshots_missed = -1;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_snapshots(&image, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_apply(&image, &second, &diag));
     TEST_ASSERT_EQUAL_INT64(7, image.snapshots_missed);
     image.snapshots_missed = -2;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_snapshots(&image, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_apply(&image, &second, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed = -2"), diag.text);
 }
 
@@ -375,7 +375,7 @@ static void the_last_two_are_kept(void)
         store(tiny_path("two"), &first);
     }
     TEST_ASSERT_EQUAL_HEX(0xc, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
-    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_remove_later(tiny_path("two"), 15, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_remove_others(tiny_path("two"), 15, &diag));
     TEST_ASSERT_EQUAL_HEX(0x4, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
 }
 
