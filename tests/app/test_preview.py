@@ -55,12 +55,7 @@ point = 0.1, 0
 to = 0.15, 0.1
 """
 COLOURS = {"fluid": "#56B4E9", "wall": "#999999", "moving": "#CC79A7", "solid": "#E69F00",
-           "clamp": "url(#clamp)"}
-
-
-def area(corners):
-    return 0.5 * abs(sum(a[0] * b[1] - b[0] * a[1] for a,
-                         b in zip(corners, corners[1:] + corners[:1])))
+           "clamp": "#D55E00"}
 
 
 class Picture:
@@ -89,13 +84,14 @@ class Picture:
     def metres(self, x, y):
         return (float(x) - self.x0) / self.scale, (self.y0 - float(y)) / self.scale
 
-    def rectangles(self, fill):
-        """Corners in metres of all rectangles of this colour."""
+    def squares(self, fill):
+        """Centres in metres of all squares of this colour, and their side."""
         found = []
         for path in self.root.iter(NAME + "path"):
-            if path.get("fill") == COLOURS[fill] and "L" in path.get("d"):
-                for piece in path.get("d").split("z")[:-1]:
-                    found.append([self.metres(*pair.split()) for pair in piece[1:].split("L")])
+            if path.get("stroke") == COLOURS[fill]:
+                side = float(path.get("stroke-width")) / self.scale
+                for piece in path.get("d").split("M")[1:]:
+                    found.append((*self.metres(*piece.removesuffix("h.01").split()), side))
         return found
 
     def listed(self, start):
@@ -104,9 +100,9 @@ class Picture:
         return lines[0]
 
 
-def bounds(rectangles):
-    points = [p for one in rectangles for p in one]
-    return [f(p[c] for p in points) for f in (min, max) for c in (0, 1)]
+def bounds(squares):
+    return [f(p[c] + sign * p[2] / 2 for p in squares)
+            for f, sign in ((min, -1), (max, 1)) for c in (0, 1)]
 
 
 def near(got, want, tolerance):
@@ -115,26 +111,22 @@ def near(got, want, tolerance):
 
 def check(picture):
     pixel = 1 / picture.scale
-    # Areas: number of particles times dp^2; boxes: as the case has them.
+    # A square for each particle, of the spacing; boxes: as the case has them.
     for fill, n in (("fluid", 200), ("moving", 40), ("clamp", 16), ("solid", 60 + 25)):
-        got = sum(map(area, picture.rectangles(fill))) / 1e-4
-        assert abs(got - n) < 0.02 * n, (fill, got)
-    near(bounds(picture.rectangles("fluid")), (0, 0, 0.2, 0.1), pixel)
-    near(bounds(picture.rectangles("moving")), (0.1, 0.3, 0.2, 0.34), pixel)
-    near(bounds(picture.rectangles("clamp")), (0.2, -0.04, 0.24, 0), pixel)
-    kite = [one for one in picture.rectangles("solid") if one[0][0] < 0.19]
-    near(bounds(kite), (0.06, 0.2, 0.13, 0.27), 2 * pixel)
-    for one in kite:  # its sides lie along the lattice
-        turn = math.atan2(one[1][1] - one[0][1], one[1][0] - one[0][0]) - ANGLE
-        assert abs(math.remainder(turn, math.pi / 2)) < 0.02, one
-    # Particles that lie on no lattice have a square each, of the spacing.
-    walls = picture.rectangles("wall")
-    slope = [one for one in walls if bounds([one])[0] > 0.305]
+        squares = picture.squares(fill)
+        assert len(squares) == n, (fill, len(squares))
+        assert all(abs(one[2] - 0.01) < 0.02 * 0.01 for one in squares), fill
+    near(bounds(picture.squares("fluid")), (0, 0, 0.2, 0.1), pixel)
+    near(bounds(picture.squares("moving")), (0.1, 0.3, 0.2, 0.34), pixel)
+    near(bounds(picture.squares("clamp")), (0.2, -0.04, 0.24, 0), pixel)
+    kite = [one for one in picture.squares("solid") if one[0] < 0.19]
+    assert len(kite) == 25
+    # The corners of its lattice, whose cells lie along the sides of the kite.
+    corners = [math.hypot(x - 0.1, y - 0.2) for x, y, _ in kite]
+    assert abs(min(corners) - 0.01 / math.sqrt(2)) < 2 * pixel, min(corners)
+    slope = [one for one in picture.squares("wall") if one[0] > 0.31]
     n = int(re.search(r"(\d+) particles", picture.listed("wall slope"))[1])
-    assert len(slope) == n > 30 and all(abs(area(one) - 1e-4) < 0.03e-4 for one in slope)
-    # One row of the floor in one piece.
-    assert any(abs(bounds([one])[0] + 0.04) < pixel and abs(bounds([one])[2] - 0.2) < pixel
-               for one in walls)
+    assert len(slope) == n > 30
 
     texts = [text.text for text in picture.texts()]
     assert texts[0] == "a & b < c", texts[0]
@@ -151,17 +143,17 @@ def check(picture):
     assert picture.listed("wall lid") == "wall lid: 0.1 x 0.04 m, 40 particles; moved by down"
     assert picture.listed("wall tank").endswith("; at rest")
     assert picture.listed("solid post") == ("solid post: 0.04 x 0.19 m, 76 particles; 1100 kg/m^3, "
-                                            "E 1e+06 Pa, nu 0.4; 16 clamped (hatched)")
-    assert picture.listed("solid kite").startswith("solid kite: 0.05 x 0.05 m at ")
+                                            "E 1e+06 Pa, nu 0.4; 16 clamped (dark)")
+    assert picture.listed("solid kite").startswith("solid kite: 0.066 x 0.066 m, 25")
     assert "25 particles; 900 kg/m^3" in picture.listed("solid kite")
     assert picture.listed("solid kite").endswith("; nothing clamped")
     assert picture.listed("probe rise") == "probe rise: level at (0.05, 0) m"
     assert picture.listed("probe through") == "probe through: flux from (0.1, 0) to (0.15, 0.1) m"
 
     circles = [picture.metres(c.get("cx"), c.get("cy")) for c in picture.root.iter(NAME + "circle")]
-    for place in ((0.22, 0.15), (0.05, 0), (0.1, 0)):
+    for place in ((0.22, 0.15), (0.05, 0), (0.1, 0), (0.15, 0.1)):
         assert any(math.dist(place, c) < pixel for c in circles), place
-    assert len(circles) == 6  # and one in the list for each
+    assert len(circles) == 4
     lines = [p.get("d") for p in picture.root.iter(NAME + "path") if p.get("class") == "probe"]
     assert len(lines) == 1
     ends = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
