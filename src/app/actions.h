@@ -44,6 +44,11 @@ void heard_begin(struct heard *h, struct sphfsi_options *o);
 enum err explain_json(struct session *x, const struct heard *h, const struct sphfsi_options *o,
                       struct diag *d) SPHFSI_CHECKED;
 
+/* --- evidence.c --- */
+
+/* Prints the error that the accuracy study (docs/accuracy.md) lets expect of each body. */
+void evidence_say(const struct scene *scene, const struct sphfsi_options *o);
+
 /* --- preview.c --- */
 
 /* Draws the bodies as they are sampled, with sizes, clamps, probes, axes and a legend, as SVG. */

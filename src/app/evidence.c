@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The expected error of a case, from what the accuracy study measured. */
-#include "app/evidence.h"
-
+ * The expected error of a case, from what the accuracy study measured:
+ * src/app/data/evidence.csv, which `make accuracy` writes. */
+#include "app/actions.h"
 #include "app/embedded.h"
 #include "base/csv.h"
 #include "case/params.h"
@@ -10,40 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void read_field(const char *line, int k, char field[EVIDENCE_TEXT])
-{
-    size_t length = 0;
-    const char *const start = csv_field(line, k, &length);
-    snprintf(field, EVIDENCE_TEXT, "%.*s", (int)length, start ? start : "");
-}
-
-const char *evidence_first(void)
-{
-    const char *text = embedded_text("src/app/data/evidence.csv");
-    while (*text == '#') text = csv_next_line(text);
-    return csv_next_line(text); /* behind the names of the columns */
-}
-
-bool evidence_next(const char **rest, struct evidence *row)
-{
-    char field[EVIDENCE_TEXT];
-    if (!**rest) return false;
-    read_field(*rest, 0, field);
-    row->kind = field[0] == 's' ? SCENE_SOLID : field[0] == 'f' ? SCENE_FLUID : SCENE_COUPLED;
-    read_field(*rest, 1, row->accuracy);
-    read_field(*rest, 2, row->name);
-    read_field(*rest, 3, row->error);
-    read_field(*rest, 4, field);
-    row->resolution = strtod(field, NULL);
-    read_field(*rest, 5, row->what);
-    read_field(*rest, 6, field);
-    row->percent = strtod(field, NULL);
-    *rest = csv_next_line(*rest);
-    return true;
-}
+enum column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
 
 /* Least and largest error of the study's cases of a kind, each at its finest resolution that is no
- * finer than n; `coarser`: than all of a case. */
+ * finer than n; `coarser`: n is less than all of a case. */
 struct band {
     double low, high;
     bool coarser;
@@ -51,21 +21,26 @@ struct band {
 
 static struct band band_of(enum scene_kind kind, const char *accuracy, double n)
 {
+    const char first = kind == SCENE_SOLID ? 's' : kind == SCENE_FLUID ? 'f' : 'c';
     struct band band = {.low = (double)INFINITY};
-    char before[EVIDENCE_TEXT] = "";
-    double best = -1;
-    struct evidence row;
-    for (const char *rest = evidence_first(); evidence_next(&rest, &row);) {
-        if (row.kind != kind || strcmp(row.accuracy, accuracy) != 0) continue;
-        if (strcmp(before, row.name) != 0) {
-            if (best >= 0) band.low = min2(band.low, best), band.high = max2(band.high, best);
-            snprintf(before, sizeof before, "%s", row.name);
-            best = -1;
-            band.coarser |= row.resolution > n;
+    const char *before = "", *name, *line = embedded_text("src/app/data/evidence.csv");
+    double best = (double)NAN;
+    size_t length;
+    for (; *line; line = csv_next_line(line)) {
+        name = csv_field(line, ACCURACY, &length);
+        if (*line != first || strlen(accuracy) != length || strncmp(name, accuracy, length) != 0)
+            continue;
+        const double resolution = strtod(csv_field(line, RESOLUTION, &length), NULL);
+        name = csv_field(line, CASE, &length);
+        if (strncmp(name, before, length + 1) != 0) { /* a case's rows are by resolution */
+            band.low = fmin(band.low, best), band.high = fmax(band.high, best);
+            band.coarser |= resolution > n;
+            best = (double)NAN;
+            before = name;
         }
-        if (row.resolution <= n || best < 0) best = row.percent;
+        if (resolution <= n || isnan(best)) best = strtod(csv_field(line, PERCENT, &length), NULL);
     }
-    if (best >= 0) band.low = min2(band.low, best), band.high = max2(band.high, best);
+    band.low = fmin(band.low, best), band.high = fmax(band.high, best);
     return band;
 }
 
@@ -88,39 +63,32 @@ static double particles_across(const struct scene *scene, enum kind kind, int bo
 static void say_error(const struct scene *scene, enum kind kind, int body, const char *accuracy,
                       const struct sphfsi_options *o)
 {
-    const enum scene_kind like = kind == KIND_FLUID ? SCENE_FLUID
-                                 : scene->n_fluid   ? SCENE_COUPLED
-                                                    : SCENE_SOLID;
+    const bool fluid = kind == KIND_FLUID;
+    const enum scene_kind like = fluid ? SCENE_FLUID : scene->n_fluid ? SCENE_COUPLED : SCENE_SOLID;
     const double n = particles_across(scene, kind, body);
     const struct band band = band_of(like, accuracy, n);
     const char *const name =
-        kind == KIND_FLUID ? scene->fluid[body].common.name : scene->solid[body].common.name;
-    char range[64];
-    snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
-             band.low, band.high);
-    const bool moves =
-        kind == KIND_SOLID && scene->solid[body].clamp.n == 0 && !scene_is_bonded(scene, body);
+        fluid ? scene->fluid[body].common.name : scene->solid[body].common.name;
+    const bool moves = !fluid && scene->solid[body].clamp.n == 0 && !scene_is_bonded(scene, body);
+    char low[32] = "";
+    if (band.low < 0.9 * band.high) snprintf(low, sizeof low, "%.2g %% to ", band.low);
     if (moves || !isfinite(band.low))
-        session_say(
-            o,
-            "  %s: %.0f particles across; error unknown, because docs/accuracy.md has no case of "
-            "this kind",
-            name, n);
+        session_say(o,
+                    "  %s: %.0f particles across; error unknown, because docs/accuracy.md has no "
+                    "case of this kind",
+                    name, n);
     else if (band.coarser)
         session_say(o,
                     "  %s: %.0f particles across, fewer than in all cases of this kind in "
                     "docs/accuracy.md, so the error is not known; use a finer dp",
                     name, n);
-    else if (kind == KIND_FLUID)
-        session_say(o,
-                    "  %s: %.0f particles over its height: error of about %s (cases of this kind, "
-                    "docs/accuracy.md)",
-                    name, n, range);
     else
         session_say(o,
-                    "  %s: %.0f particles across: error of the tip displacement about %s (cases of "
-                    "this kind, docs/accuracy.md)",
-                    name, n, range);
+                    "  %s: %.0f particles %s about %s%.2g %% (cases of this kind, "
+                    "docs/accuracy.md)",
+                    name, n,
+                    fluid ? "over its height: error of" : "across: error of the tip displacement",
+                    low, band.high);
 }
 
 void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
@@ -137,9 +105,4 @@ void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
     for (int k = 0; k < scene->n_solid; k++) say_error(scene, KIND_SOLID, k, accuracy, o);
     for (int k = 0; k < scene->n_fluid && scene->n_solid == 0; k++)
         say_error(scene, KIND_FLUID, k, accuracy, o);
-}
-
-void evidence_say_preset(const struct scene *scene, const struct sphfsi_options *o)
-{
-    if (scene_given(scene, SECTION_top, 0, "accuracy")) evidence_say(scene, o);
 }

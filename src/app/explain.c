@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/actions.h"
 
-#include "app/evidence.h"
 #include "app/forecast.h"
 #include "case/params.h"
 #include "check/check.h"

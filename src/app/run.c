@@ -2,7 +2,6 @@
 #include "app/actions.h"
 
 #include "app/case_change.h"
-#include "app/evidence.h"
 #include "base/run_dir.h"
 #include "check/check.h"
 #include "output/checkpoint.h"
@@ -416,7 +415,8 @@ static enum err begin_run(struct run *r)
     r->record.start_time = time;
     r->record.start_particle_steps = r->s->state.particle_steps;
     r->wall_start = r->wall_checkpoint = r->wall_progress = wall_clock();
-    evidence_say_preset(&r->session.scene, r->options);
+    if (scene_given(&r->session.scene, SECTION_top, 0, "accuracy"))
+        evidence_say(&r->session.scene, r->options);
     return ERR_OK;
 }
 

@@ -2,8 +2,9 @@
  * What the program says of itself is true: examples are accepted, templates run, sources fit the
  * scene. */
 #include "case/effects.h"
-#include "app/evidence.h"
 #include "app/actions.h"
+#include "app/embedded.h"
+#include "base/csv.h"
 #include "check/check.h"
 #include "case/params.h"
 #include "geometry/load.h"
@@ -198,28 +199,30 @@ static void an_unknown_template_names_the_known(void)
 
 /* --- what the study measured --- */
 
-static void evidence_is_read_row_by_row(void)
+static void evidence_has_numbers_in_every_row(void)
 {
-    struct evidence row;
+    const char *line = embedded_text("src/app/data/evidence.csv");
     int n = 0, kinds = 0;
-    for (const char *rest = evidence_first(); evidence_next(&rest, &row); n++) {
-        TEST_ASSERT_TRUE_MESSAGE(row.name[0] && row.error[0] && row.what[0], row.name);
-        TEST_ASSERT_TRUE_MESSAGE(row.resolution > 1 && row.percent > 0, row.name);
-        TEST_ASSERT_TRUE_MESSAGE(strcmp(row.accuracy, "draft") == 0 ||
-                                     strcmp(row.accuracy, "standard") == 0 ||
-                                     strcmp(row.accuracy, "fine") == 0 ||
-                                     strcmp(row.accuracy, "paper") == 0,
-                                 row.accuracy);
-        kinds |= 1 << row.kind;
+    while (*line == '#') line = csv_next_line(line);
+    for (line = csv_next_line(line); *line; line = csv_next_line(line), n++) {
+        size_t length[7];
+        const char *field[7];
+        for (int k = 0; k < 7; k++) {
+            field[k] = csv_field(line, k, &length[k]);
+            TEST_ASSERT_NOT_NULL_MESSAGE(field[k], line);
+            TEST_ASSERT_GREATER_THAN(0, length[k]);
+        }
+        TEST_ASSERT_TRUE_MESSAGE(strtod(field[4], NULL) > 1 && strtod(field[6], NULL) > 0, line);
+        bool known = false;
+        static const char *const accuracies[] = {"draft", "standard", "fine", "paper"};
+        for (size_t k = 0; k < COUNT_OF(accuracies); k++)
+            known |= strlen(accuracies[k]) == length[1] &&
+                     strncmp(field[1], accuracies[k], length[1]) == 0;
+        TEST_ASSERT_TRUE_MESSAGE(known, line);
+        kinds |= *line == 's' ? 1 : *line == 'f' ? 2 : *line == 'c' ? 4 : 8;
     }
     TEST_ASSERT_GREATER_THAN(10, n);
     TEST_ASSERT_EQUAL_INT(7, kinds);
-    const char *const line = "coupled,fine,\"A, b\",tip,4,across,0.5\n", *rest = line;
-    TEST_ASSERT_TRUE(evidence_next(&rest, &row));
-    TEST_ASSERT_EQUAL_STRING("A, b", row.name);
-    TEST_ASSERT_EQUAL_STRING("tip", row.error);
-    TEST_ASSERT_EQUAL_DOUBLE(0.5, row.percent);
-    TEST_ASSERT_FALSE(evidence_next(&rest, &row));
 }
 
 /* --- messages --- */
@@ -296,8 +299,8 @@ static void preview_shows_the_scene(void)
     TEST_ASSERT_NOT_NULL(strstr(svg, "</svg>"));
 }
 
-/* A body is drawn with cells of its own: their spacings, their angle. */
-static void preview_shows_cells_as_they_are(void)
+/* A body is drawn with particles of its own spacing. */
+static void preview_shows_particles_as_they_are(void)
 {
     const struct sphfsi_options o = {
         .case_text = "dp = 2 mm\nend_time = 1\n"
@@ -312,10 +315,12 @@ static void preview_shows_cells_as_they_are(void)
     static char svg[1 << 16];
     svg[fread(svg, 1, sizeof svg - 1, file)] = '\0';
     fclose(file);
-    TEST_ASSERT_NOT_NULL(
-        strstr(svg, "solid thin: 0.01 x 0.07 m, 448 particles of 0.00125 x 0.00125 m;"));
-    TEST_ASSERT_NOT_NULL(
-        strstr(svg, "solid slanted: 0.01 x 0.05 m at -36.87 degrees, 320 particles"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "solid thin: 0.01 x 0.07 m, 448 particles;"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "solid slanted: "));
+    TEST_ASSERT_NOT_NULL(strstr(svg, " m, 320 particles;"));
+    size_t squares = 0;
+    for (const char *at = svg; (at = strstr(at, "h.01")); at++) squares++;
+    TEST_ASSERT_EQUAL_UINT64(448 + 320, squares);
 }
 
 static void preview_to_nowhere_is_reported(void)
@@ -334,11 +339,11 @@ int main(void)
     RUN_TEST(every_template_runs);
     RUN_TEST(every_template_is_its_file);
     RUN_TEST(an_unknown_template_names_the_known);
-    RUN_TEST(evidence_is_read_row_by_row);
+    RUN_TEST(evidence_has_numbers_in_every_row);
     RUN_TEST(sources_fit_the_scene);
     RUN_TEST(every_key_is_listed);
     RUN_TEST(preview_shows_the_scene);
-    RUN_TEST(preview_shows_cells_as_they_are);
+    RUN_TEST(preview_shows_particles_as_they_are);
     RUN_TEST(preview_to_nowhere_is_reported);
     return UNITY_END();
 }
