@@ -25,23 +25,11 @@ void closing_say_next(const struct sphfsi_options *o, const struct simulation *s
 
 /* --- explain.c --- */
 
-/* Prints effects, memory, time step and cost of a scene. Takes some steps in memory to measure the
- * cost. */
-enum err explain_text(struct session *x, const struct sphfsi_options *o, struct diag *d)
-    SPHFSI_CHECKED;
-
-/* Warnings on their way to the caller, kept for explain_json, one a line. */
-struct heard {
-    void (*message)(void *context, enum sphfsi_message kind, const char *text);
-    void *context;
-    char *text;
-    size_t n;
-};
-/* Keeps the warnings of the options from now on. The caller frees `text`. */
-void heard_begin(struct heard *h, struct sphfsi_options *o);
-
-/* The same as one text in JSON, with the warnings that were heard. */
-enum err explain_json(struct session *x, const struct heard *h, const struct sphfsi_options *o,
+/* Prints effects, memory, time step and cost of a scene, as text or as JSON. Takes some steps in
+ * memory to measure the cost. */
+enum err explain_text(struct session *x, const struct sphfsi_options *o, const char *unused,
+                      struct diag *d) SPHFSI_CHECKED;
+enum err explain_json(struct session *x, const struct sphfsi_options *o, const char *unused,
                       struct diag *d) SPHFSI_CHECKED;
 
 /* --- evidence.c --- */

@@ -34,91 +34,92 @@ enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
     return call_end(&c, e);
 }
 
-static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
-{
-    const char *name = o->case_path ? o->case_path : "case";
-    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
-    const size_t length = strlen(name);
-    const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
-    if (o->out)
-        snprintf(path, PATH_BYTES, "%s", o->out);
-    else
-        snprintf(path, PATH_BYTES, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
-}
+/* --- what is done with a scene that was read, or with its simulation at time zero --- */
 
-/* What is done with a scene that was read, or with a session. */
-enum action { EFFECTIVE, PREVIEW, CITE, EXPLAIN, EXPLAIN_JSON };
+struct request {
+    const char *name;
+    bool simulation; /* is needed */
+    enum err (*act)(struct session *x, const struct sphfsi_options *o, const char *path,
+                    struct diag *d);
+};
 
-static enum err show_scene(enum action action, const struct scene *scene,
-                           const struct sphfsi_options *o, const char *path, struct diag *d)
-{
-    char picture[PATH_BYTES];
-    if (action == EFFECTIVE) return scene_write(scene, path, d);
-    if (action == CITE) {
-        manual_cite(scene, effects_of_scene(scene), o);
-        return ERR_OK;
-    }
-    preview_path(o, picture);
-    TRY(preview_draw(scene, picture, d));
-    session_say(o, "%s: picture of the case at the start; open it in a browser", picture);
-    return ERR_OK;
-}
-
-static enum err show(enum action action, struct session *x, struct sphfsi_options *o,
-                     const char *path, struct diag *d)
-{
-    struct heard h = {.text = NULL};
-    if (action == EXPLAIN_JSON) heard_begin(&h, o);
-    enum err e = action < EXPLAIN ? session_read(x, o, d) : session_open(x, o, d);
-    if (!e && action < EXPLAIN) {
-        e = show_scene(action, &x->scene, o, path, d);
-        scene_free(&x->scene);
-    } else if (!e) {
-        e = action == EXPLAIN ? explain_text(x, o, d) : explain_json(x, &h, o, d);
-        session_close(x);
-    }
-    free(h.text);
-    return e;
-}
-
-/* `path`: of the file that sphfsi_effective writes. */
-static enum sphfsi_status act(const char *name, const struct sphfsi_options *options,
-                              enum action action, const char *path)
+static enum sphfsi_status respond(const struct request *request,
+                                  const struct sphfsi_options *options, const char *path)
 {
     struct call c;
-    enum err e = call_begin(&c, name, options);
+    enum err e = call_begin(&c, request->name, options);
     struct session *const x = e ? NULL : calloc(1, sizeof *x);
-    if (!e && !x)
-        e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory for %zu bytes", name, sizeof *x);
-    if (x) e = show(action, x, &c.options, path, &c.diag);
+    if (!e && !x) e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory", request->name);
+    if (!e)
+        e = request->simulation ? session_open(x, &c.options, &c.diag)
+                                : session_read(x, &c.options, &c.diag);
+    if (!e) {
+        e = request->act(x, &c.options, path, &c.diag);
+        session_close(x);
+    }
     free(x);
     return call_end(&c, e);
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
 {
-    return act("explain", options, EXPLAIN, NULL);
+    static const struct request request = {"explain", true, explain_text};
+    return respond(&request, options, NULL);
 }
 
 enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
 {
-    return act("explain", options, EXPLAIN_JSON, NULL);
+    static const struct request request = {"explain", true, explain_json};
+    return respond(&request, options, NULL);
+}
+
+static enum err write_effective(struct session *x, const struct sphfsi_options *o, const char *path,
+                                struct diag *d)
+{
+    (void)o;
+    return scene_write(&x->scene, path, d);
 }
 
 enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
 {
-    if (!path) return call_without("effective", "path");
-    return act("case", options, EFFECTIVE, path);
+    static const struct request request = {"case", false, write_effective};
+    return path ? respond(&request, options, path) : call_without("effective", "path");
+}
+
+static enum err draw(struct session *x, const struct sphfsi_options *o, const char *path,
+                     struct diag *d)
+{
+    char file[PATH_BYTES];
+    int length;
+    const char *const name = session_name(o, &length);
+    (void)path;
+    if (o->out)
+        snprintf(file, sizeof file, "%s", o->out);
+    else
+        snprintf(file, sizeof file, "preview-%.*s.svg", length, name);
+    TRY(preview_draw(&x->scene, file, d));
+    session_say(o, "%s: picture of the case at the start; open it in a browser", file);
+    return ERR_OK;
 }
 
 enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
 {
-    return act("preview", options, PREVIEW, NULL);
+    static const struct request request = {"preview", false, draw};
+    return respond(&request, options, NULL);
+}
+
+static enum err cite(struct session *x, const struct sphfsi_options *o, const char *path,
+                     struct diag *d)
+{
+    (void)path, (void)d;
+    manual_cite(&x->scene, effects_of_scene(&x->scene), o);
+    return ERR_OK;
 }
 
 enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
 {
-    return act("cite", options, CITE, NULL);
+    static const struct request request = {"cite", false, cite};
+    return respond(&request, options, NULL);
 }
 
 enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)

@@ -262,8 +262,10 @@ static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o
     return ERR_OK;
 }
 
-enum err explain_text(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err explain_text(struct session *x, const struct sphfsi_options *o, const char *unused,
+                      struct diag *d)
 {
+    (void)unused;
     struct simulation *sim = &x->simulation;
     say_scene(x, o);
     say_lattices(&x->scene, o);
@@ -283,39 +285,6 @@ enum err explain_text(struct session *x, const struct sphfsi_options *o, struct 
 }
 
 /* --- the same as JSON --- */
-
-static void hear(void *context, enum sphfsi_message kind, const char *text)
-{
-    struct heard *const h = context;
-    const size_t length = strlen(text);
-    char *const more = kind == SPHFSI_WARNING ? realloc(h->text, h->n + length + 2) : NULL;
-    if (more) {
-        memcpy(more + h->n, text, length);
-        memcpy(more + h->n + length, "\n", 2);
-        h->text = more;
-        h->n += length + 1;
-    }
-    h->message(h->context, kind, text);
-}
-
-void heard_begin(struct heard *h, struct sphfsi_options *o)
-{
-    *h = (struct heard){.message = o->message, .context = o->context};
-    if (!o->message) return;
-    o->message = hear;
-    o->context = h;
-}
-
-static void write_warnings(struct json *j, const struct heard *h)
-{
-    char text[sizeof((struct diag *)0)->text];
-    json_open(j, "warnings", '[');
-    for (const char *at = h->text; at && *at; at += strcspn(at, "\n") + 1) {
-        snprintf(text, sizeof text, "%.*s", (int)strcspn(at, "\n"), at);
-        json_text(j, NULL, text);
-    }
-    json_close(j, ']');
-}
 
 static void write_scene(struct json *j, const struct session *x)
 {
@@ -373,7 +342,7 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
     json_close(j, '}');
 }
 
-static enum err write_all(FILE *file, struct session *x, const struct heard *h, struct diag *d)
+static enum err write_all(FILE *file, struct session *x, struct diag *d)
 {
     struct json j = {.file = file};
     struct simulation *const sim = &x->simulation;
@@ -389,19 +358,19 @@ static enum err write_all(FILE *file, struct session *x, const struct heard *h, 
     write_cost(&j, sim, &c);
     report_derived(&j, &x->scene);
     report_parameters(&j, &x->scene);
-    write_warnings(&j, h);
     json_close(&j, '}');
     return ERR_OK;
 }
 
-enum err explain_json(struct session *x, const struct heard *h, const struct sphfsi_options *o,
+enum err explain_json(struct session *x, const struct sphfsi_options *o, const char *unused,
                       struct diag *d)
 {
+    (void)unused;
     char *text = NULL;
     size_t size;
     FILE *const file = open_memstream(&text, &size);
     if (!file) return diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
-    enum err e = write_all(file, x, h, d);
+    enum err e = write_all(file, x, d);
     if (fclose(file) != 0 && !e) e = diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
     if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
     free(text);

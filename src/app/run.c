@@ -105,22 +105,18 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }
 
-/* Decides about a failed snapshot: [output] snapshot_failure says whether the run stops. If not,
- * the next snapshot is tried; the file keeps the earlier ones. */
-static enum err judge_snapshot(struct run *r, enum err e, double time, struct diag *why)
-{
-    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
-        return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
-    r->image.snapshots_missed++;
-    diag_warn(why, "the snapshot at %.6g s is missing, the run continues: %s", time, why->text);
-    return ERR_OK;
-}
-
+/* [output] snapshot_failure says whether a failure stops the run. If not, the next snapshot is
+ * tried; the file keeps the earlier ones. */
 static enum err write_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);
     const enum err e = snapshots_write(&r->snapshots, r->s, &why);
-    return judge_snapshot(r, e, r->s->state.time, &why);
+    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
+        return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
+    r->image.snapshots_missed++;
+    diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->s->state.time,
+              why.text);
+    return ERR_OK;
 }
 
 static enum err write_checkpoint(struct run *r)
@@ -291,17 +287,15 @@ static enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_B
         return diag_fail(d, ERR_INPUT, "out: the path has %zu characters, but 1 to %d are allowed",
                          strlen(o->out), PATH_BYTES - 301);
     }
-    const char *name = o->case_path ? o->case_path : "case";
-    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
-    const size_t whole = strlen(name);
-    const size_t length = whole > 4 && strcmp(name + whole - 4, ".cfg") == 0 ? whole - 4 : whole;
+    int length;
+    const char *const name = session_name(o, &length);
     /* A name of dots would be a folder outside of runs/. */
-    if (strspn(name, ".") >= length)
+    if ((int)strspn(name, ".") >= length)
         return diag_fail(
             d, ERR_INPUT,
             "%s: '%.*s' cannot be the name of the folder of results; choose one with --out",
-            o->case_path, (int)length, name);
-    snprintf(path, PATH_BYTES, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
+            o->case_path, length, name);
+    snprintf(path, PATH_BYTES, "runs/%.*s%s", length, name, o->fork ? "-fork" : "");
     return ERR_OK;
 }
 

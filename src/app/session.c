@@ -54,47 +54,45 @@ void session_result(const struct sphfsi_options *o, const char *format, ...)
     va_end(args);
 }
 
+const char *session_name(const struct sphfsi_options *o, int *length)
+{
+    const char *const path = o->case_path ? o->case_path : "case";
+    const char *const name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    const int n = (int)strlen(name);
+    *length = n > 4 && strcmp(name + n - 4, ".cfg") == 0 ? n - 4 : n;
+    return name;
+}
+
 /* No run has more steps, nor a file more rows. */
 static const double most_counts = 1e10;
 
-/* A time between two of `what`; 0: none is set. */
-struct counted {
-    enum section_id section;
-    int index;
-    const char *key;
-    double between;
-    const char *what;
-};
-
-static enum err check_count(const struct scene *scene, const struct counted *c, double until,
-                            struct diag *d)
+/* A key is a time between two of `what`; 0: none is set. */
+static enum err check_count(const struct scene *scene, enum section_id section, int index,
+                            const char *key, double between, const char *what, struct diag *d)
 {
-    const double end = max2(scene->top.end_time, until), n = end / c->between;
+    const double end = scene->top.end_time, n = end / between;
     char place[LOCATION_TEXT];
-    if (c->between == 0 || n <= most_counts) return ERR_OK;
-    scene_location(scene, scene_line(scene, c->section, c->index, c->key), place);
+    if (between == 0 || n <= most_counts) return ERR_OK;
+    scene_location(scene, scene_line(scene, section, index, key), place);
     return diag_fail(d, ERR_INPUT,
                      "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose "
                      "at least %.3g s",
-                     place, c->key, c->between, n, c->what, end, most_counts, end / most_counts);
+                     place, key, between, n, what, end, most_counts, end / most_counts);
 }
 
-static enum err check_counts(const struct scene *scene, double until, struct diag *d)
+static enum err check_counts(const struct scene *scene, struct diag *d)
 {
     const struct scene_output *const out = &scene->output;
-    const struct counted item[] = {
-        {SECTION_numerics, 0, "fixed_step", scene->numerics.fixed_step, "steps"},
-        {SECTION_output, 0, "probe_interval", out->probe_interval, "rows"},
-        {SECTION_output, 0, "ledger_interval", out->ledger_interval, "rows"},
-        {SECTION_output, 0, "snapshot_interval", out->snapshot_interval, "snapshots"},
-        {SECTION_output, 0, "checkpoint_interval", out->checkpoint_interval, "checkpoints"},
-    };
-    for (size_t k = 0; k < COUNT_OF(item); k++) TRY(check_count(scene, &item[k], until, d));
-    for (int k = 0; k < scene->n_probe; k++) {
-        const struct counted rows = {SECTION_probe, k, "interval", scene->probe[k].interval,
-                                     "rows"};
-        TRY(check_count(scene, &rows, until, d));
-    }
+    const double step = scene->numerics.fixed_step;
+    TRY(check_count(scene, SECTION_numerics, 0, "fixed_step", step, "steps", d));
+    TRY(check_count(scene, SECTION_output, 0, "probe_interval", out->probe_interval, "rows", d));
+    TRY(check_count(scene, SECTION_output, 0, "ledger_interval", out->ledger_interval, "rows", d));
+    TRY(check_count(scene, SECTION_output, 0, "snapshot_interval", out->snapshot_interval,
+                    "snapshots", d));
+    TRY(check_count(scene, SECTION_output, 0, "checkpoint_interval", out->checkpoint_interval,
+                    "checkpoints", d));
+    for (int k = 0; k < scene->n_probe; k++)
+        TRY(check_count(scene, SECTION_probe, k, "interval", scene->probe[k].interval, "rows", d));
     return ERR_OK;
 }
 
@@ -107,9 +105,8 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
     if (out->probe_interval == 0) out->probe_interval = end / 1000;
     if (out->ledger_interval == 0) out->ledger_interval = end / 1000;
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
-    TRY(check_counts(scene, until, d));
     scene->top.end_time = due_round(until > 0 ? until : end);
-    return ERR_OK;
+    return check_counts(scene, d);
 }
 
 static enum err check_options(const struct sphfsi_options *o, struct diag *d)

@@ -22,6 +22,9 @@ enum err session_open(struct session *x, const struct sphfsi_options *o, struct 
     SPHFSI_CHECKED;
 void session_close(struct session *x);
 
+/* The name of the case: that of its file without folder and ending, `length` characters. */
+const char *session_name(const struct sphfsi_options *o, int *length);
+
 /* A diag whose warnings go to the message callback. */
 struct diag session_diag(const struct sphfsi_options *o);
 

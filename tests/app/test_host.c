@@ -454,20 +454,7 @@ static void explain_is_data_too(void)
     TEST_ASSERT_NOT_NULL(strstr(json, "\"fluid\": 100"));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"effects\": "));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"wall_seconds\": "));
-    TEST_ASSERT_NOT_NULL(strstr(json, "\"warnings\": ["));
     TEST_ASSERT_EQUAL_STRING("}\n", json + strlen(json) - 2);
-}
-
-static void warnings_are_data_too(void)
-{
-    static const char *const sets[] = {"water.density=1"};
-    const struct sphfsi_options o = {
-        .case_text = tiny_case, .threads = 1, .message = keep_json, .n_sets = 1, .sets = sets};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_explain_json(&o), sphfsi_error());
-    const char *const list = strstr(json, "\"warnings\": [");
-    TEST_ASSERT_NOT_NULL(list);
-    TEST_ASSERT_NOT_NULL(strstr(list, "less than any liquid"));
-    TEST_ASSERT_NOT_NULL(strstr(list, "only 3 particles thick"));
 }
 
 int main(void)
@@ -484,6 +471,5 @@ int main(void)
     RUN_TEST(null_is_refused);
     RUN_TEST(what_is_out_of_range_has_an_answer);
     RUN_TEST(explain_is_data_too);
-    RUN_TEST(warnings_are_data_too);
     return UNITY_END();
 }

@@ -86,6 +86,7 @@ def test_before_a_run():
     plan = case.explain(threads=1)
     assert plan["particles"] == {"fluid": 100, "wall": 204, "solid": 45}, plan["particles"]
     assert "100 particles" in str(plan) and plan["cost"]["threads"] == 1
+    assert any("3 particles thick" in one for one in plan["warnings"]), plan["warnings"]
     bounds = plan["time_step_bounds"]
     assert bounds[plan["time_step_bound"]] == min(bounds.values())
     assert plan["parameters"]["solid"]["gate"]["poisson"] == 0.4
