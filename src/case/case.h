@@ -23,7 +23,6 @@
 
 #include "case/params.h"
 
-enum { SECTION_constants = SECTION_COUNT }; /* free names: no row of case/params.def */
 enum {
     CASE_MAX_BYTES = 4 << 20,
     CASE_MAX_LINES = 20000,
@@ -103,9 +102,10 @@ enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
 /* The problems stored so far, sorted by line, as the failure in the diag. */
 void case_report(struct reader *r);
 
-/* case/lines.c: text to sections and entries, then --set arguments. */
-enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
-enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
+/* case/lines.c: text and --set arguments to sections and entries; the entry of a key, or NULL. */
+enum err case_split(struct reader *r, const char *text, int n_sets, const char *const *sets)
+    SPHFSI_CHECKED;
+const struct entry *case_entry(const struct reader *r, int section, const char *key);
 
 /* case/numbers.c. Finds the names of all constants and of the numbers at the top, ERR_INPUT if one
  * is invalid; then evaluates all of them. */

@@ -183,12 +183,9 @@ static enum err check_contact(struct reader *r, const void *section)
 static enum err check_load(struct reader *r, const void *section)
 {
     const struct scene_load *const l = section;
-    if (!*l->body) return bad_section(r, l, NULL, "needs `body`, the solid it acts on");
-    if (l->shape.n == 0) return bad_section(r, l, NULL, "needs a `shape`, the region it acts on");
-    if (!l->force.e[0] == !l->traction.e[0])
-        return bad_section(r, l, NULL, "needs either `force` or `traction`, and has %s",
-                           l->force.e[0] ? "both" : "neither");
-    return ERR_OK;
+    if (!l->force.e[0] != !l->traction.e[0]) return ERR_OK;
+    return bad_section(r, l, NULL, "needs either `force` or `traction`, and has %s",
+                       l->force.e[0] ? "both" : "neither");
 }
 
 /* --- unnamed sections and references --- */
@@ -291,10 +288,9 @@ static enum err check_reference(struct reader *r, const void *section)
 {
     const struct scene_reference *const ref = section;
     const bool formula = ref->formula.e[0] != NULL;
-    if (!*ref->probe || (!*ref->file && !formula))
-        return bad_section(r, ref, NULL, "needs `%s`", *ref->probe ? "file` or `formula" : "probe");
-    if (*ref->file && formula)
-        return bad_section(r, ref, NULL, "has both `file` and `formula`; leave one out");
+    if (!*ref->file == !formula)
+        return bad_section(r, ref, NULL, "needs either `file` or `formula`, and has %s",
+                           formula ? "both" : "neither");
     if (!(ref->from < ref->until))
         return bad_section(r, ref, NULL, "from = %g s must come before until = %g s", ref->from,
                            ref->until);
@@ -303,6 +299,7 @@ static enum err check_reference(struct reader *r, const void *section)
         const size_t length = strlen(name);
         if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
     }
+    if (!*ref->probe) return ERR_OK; /* reported as missing */
     return bad_section(r, ref, "probe",
                        "probe = %.80s: no probe has such a column; a column is "
                        "PROBE_QUANTITY_UNIT, such as M1_dx_m",

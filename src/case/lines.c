@@ -53,17 +53,10 @@ static const char *cut_value(char *value, const char **why)
     return value;
 }
 
-static const char *section_word(int id)
-{
-    return id == SECTION_constants ? "constants" : section_table[id].word;
-}
-
-static bool section_named(int id) { return id != SECTION_constants && section_table[id].named; }
-
 static int find_section_id(const char *word)
 {
     for (int id = SECTION_top + 1; id <= SECTION_constants; id++)
-        if (strcmp(section_word(id), word) == 0) return id;
+        if (strcmp(section_table[id].word, word) == 0) return id;
     return -1;
 }
 
@@ -72,11 +65,11 @@ static enum err unknown_section(struct reader *r, int line, const char *word)
     struct nearest near = {0};
     char known[400] = "constants";
     for (int id = SECTION_top + 1; id <= SECTION_constants; id++) {
-        const char *const name = section_word(id);
+        const char *const name = section_table[id].word;
         const size_t used = strlen(known);
         if (has_usual_name(name, word))
             return bad_line(r, line, "unknown section [%.60s]; did you mean [%s%s]?", word, name,
-                            section_named(id) ? " NAME" : "");
+                            section_table[id].named ? " NAME" : "");
         nearest_offer(&near, word, name);
         if (id < SECTION_constants)
             snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
@@ -88,8 +81,8 @@ static enum err unknown_section(struct reader *r, int line, const char *word)
 
 static enum err add_section(struct reader *r, int line, int id, const char *name)
 {
-    const bool named = section_named(id);
-    const char *const word = section_word(id);
+    const bool named = section_table[id].named;
+    const char *const word = section_table[id].word;
     if (named && !*name) return bad_line(r, line, "[%s] needs a name: [%s NAME]", word, word);
     if (!named && *name) return bad_line(r, line, "[%s] takes no name", word);
     if (named && (!is_name(name) || strlen(name) >= SCENE_NAME))
@@ -171,50 +164,29 @@ static enum err read_line(struct reader *r, int line, char *text)
     return err;
 }
 
-enum err case_split(struct reader *r, const char *text)
-{
-    int n_lines = 1;
-    for (const char *c = text; *c; c++) n_lines += *c == '\n';
-    if (n_lines > CASE_MAX_LINES)
-        return bad_line(r, CASE_MAX_LINES, "the case file has more than %d lines", CASE_MAX_LINES);
-    const size_t capacity = (size_t)n_lines + 1;
-    r->entries = arena_alloc(&r->temp, capacity, sizeof *r->entries, "case file", r->diag);
-    r->sections = arena_alloc(&r->temp, capacity, sizeof *r->sections, "case file", r->diag);
-    const size_t bytes = strlen(text) + 1;
-    char *copy = arena_alloc(&r->temp, bytes, 1, "case file", r->diag);
-    if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
-    memcpy(copy, text, bytes);
-    if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
-    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
-    int line = 1;
-    for (char *next; copy; copy = next, line++) {
-        next = strchr(copy, '\n');
-        if (next) *next++ = '\0';
-        const enum err err = read_line(r, line, copy);
-        if (err) r->incomplete = true;
-        TRY(case_go_on(r, err));
-    }
-    return ERR_OK;
-}
-
 /* --- --set --- */
 
+const struct entry *case_entry(const struct reader *r, int section, const char *key)
+{
+    for (int k = 0; k < r->n_entries; k++)
+        if (r->entries[k].section == section && strcmp(r->entries[k].key, key) == 0)
+            return &r->entries[k];
+    return NULL;
+}
+
 /* Whether a section has a key: one of case/params.def, or a constant of the file. */
-static bool takes_key(const struct reader *r, int section, const char *key, struct nearest *near)
+static bool takes_key(const struct reader *r, int section, const char *key)
 {
     const int id = r->sections[section].id;
-    for (int k = 0; k < PARAM_COUNT; k++)
-        if ((int)param_table[k].section == id) nearest_offer(near, key, param_table[k].key);
-    for (int k = 0; k < r->n_entries && id == SECTION_constants; k++)
-        if (r->entries[k].section == section) nearest_offer(near, key, r->entries[k].key);
-    return near->name && near->distance == 0;
+    return id == SECTION_constants ? case_entry(r, section, key) != NULL
+                                   : param_find((enum section_id)id, key) != NULL;
 }
 
 /* Whether "solid gate", "gate", "numerics" or "" (top and constants) names a section. */
 static bool means_section(const struct case_section *s, const char *prefix)
 {
     if (!*prefix) return s->id == SECTION_top || s->id == SECTION_constants;
-    const char *const word = section_word(s->id);
+    const char *const word = section_table[s->id].word;
     if (!*s->name) return s->id != SECTION_top && strcmp(word, prefix) == 0;
     if (strcmp(s->name, prefix) == 0) return true;
     const size_t length = strlen(word);
@@ -227,26 +199,32 @@ static bool means_section(const struct case_section *s, const char *prefix)
 static enum err add_missing(struct reader *r, const char *prefix)
 {
     const int id = *prefix ? find_section_id(prefix) : -1;
-    if (id < 0 || id == SECTION_constants || section_named(id)) return ERR_OK;
+    if (id < 0 || id == SECTION_constants || section_table[id].named) return ERR_OK;
     for (int k = 0; k < r->n_sections; k++)
         if (r->sections[k].id == id) return ERR_OK;
     return add_section(r, 0, id, "");
 }
 
+static const char *name_of(const struct case_section *s)
+{
+    return *s->name ? s->name : section_table[s->id].word;
+}
+
 /* A key of --set that no section meant by the prefix has: what it may be, or where it belongs.
  * `id`: of one of these sections. */
-static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix, int id,
-                               struct nearest *near)
+static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix, int id)
 {
     char hint[PARAM_HINT];
-    for (int k = 0; k < r->n_sections && !*prefix; k++) {
-        const struct case_section *const s = &r->sections[k];
-        struct nearest key = {0};
-        if (takes_key(r, k, e->key, &key))
+    struct nearest near = {0};
+    for (int k = 0; k < r->n_sections && !*prefix; k++)
+        if (takes_key(r, k, e->key))
             return bad_entry(r, e, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
-                             *s->name ? s->name : section_word(s->id), e->key);
-    }
-    param_hint((enum section_id)id, e->key, near, hint);
+                             name_of(&r->sections[k]), e->key);
+    for (int k = 0; k < r->n_entries; k++)
+        if (r->sections[r->entries[k].section].id == SECTION_constants &&
+            (!*prefix || id == SECTION_constants))
+            nearest_offer(&near, e->key, r->entries[k].key);
+    param_hint((enum section_id)id, e->key, &near, hint);
     return bad_entry(r, e, "unknown %s `%.60s`%s", *prefix || *hint ? "key" : "key or constant",
                      e->key, hint);
 }
@@ -255,50 +233,44 @@ static enum err unknown_in_set(struct reader *r, const struct entry *e, const ch
 static enum err find_target(struct reader *r, const struct entry *e, const char *prefix,
                             int *target)
 {
-    struct nearest near_key = {0}, near_section = {0};
+    struct nearest near = {0};
     int meant = -1;
     TRY(add_missing(r, prefix));
     *target = -1;
     for (int k = 0; k < r->n_sections; k++) {
         const struct case_section *const s = &r->sections[k];
-        const char *const name = *s->name ? s->name : section_word(s->id);
-        struct nearest near = {0};
-        if (*prefix && s->id != SECTION_top) nearest_offer(&near_section, prefix, name);
+        if (*prefix && s->id != SECTION_top) nearest_offer(&near, prefix, name_of(s));
         if (!means_section(s, prefix)) continue;
         if (meant < 0) meant = s->id;
-        if (takes_key(r, k, e->key, &near)) {
-            const struct case_section *const first = *target < 0 ? NULL : &r->sections[*target];
-            if (first)
-                return bad_entry(
-                    r, e, "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
-                    section_word(first->id), first->name, section_word(s->id), s->name, e->key,
-                    section_word(*first->name ? first->id : s->id),
-                    *first->name ? first->name : s->name, e->key);
-            *target = k;
-        }
-        if (near.name) nearest_offer(&near_key, e->key, near.name);
+        if (!takes_key(r, k, e->key)) continue;
+        const struct case_section *const first = *target < 0 ? NULL : &r->sections[*target];
+        if (first)
+            return bad_entry(r, e,
+                             "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
+                             section_table[first->id].word, first->name, section_table[s->id].word,
+                             s->name, e->key, section_table[*first->name ? first->id : s->id].word,
+                             *first->name ? first->name : s->name, e->key);
+        *target = k;
     }
     if (*target >= 0) return ERR_OK;
-    if (meant >= 0) return unknown_in_set(r, e, prefix, meant, &near_key);
+    if (meant >= 0) return unknown_in_set(r, e, prefix, meant);
     return bad_entry(r, e,
-                     near_section.name ? "there is no section `%.60s`%s"
-                                       : "the case has no section `%.60s`%s",
-                     prefix, nearest_hint(&near_section));
+                     near.name ? "there is no section `%.60s`%s"
+                               : "the case has no section `%.60s`%s",
+                     prefix, nearest_hint(&near));
 }
 
 /* Replaces the file's entry for the key (all entries of a list of shapes). */
 static void put_entry(struct reader *r, struct entry e)
 {
     int kept = 0;
-    for (int k = 0; k < r->n_entries; k++) {
-        const struct entry old = r->entries[k];
-        if (old.section != e.section || strcmp(old.key, e.key) != 0)
-            r->entries[kept++] = old;
-        else
-            e.replaces = old.set ? old.replaces : old.value;
-    }
-    r->n_entries = kept;
-    r->entries[r->n_entries++] = e;
+    const struct entry *const old = case_entry(r, e.section, e.key);
+    if (old) e.replaces = old->set ? old->replaces : old->value;
+    for (int k = 0; k < r->n_entries; k++)
+        if (r->entries[k].section != e.section || strcmp(r->entries[k].key, e.key) != 0)
+            r->entries[kept++] = r->entries[k];
+    r->entries[kept] = e;
+    r->n_entries = kept + 1;
 }
 
 static enum err apply_set(struct reader *r, const char *set)
@@ -331,18 +303,31 @@ static enum err apply_set(struct reader *r, const char *set)
     return ERR_OK;
 }
 
-enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
+/* --- all --- */
+
+enum err case_split(struct reader *r, const char *text, int n_sets, const char *const *sets)
 {
-    if (n_sets <= 0) return ERR_OK;
-    const size_t capacity = (size_t)r->n_entries + (size_t)n_sets;
-    const size_t sections = (size_t)r->n_sections + SECTION_COUNT;
-    struct entry *entries = arena_alloc(&r->temp, capacity, sizeof *entries, "case file", r->diag);
-    struct case_section *more = arena_alloc(&r->temp, sections, sizeof *more, "case file", r->diag);
-    if (!entries || !more) return ERR_MEMORY;
-    memcpy(entries, r->entries, (size_t)r->n_entries * sizeof *entries);
-    memcpy(more, r->sections, (size_t)r->n_sections * sizeof *more);
-    r->entries = entries;
-    r->sections = more;
+    int n_lines = 1;
+    for (const char *c = text; *c; c++) n_lines += *c == '\n';
+    if (n_lines > CASE_MAX_LINES)
+        return bad_line(r, CASE_MAX_LINES, "the case file has more than %d lines", CASE_MAX_LINES);
+    const size_t capacity = (size_t)n_lines + (size_t)n_sets + 1;
+    r->entries = arena_alloc(&r->temp, capacity, sizeof *r->entries, "case file", r->diag);
+    r->sections = arena_alloc(&r->temp, capacity, sizeof *r->sections, "case file", r->diag);
+    const size_t bytes = strlen(text) + 1;
+    char *copy = arena_alloc(&r->temp, bytes, 1, "case file", r->diag);
+    if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
+    memcpy(copy, text, bytes);
+    if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
+    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
+    int line = 1;
+    for (char *next; copy; copy = next, line++) {
+        next = strchr(copy, '\n');
+        if (next) *next++ = '\0';
+        const enum err err = read_line(r, line, copy);
+        if (err) r->incomplete = true;
+        TRY(case_go_on(r, err));
+    }
     for (int k = 0; k < n_sets; k++) TRY(case_go_on(r, apply_set(r, sets[k])));
     return ERR_OK;
 }

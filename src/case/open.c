@@ -75,12 +75,9 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
     const double *const g = r->scene->top.gravity;
-    const enum section_id id = (enum section_id)o->common->section;
-    if (!(o->length > 0) || !scene_given(r->scene, id, o->common->index, "from") ||
-        !scene_given(r->scene, id, o->common->index, "to"))
+    if (o->length == 0)
         return bad_section(r, o->common, NULL,
-                           "needs `from` and `to`, the two ends of the line through which the "
-                           "fluid passes");
+                           "`from` and `to`, the ends of its line, must differ");
     if (given > 1)
         return bad_section(r, o->common, NULL,
                            "has more than one of `speed`, `velocity` and `pressure`; keep one");

@@ -9,9 +9,10 @@
 #define WHERE_0(section) offsetof(struct scene, section), 0
 #define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
 
-const struct section_info section_table[SECTION_COUNT] = {
+const struct section_info section_table[SECTION_COUNT + 1] = {
+    [SECTION_constants] = {.word = "constants"},
 #define SECTION(section, named) \
-    {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
+    [SECTION_##section] = {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
 #define END
 #include "case/params.def"
 };
@@ -21,12 +22,13 @@ const struct section_info section_table[SECTION_COUNT] = {
 #define ABSENT (double)NAN
 #define OVER(v) v, true
 #define UNDER(v) v, true
-#define PARAM(section_, key_, type_, text, ...)         \
-    {.section = SECTION_##section_,                     \
-     .type = PARAM_##type_,                             \
-     .key = #key_,                                      \
-     .meaning = text,                                   \
-     .offset = offsetof(struct scene_##section_, key_), \
+#define PARAM(section_, key_, type_, text, ...)            \
+    {.section = SECTION_##section_,                        \
+     .type = PARAM_##type_,                                \
+     .key = #key_,                                         \
+     .meaning = text,                                      \
+     .offset = offsetof(struct scene_##section_, key_),    \
+     .size = sizeof(((struct scene_##section_ *)0)->key_), \
      __VA_ARGS__},
 
 const struct param param_table[PARAM_COUNT] = {
@@ -103,43 +105,51 @@ double param_number(const struct param *param, const void *section)
     return param->type == PARAM_REAL ? *(const double *)value : *(const int *)value;
 }
 
-void param_set_number(const struct param *param, void *section, double number)
+static void put_number(const struct param *param, void *value, double number)
 {
-    void *const value = (char *)section + param->offset;
     if (param->type == PARAM_REAL)
         *(double *)value = number;
     else
         *(int *)value = (int)number;
 }
 
-const struct expr *param_in_time(const struct param *param, const void *section, int component)
+void param_set_number(const struct param *param, void *section, double number)
 {
-    const char *const at = (const char *)section + param->expr_offset;
-    return param->expr_offset ? ((const struct scene_expr *)(const void *)at)->e[component] : NULL;
+    put_number(param, (char *)section + param->offset, number);
+}
+
+const struct expr *param_expr(const struct param *param, const void *section, int component)
+{
+    const size_t offset = param->type == PARAM_EXPR ? param->offset : param->expr_offset;
+    const void *const field = (const char *)section + offset;
+    return offset ? ((const struct scene_expr *)field)->e[component] : NULL;
+}
+
+/* With the expressions of a TIME_VECTOR, which follow its numbers. */
+static size_t size_of(const struct param *param)
+{
+    return param->size + (param->expr_offset ? sizeof(struct scene_expr) : 0);
+}
+
+/* Lists and expressions are absent by default: zero. */
+static void put_default(const struct param *param, void *value)
+{
+    memset(value, 0, size_of(param));
+    if (param->type <= PARAM_CHOICE) put_number(param, value, param->number.value);
+    if (param->type == PARAM_TEXT) snprintf(value, SCENE_TEXT, "%s", param->text_default);
+    if (param->type == PARAM_VECTOR) memcpy(value, param->vector_default, sizeof(double[2]));
+}
+
+void param_set_default(const struct param *param, void *section)
+{
+    put_default(param, (char *)section + param->offset);
 }
 
 bool param_is_default(const struct param *param, const void *section)
 {
-    const void *const value = (const char *)section + param->offset;
-    switch (param->type) {
-    case PARAM_REAL:
-    case PARAM_INTEGER:
-    case PARAM_CHOICE: {
-        const double number = param_number(param, section);
-        return number == param->number.value || isnan(number);
-    }
-    case PARAM_VECTOR: {
-        const double *const v = value, *const standard = param->vector_default;
-        return !param_in_time(param, section, 0) && !param_in_time(param, section, 1) &&
-               v[0] == standard[0] && v[1] == standard[1];
-    }
-    case PARAM_TEXT: return strcmp(value, param->text_default) == 0;
-    case PARAM_EXPR: return !((const struct scene_expr *)value)->e[0];
-    case PARAM_SHAPES: return ((const struct shape_list *)value)->n == 0;
-    case PARAM_HINGES: return ((const struct hinge_list *)value)->n == 0;
-    case PARAM_NUMBERS: break;
-    }
-    return ((const struct number_list *)value)->n == 0;
+    _Alignas(double) char standard[SCENE_TEXT];
+    put_default(param, standard);
+    return memcmp((const char *)section + param->offset, standard, size_of(param)) == 0;
 }
 
 /* --- hints for misspelt words --- */

@@ -10,7 +10,8 @@ enum section_id {
 #define SECTION(section, named) SECTION_##section,
 #define END
 #include "case/params.def"
-    SECTION_COUNT
+    SECTION_COUNT,
+    SECTION_constants = SECTION_COUNT /* free names: no row of case/params.def */
 };
 
 struct section_info {
@@ -20,7 +21,7 @@ struct section_info {
     size_t count_offset; /* in struct scene: of the count (named only) */
     size_t size;         /* of one struct */
 };
-extern const struct section_info section_table[SECTION_COUNT];
+extern const struct section_info section_table[SECTION_COUNT + 1]; /* and [constants] */
 
 /* Line of a key given in a section, or NULL. */
 const struct scene_given *scene_given(const struct scene *scene, enum section_id section, int index,
@@ -66,7 +67,7 @@ struct param {
     enum section_id kind, also;   /* of the sections that a TEXT names; 0: it names none */
     bool list;                    /* several of them */
     const char *motion_kinds;     /* that have the key of a motion; NULL: all */
-    size_t offset;                /* in the section's struct */
+    size_t offset, size;          /* in the section's struct, bytes */
     size_t expr_offset;           /* of the expressions of a TIME_VECTOR; else 0 */
 };
 /* The number of all keys. */
@@ -88,8 +89,8 @@ char *section_title(const struct scene_section_common *section, char title[TITLE
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
 
-/* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
-const struct expr *param_in_time(const struct param *param, const void *section, int component);
+/* The expression of a component of an EXPR or a TIME_VECTOR; NULL: there is none. */
+const struct expr *param_expr(const struct param *param, const void *section, int component);
 
 /* The value of a REAL, INTEGER or CHOICE. */
 double param_number(const struct param *param, const void *section);
@@ -101,7 +102,8 @@ SPHFSI_INLINE bool param_repeats(const struct param *param)
     return param->type == PARAM_SHAPES || param->type == PARAM_HINGES;
 }
 
-/* Whether a section has the default value of a key. */
+/* Gives a section the default value of a key; whether it has that. */
+void param_set_default(const struct param *param, void *section);
 bool param_is_default(const struct param *param, const void *section);
 
 /* Whether a scheme sets a key in a kind of scene, and its value. */

@@ -17,22 +17,8 @@ static void set_defaults(void *section, enum section_id id, int index)
     struct scene_section_common *const common = section;
     common->section = (int)id;
     common->index = index;
-    for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const param = &param_table[k];
-        char *const place = (char *)section + param->offset;
-        if (param->section != id) continue;
-        switch (param->type) {
-        case PARAM_REAL:
-        case PARAM_INTEGER:
-        case PARAM_CHOICE: param_set_number(param, section, param->number.value); break;
-        case PARAM_VECTOR: memcpy(place, param->vector_default, 2 * sizeof(double)); break;
-        case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", param->text_default); break;
-        case PARAM_EXPR:
-        case PARAM_SHAPES:
-        case PARAM_HINGES:
-        case PARAM_NUMBERS: break; /* absent */
-        }
-    }
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (param_table[k].section == id) param_set_default(&param_table[k], section);
 }
 
 static void *section_of(const struct reader *r, const struct case_section *s)
@@ -69,14 +55,6 @@ static enum err allocate_sections(struct reader *r)
 
 /* --- `like` --- */
 
-static const struct entry *find_entry(const struct reader *r, int section, const char *key)
-{
-    for (int k = 0; k < r->n_entries; k++)
-        if (r->entries[k].section == section && strcmp(r->entries[k].key, key) == 0)
-            return &r->entries[k];
-    return NULL;
-}
-
 /* `like = NAME`: the values of an earlier section of the kind become the defaults. Its regions do
  * not, since two bodies cannot be in the same place. */
 static enum err inherit(struct reader *r, const struct entry *e, const struct param *like,
@@ -95,9 +73,7 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
         memcpy(target + like->offset, name, sizeof name);
         for (int p = 0; p < PARAM_COUNT; p++)
             if (param_table[p].section == like->section && param_repeats(&param_table[p]))
-                memset(target + param_table[p].offset, 0,
-                       param_table[p].type == PARAM_SHAPES ? sizeof(struct shape_list)
-                                                           : sizeof(struct hinge_list));
+                param_set_default(&param_table[p], target);
         return ERR_OK;
     }
     if (r->incomplete) return ERR_INPUT; /* it may be defined in an invalid line */
@@ -108,8 +84,8 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
 /* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
 static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
 {
-    if (find_entry(r, section, "surface")) f->pressure.e[0] = NULL;
-    if (find_entry(r, section, "pressure")) f->surface = (double)NAN;
+    if (case_entry(r, section, "surface")) f->pressure.e[0] = NULL;
+    if (case_entry(r, section, "pressure")) f->surface = (double)NAN;
 }
 
 /* --- keys --- */
@@ -128,7 +104,7 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
 static enum err read_section(struct reader *r, int section)
 {
     const enum section_id id = (enum section_id)r->sections[section].id;
-    const struct entry *given[PARAM_COUNT] = {NULL}, *const as = find_entry(r, section, "like");
+    const struct entry *given[PARAM_COUNT] = {NULL}, *const as = case_entry(r, section, "like");
     const struct param *const like = id < SECTION_COUNT ? param_find(id, "like") : NULL;
     if (r->sections[section].id == SECTION_constants) return ERR_OK;
     void *const target = section_of(r, &r->sections[section]);
@@ -157,24 +133,25 @@ static enum err read_section(struct reader *r, int section)
     return ERR_OK;
 }
 
-/* Required values that were not given are still NaN. What a section is like may have an invalid
- * one. */
+/* Required values that were not given. What a section is like may have an invalid one. */
 static enum err check_needed(struct reader *r)
 {
     for (int k = 0; k < r->n_sections * PARAM_COUNT; k++) {
         const struct case_section *const s = &r->sections[k / PARAM_COUNT];
         const struct param *const param = &param_table[k % PARAM_COUNT];
         if ((int)param->section != s->id || !param->number.needed) continue;
-        if (!isnan(param_number(param, section_of(r, s))) ||
+        if (!param_is_default(param, section_of(r, s)) ||
             scene_given(r->scene, param->section, s->index, param->key) ||
             (r->n_problems > 0 && scene_given(r->scene, param->section, s->index, "like")))
             continue;
-        const bool top = param->section == SECTION_top, pure = strcmp(param->unit, "1") == 0;
+        const bool top = param->section == SECTION_top,
+                   pure = !param->unit || strcmp(param->unit, "1") == 0;
         char title[TITLE_TEXT];
         section_title(section_of(r, s), title);
-        TRY(case_go_on(r, bad_line(r, s->line, "%s%s`%s`%s: %s%s%s%s", top ? "" : title,
+        TRY(case_go_on(r, bad_line(r, s->line, "%s%s`%s`%s: %.*s%s%s%s", top ? "" : title,
                                    top ? "" : " lacks ", param->key,
-                                   top ? " is missing at the top of the file" : "", param->meaning,
+                                   top ? " is missing at the top of the file" : "",
+                                   (int)strcspn(param->meaning, ".;:"), param->meaning,
                                    pure ? "" : " (", pure ? "" : param->unit, pure ? "" : ")")));
     }
     return ERR_OK;
@@ -194,8 +171,7 @@ static enum err load_tables(struct reader *r)
 static enum err read_all(struct reader *r, const char *text, int n_sets, const char *const *sets)
 {
     struct scene *const scene = r->scene;
-    TRY(case_split(r, text));
-    TRY(case_apply_sets(r, n_sets, sets));
+    TRY(case_split(r, text, n_sets, sets));
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
     case_apply_presets(r);
@@ -206,8 +182,8 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
     if (r->incomplete)
         return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
-    TRY(check_needed(r));
     const bool valid = r->n_problems == 0;
+    TRY(check_needed(r));
     case_apply_defaults(scene);
     TRY(case_check_names(r));
     if (valid) TRY(case_check(r));

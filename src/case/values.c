@@ -84,23 +84,26 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
     return ERR_OK;
 }
 
-static enum err check_pair(struct reader *r, const struct entry *e, const struct param *param,
-                           int n)
+/* The number of pieces between commas is that of the components. */
+static enum err check_count(struct reader *r, const struct entry *e, const struct param *param)
 {
-    if (n == 2) return ERR_OK;
-    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s", param->key,
-                     n == 1 ? "is" : "are", n, comma_hint(e->value));
+    const int n = slice_count(slice_of(e->value), ',');
+    const char *const verb = n == 1 ? "is" : "are";
+    if (n == param->count) return ERR_OK;
+    if (param->type == PARAM_VECTOR)
+        return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s",
+                         param->key, verb, n, comma_hint(e->value));
+    return bad_value(r, e, "%s expected, with commas between them; there %s %d",
+                     param->count == 1 ? "one expression is" : "two expressions are", verb, n);
 }
 
-static enum err read_vector(struct reader *r, const struct entry *e, const struct param *param,
-                            double value[2])
+static enum err read_list(struct reader *r, const struct entry *e, const struct param *param,
+                          double *value)
 {
     struct slice rest = slice_of(e->value), piece = rest;
-    const int n = slice_count(rest, ',');
-    TRY(check_pair(r, e, param, n));
-    for (int k = 0; k < 2 && slice_next(&rest, ',', &piece); k++) {
-        TRY(case_number(r, e, piece, param->unit, &value[k]));
-        if (!(fabs(value[k]) <= 1e15))
+    for (; slice_next(&rest, ',', &piece); value++) {
+        TRY(case_number(r, e, piece, param->unit, value));
+        if (!(fabs(*value) <= 1e15))
             return bad_value(r, e, "out of range: the magnitude must be 1e15 or less");
     }
     return ERR_OK;
@@ -109,32 +112,24 @@ static enum err read_vector(struct reader *r, const struct entry *e, const struc
 static enum err read_numbers(struct reader *r, const struct entry *e, const struct param *param,
                              struct number_list *list)
 {
-    struct slice rest = slice_of(e->value), piece = rest;
-    const int n = slice_count(rest, ',');
-    if (n > CASE_MAX_POINTS)
+    list->n = slice_count(slice_of(e->value), ',');
+    if (list->n > CASE_MAX_POINTS)
         return bad_value(r, e, "more than %d numbers are given", CASE_MAX_POINTS);
-    list->value = arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
-    if (!list->value) return ERR_MEMORY;
-    for (list->n = 0; slice_next(&rest, ',', &piece); list->n++)
-        TRY(case_number(r, e, piece, param->unit, &list->value[list->n]));
-    return ERR_OK;
+    list->value =
+        arena_alloc(&r->scene->arena, (size_t)list->n, sizeof *list->value, "numbers", r->diag);
+    return list->value ? read_list(r, e, param, list->value) : ERR_MEMORY;
 }
 
-static enum err read_field(struct reader *r, const struct entry *e, const struct param *param,
-                           struct scene_expr *field)
+static enum err read_expressions(struct reader *r, const struct entry *e, const struct param *param,
+                                 struct scene_expr *field)
 {
-    struct slice rest = slice_of(e->value), piece = rest;
-    const int n = slice_count(rest, ',');
-    if (param->expr_offset) TRY(check_pair(r, e, param, n));
-    if (n != param->count)
-        return bad_value(r, e, "%s expected, with commas between them; there %s %d",
-                         param->count == 1 ? "one expression is" : "two expressions are",
-                         n == 1 ? "is" : "are", n);
     const struct expr_names names = {r, case_name, param->scope};
-    for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
+    struct slice rest = slice_of(e->value), piece = rest;
+    TRY(check_count(r, e, param));
+    for (int k = 0; slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
-        r->cause_named = false;
         struct dim dim = {0};
+        r->cause_named = false;
         const enum err err =
             expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
         if (err == ERR_INPUT) return case_bad_expression(r, e, why);
@@ -150,7 +145,7 @@ static enum err read_time_vector(struct reader *r, const struct entry *e, const 
 {
     double *const value = (double *)(void *)((char *)section + param->offset);
     struct scene_expr *const in_time = (void *)((char *)section + param->expr_offset);
-    TRY(read_field(r, e, param, in_time));
+    TRY(read_expressions(r, e, param, in_time));
     for (int k = 0; k < 2; k++) {
         value[k] = scene_expr_at(in_time->e[k], 0, 0);
         if (!(fabs(value[k]) <= 1e15))
@@ -174,9 +169,10 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_CHOICE: return read_choice(r, e, param, place);
     case PARAM_TEXT: return read_text(r, e, place);
     case PARAM_VECTOR:
-        return param->expr_offset ? read_time_vector(r, e, param, section)
-                                  : read_vector(r, e, param, place);
-    case PARAM_EXPR: return read_field(r, e, param, place);
+        if (param->expr_offset) return read_time_vector(r, e, param, section);
+        TRY(check_count(r, e, param));
+        return read_list(r, e, param, place);
+    case PARAM_EXPR: return read_expressions(r, e, param, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
     case PARAM_HINGES: return case_hinge(r, e, place);
     case PARAM_NUMBERS: break;

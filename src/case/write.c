@@ -84,7 +84,6 @@ static void relocate(const struct scene *scene, const char *name, const char *pa
     char file[PATH_MAX], there[PATH_MAX], here[PATH_MAX], moved[2 * PATH_MAX] = "";
     const char *const slash = strrchr(name, '/');
     size_t common = 0, n = 0;
-    snprintf(text, SCENE_TEXT, "%s", name);
     if (!*name || name[0] == '/' || !scene_file(scene, name, file, sizeof file) ||
         !real_directory(file, there) || !real_directory(path, here))
         return;
@@ -96,29 +95,25 @@ static void relocate(const struct scene *scene, const char *name, const char *pa
     if (strlen(moved) < SCENE_TEXT) snprintf(text, SCENE_TEXT, "%.255s", moved);
 }
 
+static void write_hinge(FILE *out, const char *key, const struct hinge_point *hinge)
+{
+    fprintf(out, "%s = ", key);
+    write_reals(out, 2, hinge->at);
+    fprintf(out, "%s%s\n", hinge->other[0] ? ", " : "", hinge->other);
+}
+
 static void write_param(FILE *out, const struct scene *scene, const struct param *param,
                         const char *section, const char *path)
 {
     const void *const value = section + param->offset;
     const double *const number = value;
     const struct number_list *const list = value;
-    const struct scene_expr *const field = value;
     const struct shape_list *const shapes = value;
-    char text[SCENE_TEXT];
-    if (param->type == PARAM_SHAPES)
-        for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
     const struct hinge_list *const hinges = value;
-    for (int k = 0; param->type == PARAM_HINGES && k < hinges->n; k++) {
-        const struct hinge_point *const hinge = &hinges->item[k];
-        fprintf(out, "%s = ", param->key);
-        write_real(out, "", hinge->at[0]);
-        write_real(out, ", ", hinge->at[1]);
-        fprintf(out, "%s%s\n", hinge->other[0] ? ", " : "", hinge->other);
-    }
-    if (param_repeats(param) || (param->type == PARAM_REAL && isnan(*number)) ||
-        (param->type == PARAM_NUMBERS && !list->n) || (param->type == PARAM_EXPR && !field->e[0]))
-        return;
-    fprintf(out, "%s = ", param->key);
+    char text[SCENE_TEXT];
+    const bool may_be_absent = param->type > PARAM_VECTOR || isnan(param->number.value);
+    if (may_be_absent && param_is_default(param, section)) return;
+    if (!param_repeats(param)) fprintf(out, "%s = ", param->key);
     switch (param->type) {
     case PARAM_REAL: write_number(out, *number, param->unit); break;
     case PARAM_INTEGER: fprintf(out, "%d", *(const int *)value); break;
@@ -127,15 +122,15 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
         fputs(text, out);
         break;
     case PARAM_TEXT:
+        snprintf(text, sizeof text, "%s", (const char *)value);
         if (strcmp(param->key, "file") == 0 || strcmp(param->key, "gravity_file") == 0)
             relocate(scene, value, path, text);
-        else
-            snprintf(text, sizeof text, "%s", (const char *)value);
         write_text(out, text);
         break;
     case PARAM_VECTOR:
-        for (int k = 0; k < 2; k++) {
-            const struct expr *const e = param_in_time(param, section, k);
+    case PARAM_EXPR:
+        for (int k = 0; k < param->count; k++) {
+            const struct expr *const e = param_expr(param, section, k);
             fputs(k ? ", " : "", out);
             if (e)
                 fputs(expr_source(e), out);
@@ -143,13 +138,13 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
                 write_number(out, number[k], param->unit);
         }
         break;
-    case PARAM_EXPR:
-        for (int k = 0; k < param->count; k++)
-            fprintf(out, "%s%s", k ? ", " : "", expr_source(field->e[k]));
-        break;
     case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
+    case PARAM_SHAPES:
+        for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
+        return;
     case PARAM_HINGES:
-    case PARAM_SHAPES: break;
+        for (int k = 0; k < hinges->n; k++) write_hinge(out, param->key, &hinges->item[k]);
+        return;
     }
     fprintf(out, "\n");
 }

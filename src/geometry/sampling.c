@@ -77,9 +77,6 @@ static void add_region(struct sampler *sampler, enum kind kind, int body,
 
 static enum err draw_region(struct sampler *sampler, struct region *region)
 {
-    if (region->list->n == 0)
-        return fail_at(sampler->diag, sampler->scene, region->line, "[%s %s] has no shape",
-                       kind_names[region->kind], region->name);
     TRY(outlines_of(&region->add, sampler->scene, region->list, &sampler->temp, sampler->diag));
     return outlines_of(&region->minus, sampler->scene, region->minus_list, &sampler->temp,
                        sampler->diag);

@@ -8,6 +8,8 @@
 #include <stdio.h>
 
 #define TOP "dp = 1 mm\nend_time = 1 s\n"
+#define SOLID \
+    "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
 #define FLUID "[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n"
 
 void setUp(void) {}
@@ -37,10 +39,32 @@ static void test_names_are_checked_beside_wrong_values(void)
                 "bad.cfg:6: clamp = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
                 "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...; "
                 "arc thickness T: X, Y, R, A, B\n"
+                "bad.cfg:8: [wall w] lacks `shape`: rigid wall (m)\n"
                 "bad.cfg:9: motion = mm: there is no [motion] of that name\n"
                 "bad.cfg:16: body = b: there is no [solid] of that name\n"
+                "bad.cfg:18: [load l] lacks `shape`: region of the body, in the reference "
+                "configuration, whose particles carry the load (m)\n"
                 "bad.cfg:19: body = aa: there is no [solid] of that name\n"
                 "bad.cfg:21: between = v: there is no [solid] or [wall] of that name\n");
+}
+
+/* What concerns several values is looked at in every section. */
+static void test_checks_go_on_after_the_first(void)
+{
+    refuses_all(
+        TOP SOLID "joined = zz\n[probe p]\nbody = zz\n[load l]\nbody = a\n"
+                  "[motion m]\nkind = sine\n[contact c]\n[reference r]\n",
+        "bad.cfg:8: joined = zz: there is no [solid] of that name\n"
+        "bad.cfg:9: [probe p] lacks `point`: quantity = displacement needs the place, two "
+        "numbers, in metres\n"
+        "bad.cfg:10: body = zz: there is no [solid] of that name\n"
+        "bad.cfg:11: [load l] lacks `shape`: region of the body, in the reference configuration, "
+        "whose particles carry the load (m)\n"
+        "bad.cfg:11: [load l] needs either `force` or `traction`, and has neither\n"
+        "bad.cfg:13: [motion m] kind = sine needs `period`\n"
+        "bad.cfg:16: [reference r] lacks `probe`: column that the reference is compared "
+        "with, such as M1_dx_m\n"
+        "bad.cfg:16: [reference r] needs either `file` or `formula`, and has neither\n");
 }
 
 /* Without them, a line or a place would be at the origin. */
@@ -120,6 +144,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_names_are_checked_beside_wrong_values);
+    RUN_TEST(test_checks_go_on_after_the_first);
     RUN_TEST(test_a_line_moves_with_walls_only);
     RUN_TEST(test_a_probe_needs_its_place);
     RUN_TEST(test_what_follows_from_a_problem_is_none);

@@ -329,7 +329,7 @@ static void test_refused(void)
         {LEFT "speed = 1\npressure = 0\n", "has more than one of `speed`, `velocity` and"},
         {LEFT "level = 0.3\n", "needs gravity that points down"},
         {LEFT "speed = 1\nabsorb = 1\n", "`absorb` needs `pressure` or `level`"},
-        {"[inflow i]\nspeed = 1\n", "needs `from` and `to`"},
+        {"[inflow i]\nspeed = 1\n", "lacks `from`"},
         {LEFT "speed = -1\n",
          "points out of the fluid everywhere and at all times, by up to 1 m/s"},
         {RIGHT "velocity = -1, 0\n", "points into the fluid everywhere and at all times"},

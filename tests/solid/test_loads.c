@@ -224,10 +224,10 @@ static void test_restart_and_threads(void)
 static void test_bad_input(void)
 {
 #define LOAD BAR "[load l]\n"
-    rig_refuses(LOAD "force = 1, 0\nshape = box 0, 0, 0.1, 0.1\n", "needs `body`");
+    rig_refuses(LOAD "force = 1, 0\nshape = box 0, 0, 0.1, 0.1\n", "lacks `body`");
     rig_refuses(LOAD "body = baa\nforce = 1, 0\nshape = box 0, 0, 0.1, 0.1\n",
                 "did you mean `bar`");
-    rig_refuses(LOAD "body = bar\nforce = 1, 0\n", "needs a `shape`");
+    rig_refuses(LOAD "body = bar\nforce = 1, 0\n", "lacks `shape`");
     rig_refuses(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "either `force` or `traction`");
     rig_refuses(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n",
                 "contains no particle");
