@@ -287,9 +287,8 @@ static double pairs_of(const struct simulation *sim)
     for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
         const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
-            neighbour_clusters_collect_half(&around, boxes, &sim->cells, KIND_FLUID,
-                                            list->active[k], sim->fluid.k.h,
-                                            clusters_of(list, first, end));
+            neighbour_clusters_collect(&around, boxes, &sim->cells, KIND_FLUID, list->active[k],
+                                       sim->fluid.k.h, clusters_of(list, first, end));
             for (int32_t own = 0; own < clusters_in(list, list->active[k]); own++) {
                 cluster_list_build_half(&near, &around, boxes);
                 clusters += near.n;

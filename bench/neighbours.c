@@ -5,7 +5,7 @@
  * particles. Prints CSV; the sums of all methods agree but for rounding. bench_neighbours [--reps
  * N] */
 #include "fluid/fluid.h"
-#include "particles/morton.h"
+#include "particles/cells.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -269,7 +269,8 @@ static void sweep_clusters(void)
     full_pairs = 0;
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
-        neighbour_clusters_collect(&around, &boxes, &grid, KIND_FLUID, cell, (double)H);
+        neighbour_clusters_collect(&around, &boxes, &grid, KIND_FLUID, cell, (double)H,
+                                   (struct cluster_range){0});
         for (int32_t m = 0; m < clusters_in(listed, cell); m++) {
             cluster_list_build(&near, &around, &boxes, listed->cluster[cell] + m);
             full_pairs += near.n * CLUSTER * CLUSTER;
@@ -342,8 +343,7 @@ static void sweep_chunks(void)
         const struct cluster_range range = clusters_of(listed, begin, end);
         for (int32_t k = begin; k < end; k++) {
             const int32_t cell = listed->active[k];
-            neighbour_clusters_collect_half(&around, &boxes, &grid, KIND_FLUID, cell, (double)H,
-                                            range);
+            neighbour_clusters_collect(&around, &boxes, &grid, KIND_FLUID, cell, (double)H, range);
             for (int32_t m = clusters_in(listed, cell) - 1; m >= 0; m--) {
                 cluster_list_build_half(&near, &around, &boxes);
                 half_pairs += near.n * CLUSTER * CLUSTER;

@@ -45,7 +45,7 @@ SPHFSI_INLINE void gather_around_cell(struct neighbour_scratch *neighbour_scratc
                                       enum kind kind, int32_t cell)
 {
     neighbour_clusters_collect(&neighbour_scratch->around[kind], &fluid->packed[kind].boxes, cells,
-                               kind, cell, fluid->k.h);
+                               kind, cell, fluid->k.h, (struct cluster_range){0});
 }
 
 SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed,

@@ -193,9 +193,9 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells);
     bool around[KIND_COUNT] = {false};
-    neighbour_clusters_collect_half(&neighbour_scratch->around[KIND_FLUID],
-                                    &fluid->packed[KIND_FLUID].boxes, cells, KIND_FLUID, cell,
-                                    fluid->k.h, chunk->range);
+    neighbour_clusters_collect(&neighbour_scratch->around[KIND_FLUID],
+                               &fluid->packed[KIND_FLUID].boxes, cells, KIND_FLUID, cell,
+                               fluid->k.h, chunk->range);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         around[kind] = fluid->near_dummies[cell] && fluid->n_near_fluid[kind];
         if (around[kind])

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "particles/morton.h"
-
 /* A particle outside the grid is sorted after all cells. */
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
@@ -55,8 +53,8 @@ enum err cells_create(struct cells *cells, struct arena *a, const double lower[2
                 d, ERR_INPUT,
                 "the domain is %.6g m in %c, more than %d cells of %.3g m; make [domain] "
                 "smaller or dp larger",
-                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
-        cells->side[k] = (upper[k] - lower[k]) / n[k];
+                width, k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
+        cells->side[k] = width / n[k];
         cells->skin = min2(cells->skin, max2(0, 0.5 * (cells->side[k] - reach)));
     }
     cells->nx = (int)n[0];
@@ -189,83 +187,89 @@ static const uint64_t *sort_pairs(struct cells *cells, int64_t n, const struct p
     return from;
 }
 
-/* The cell of the k-th of n particles in cell order; OUTSIDE if k is not in 0 ... n - 1. */
-static int32_t kth_cell(const struct cell_list *list, const int32_t *cell, int64_t n, int64_t k)
-{
-    if (k < 0 || k >= n) return OUTSIDE;
-    return cell[list->order ? list->order[k] : k];
-}
-
-/* Number of cells, and of the clusters in them. */
-struct tally {
-    int32_t cells, clusters;
-};
-
-/* Counts the cells whose first particle is among the first-th to the (end - 1)-th in cell order.
- * With `fill` it also writes them to the list; `before`: the cells and clusters of earlier
- * chunks. */
-static struct tally list_chunk(struct cell_list *list, const int32_t *cell, int64_t n,
-                               int64_t first, int64_t end, struct tally before, bool fill)
-{
-    struct tally found = {0, 0};
-    for (int64_t k = first; k < end; k++) {
-        const int32_t c = kth_cell(list, cell, n, k);
-        if (c == OUTSIDE) break;
-        if (kth_cell(list, cell, n, k - 1) == c) continue;
-        int64_t next = k + 1;
-        while (kth_cell(list, cell, n, next) == c) next++;
-        if (fill) {
-            list->start[c] = (int32_t)k;
-            list->count[c] = (int32_t)(next - k);
-            list->cluster[c] = before.clusters + found.clusters;
-            list->active[before.cells + found.cells] = c;
-        }
-        found.cells++;
-        found.clusters += (int32_t)((next - k + CLUSTER - 1) / CLUSTER);
-    }
-    return found;
-}
-
 /* Start, count and first cluster of each cell, and the active cells, from the cells of the
- * particles. */
+ * particles, of which those outside the grid come last. */
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
-    const int threads = sort_threads();
-    struct tally found[CELLS_SORT_THREADS], sum = {0, 0};
-#pragma omp parallel for schedule(static)
+    int32_t last = OUTSIDE, clusters = 0;
     for (int32_t k = 0; k < list->n_active; k++) list->count[list->active[k]] = 0;
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++)
-        found[t] = list_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, sum, false);
-    for (int t = 0; t < threads; t++) {
-        const struct tally own = found[t];
-        found[t] = sum;
-        sum.cells += own.cells;
-        sum.clusters += own.clusters;
+    list->n_active = 0;
+    for (int64_t k = 0; k < n; k++) {
+        const int32_t c = cell[list->order ? list->order[k] : k];
+        if (c == OUTSIDE) break;
+        if (c != last) {
+            if (last != OUTSIDE) clusters += clusters_in(list, last);
+            list->start[c] = (int32_t)k;
+            list->cluster[c] = clusters;
+            list->active[list->n_active++] = c;
+        }
+        list->count[c]++;
+        last = c;
     }
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++)
-        list_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
-    list->n_active = sum.cells;
 }
 
-/* Whether the list holds each particle inside the grid once, by cells in Morton order. */
-__attribute__((unused)) static bool list_is_sound(const struct cells *cells,
-                                                  const struct cell_list *list,
-                                                  const struct particles *particles)
+/* How far the particles of a cell extend beyond its edges. */
+static void overhang_of(const struct cells *cells, const struct cell_list *list,
+                        const struct particles *particles, int32_t cell, double side[4])
 {
-    int64_t k = 0;
-    int32_t cluster = 0;
-    for (int32_t m = 0; m < list->n_active; m++) {
-        const int32_t cell = list->active[m];
-        if (m > 0 && key_of(cells, list->active[m - 1]) >= key_of(cells, cell)) return false;
-        if (list->count[cell] < 1 || list->start[cell] != k || list->cluster[cell] != cluster)
-            return false;
-        for (const int64_t end = k + list->count[cell]; k < end; k++)
-            if (kth_cell(list, particles->cell, particles->n, k) != cell) return false;
-        cluster += clusters_in(list, cell);
+    const double left = cells->lower[0] + cell_x(cells, cell) * cells->side[0],
+                 bottom = cells->lower[1] + cell_y(cells, cell) * cells->side[1];
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
+        const int32_t i = list->order ? list->order[k] : k;
+        low[0] = min2(low[0], particles->x[i]);
+        high[0] = max2(high[0], particles->x[i]);
+        low[1] = min2(low[1], particles->y[i]);
+        high[1] = max2(high[1], particles->y[i]);
     }
-    return kth_cell(list, particles->cell, particles->n, k) == OUTSIDE;
+    side[0] = left - low[0];
+    side[1] = high[0] - left - cells->side[0];
+    side[2] = bottom - low[1];
+    side[3] = high[1] - bottom - cells->side[1];
+}
+
+void cells_measure_overhang(struct cells *cells, enum kind kind, const struct particles *particles)
+{
+    struct cell_list *const list = &cells->kind[kind];
+    double most[] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY};
+#pragma omp parallel for schedule(static) reduction(max : most)
+    for (int32_t k = 0; k < list->n_active; k++) {
+        double own[4];
+        overhang_of(cells, list, particles, list->active[k], own);
+        for (int side = 0; side < 4; side++) most[side] = max2(most[side], own[side]);
+    }
+    memcpy(list->overhang, most, sizeof most);
+}
+
+/* Sweeps visit pairs in neighbouring cells only. Two particles of other cells can be within reach
+ * only if their overhangs add up to more than the cells' side exceeds the reach. */
+double cells_skin_left(const struct cells *cells, double reach)
+{
+    const double *const fluid = cells->kind[KIND_FLUID].overhang;
+    double left = INFINITY;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const double *const other = cells->kind[kind].overhang;
+        for (int to = 0; to < 4 && cells->kind[kind].n_active; to++) { /* to ^ 1: the opposite */
+            const double excess = cells->side[to / 2] - reach;
+            left = min2(left, cells->skin - other[to]);
+            left = min2(left, excess - (fluid[to] + other[to ^ 1]));
+        }
+    }
+    return left;
+}
+
+/* Particles in the order of their cells; returns it. */
+static const int32_t *sort_by_cell(struct cells *cells, const struct cell_list *list,
+                                   const struct particles *particles)
+{
+    int32_t *const order = list->order ? list->order : cells->permutation;
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < particles->n; k++)
+        cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
+    const uint64_t *const sorted = sort_pairs(cells, particles->n, particles);
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < particles->n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
+    return order;
 }
 
 int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *particles)
@@ -282,16 +286,11 @@ int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *partic
 #pragma omp parallel for schedule(static) reduction(+ : outside)
     for (int64_t k = 0; k < n; k++) {
         particles->cell[k] = cell_of(cells, particles->x[k], particles->y[k]);
-        cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
         outside += particles->cell[k] == OUTSIDE;
     }
-    const uint64_t *const sorted = sort_pairs(cells, n, particles);
-    int32_t *const order = list->order ? list->order : cells->permutation;
-#pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
+    const int32_t *const order = sort_by_cell(cells, list, particles);
     if (!list->order) particles_permute(particles, order, n, cells->scratch);
     list_fill(list, particles->cell, n);
-    ASSERT(list_is_sound(cells, list, particles));
     cells_measure_overhang(cells, kind, particles);
     return outside;
 }
@@ -299,12 +298,7 @@ int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *partic
 void cells_rebuild(struct cells *cells, enum kind kind, struct particles *particles)
 {
     struct cell_list *list = &cells->kind[kind];
-    if (list->order) {
-        for (int64_t k = 0; k < particles->n; k++)
-            cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
-        const uint64_t *const sorted = sort_pairs(cells, particles->n, particles);
-        for (int64_t k = 0; k < particles->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
-    }
+    if (list->order) sort_by_cell(cells, list, particles);
     list_fill(list, particles->cell, particles->n);
     cells_measure_overhang(cells, kind, particles);
 }

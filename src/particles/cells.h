@@ -5,11 +5,26 @@
 
 #include "particles/particles.h"
 
-/* How far particles extend beyond the left, right, lower and upper edges of their cells, m;
- * negative: the distance to the edge. */
-struct overhang {
-    double side[4];
-};
+/* --- Morton (Z-order) keys: cells close to each other in the plane have close keys --- */
+
+/* Largest number of cells along an axis: 16 bits each. */
+enum { MORTON_CELLS = 1 << 16 };
+
+/* Spreads the low 16 bits of v to the even bits. */
+SPHFSI_INLINE uint32_t morton_spread(uint32_t v)
+{
+    v = (v | (v << 8)) & 0x00ff00ffu;
+    v = (v | (v << 4)) & 0x0f0f0f0fu;
+    v = (v | (v << 2)) & 0x33333333u;
+    return (v | (v << 1)) & 0x55555555u;
+}
+
+SPHFSI_INLINE uint32_t morton_key(uint32_t cx, uint32_t cy)
+{
+    return morton_spread(cx) | (morton_spread(cy) << 1);
+}
+
+/* --- cells --- */
 
 /* Most particles of one kind in a cell; some twenty are normal. If there are more, particles
  * have collapsed onto each other, and a guard stops the run. */
@@ -24,7 +39,9 @@ struct cell_list {
     int32_t *cluster; /* [nx * ny]: number of the cell's first cluster among all of its kind */
     int32_t *active;  /* cells that hold particles, in Morton order */
     int32_t n_active;
-    struct overhang most; /* largest over all cells, at the last measurement */
+    /* How far particles extended beyond the left, right, lower and upper edges of their cells at
+     * the last measurement, m; negative: the distance to the edge. */
+    double overhang[4];
     int32_t
         *order; /* [capacity]: particles in cell order; NULL for fluid, which is sorted itself */
 };
@@ -135,11 +152,9 @@ SPHFSI_INLINE double cell_centre_y(const struct cells *cells, int32_t cell)
  * sorts. */
 SPHFSI_INLINE bool cells_is_near(const struct cells *cells, int32_t cell, double x, double y)
 {
-    const double dx =
-                     cells_minimum_image(cells, 0, x - cell_centre_x(cells, cell)) / cells->side[0],
-                 dy =
-                     cells_minimum_image(cells, 1, y - cell_centre_y(cells, cell)) / cells->side[1];
-    return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
+    const double dx = cells_minimum_image(cells, 0, x - cell_centre_x(cells, cell));
+    const double dy = cells_minimum_image(cells, 1, y - cell_centre_y(cells, cell));
+    return __builtin_fabs(dx) <= cells->side[0] && __builtin_fabs(dy) <= cells->side[1];
 }
 
 /* The cells, n[0] x n[1] from `first` on, of particles nearer to a point than `distance`, although

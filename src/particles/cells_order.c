@@ -57,15 +57,13 @@ static void sort_points(const struct points *s, uint16_t *point, int n, int axis
 /* The axis along which the particles extend further. */
 static int longer_axis(const struct points *s, const uint16_t *point, int n)
 {
-    double left = INFINITY, right = -INFINITY, down = INFINITY, up = -INFINITY;
-    for (int k = 0; k < n; k++) {
-        const double x = s->at[0][point[k]], y = s->at[1][point[k]];
-        left = min2(left, x);
-        right = max2(right, x);
-        down = min2(down, y);
-        up = max2(up, y);
-    }
-    return up - down > right - left;
+    double low[] = {INFINITY, INFINITY}, high[] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < n; k++)
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = min2(low[axis], s->at[axis][point[k]]);
+            high[axis] = max2(high[axis], s->at[axis][point[k]]);
+        }
+    return high[1] - low[1] > high[0] - low[0];
 }
 
 /* Halves the points along the longer axis, into whole clusters, until each part is one cluster. */
@@ -84,10 +82,8 @@ static void order_cell(uint64_t *pair, int n, const struct particles *particles)
     struct points s;
     uint16_t point[CELL_CAPACITY];
     uint32_t particle[CELL_CAPACITY];
-    const double *const x = particles->X ? particles->X : particles->x, *const y =
-                                                                            particles->Y
-                                                                                ? particles->Y
-                                                                                : particles->y;
+    const double *const x = particles->X ? particles->X : particles->x;
+    const double *const y = particles->Y ? particles->Y : particles->y;
     ASSERT(n <= CELL_CAPACITY);
     if (n <= CLUSTER) return;
     for (int k = 0; k < n; k++) {

@@ -17,52 +17,18 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
 
 #define FAR_AWAY 1e18f
 
-/* One of 3 x 3 cells; the middle one is in column 1, row 1. */
-struct cell_code {
-    int32_t cell;
-    int column, row;
-};
-
-/* The cells of the 3 x 3 around `cell` that hold particles. */
-SPHFSI_INLINE int cells_around(struct cell_code code[9], const struct cells *cells,
-                               const struct cell_list *list, int32_t cell)
-{
-    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
-    int columns[3], n = 0;
-    for (int column = 0; column < 3; column++)
-        columns[column] = cells_wrap(cells, 0, cx + column - 1);
-    for (int row = 0; row < 3; row++) {
-        const int y = cells_wrap(cells, 1, cy + row - 1);
-        for (int column = 0; column < 3 && y >= 0; column++) {
-            const int32_t other = y * cells->nx + columns[column];
-            if (columns[column] < 0 || list->count[other] == 0) continue;
-            code[n++] = (struct cell_code){other, column, row};
-        }
-    }
-    return n;
-}
-
-/* Sides of the cells in units of h. */
-struct sides {
-    float x, y;
-};
-
-SPHFSI_INLINE struct sides sides_of(const struct cells *cells, double h)
-{
-    return (struct sides){(float)(cells->side[0] / h), (float)(cells->side[1] / h)};
-}
-
-/* Appends the clusters of a cell; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a
+/* Appends the clusters of a cell, one of 3 x 3 whose middle one is in column 1, row 1, with sides
+ * in units of h; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a
  * cell has four or five, so wider vectors would only store more padding. */
 SPHFSI_INLINE void append(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
-                          const struct cell_list *list, struct sides sides, struct cell_code code,
-                          uint32_t half)
+                          const struct cell_list *list, int32_t cell, const float side[2],
+                          int column, int row, uint32_t half)
 {
-    const float dx = (float)(code.column - 1) * sides.x, dy = (float)(code.row - 1) * sides.y;
-    const int32_t first = list->cluster[code.cell], count = clusters_in(list, code.cell);
+    const float dx = (float)(column - 1) * side[0], dy = (float)(row - 1) * side[1];
+    const int32_t first = list->cluster[cell], count = clusters_in(list, cell);
     const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
     const eight_word word =
-        ramp * neighbour_code(1, 0, 0) + (neighbour_code(first, code.column, code.row) | half);
+        ramp * neighbour_code(1, 0, 0) + (neighbour_code(first, column, row) | half);
     ASSERT(s->n + count <= CLUSTERS_AROUND);
     for (int m = 0; m < count; m += 8) {
         const int to = s->n + m;
@@ -74,43 +40,28 @@ SPHFSI_INLINE void append(struct neighbour_clusters *s, const struct cluster_box
     s->n += count;
 }
 
-/* Fills the rest of the last vector with boxes out of everything's reach. */
-SPHFSI_INLINE void pad_boxes(struct neighbour_clusters *s)
-{
-    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(FAR_AWAY));
-}
-
+/* The rest of the last vector is filled with boxes out of everything's reach. */
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
-                                const struct cells *cells, enum kind kind, int32_t cell, double h)
+                                const struct cells *cells, enum kind kind, int32_t cell, double h,
+                                struct cluster_range range)
 {
     const struct cell_list *const list = &cells->kind[kind];
-    const struct sides sides = sides_of(cells, h);
-    struct cell_code code[9];
-    const int n = cells_around(code, cells, list, cell);
+    const float side[] = {(float)(cells->side[0] / h), (float)(cells->side[1] / h)};
+    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
     s->n = 0;
-    for (int k = 0; k < n; k++) append(s, boxes, list, sides, code[k], 0);
-    pad_boxes(s);
-}
-
-void neighbour_clusters_collect_half(struct neighbour_clusters *s,
-                                     const struct cluster_boxes *boxes, const struct cells *cells,
-                                     enum kind kind, int32_t cell, double h,
-                                     struct cluster_range range)
-{
-    const struct cell_list *const list = &cells->kind[kind];
-    const struct sides sides = sides_of(cells, h);
-    struct cell_code code[9];
-    const int n = cells_around(code, cells, list, cell);
-    s->n = 0;
-    for (int k = 0; k < n; k++) {
-        const int32_t first = list->cluster[code[k].cell];
-        const bool inside = first >= range.first && first < range.end;
-        if (inside && first <= list->cluster[cell]) continue;
-        append(s, boxes, list, sides, code[k], inside ? NEIGHBOUR_HALF : 0);
-    }
-    append(s, boxes, list, sides, (struct cell_code){cell, 1, 1}, NEIGHBOUR_HALF);
-    s->n--;
-    pad_boxes(s);
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++) {
+            const int32_t other = cell_at(cells, cx + column - 1, cy + row - 1);
+            if (other < 0 || list->count[other] == 0) continue;
+            const int32_t first = list->cluster[other];
+            const bool inside = first >= range.first && first < range.end;
+            if (inside && first <= list->cluster[cell]) continue;
+            append(s, boxes, list, other, side, column, row, inside ? NEIGHBOUR_HALF : 0);
+        }
+    const bool half = range.end > range.first;
+    if (half) append(s, boxes, list, cell, side, 1, 1, NEIGHBOUR_HALF);
+    s->n -= half;
+    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(FAR_AWAY));
 }
 
 /* Appends the collected clusters whose box is within reach of the box of `cluster`. */

@@ -24,7 +24,7 @@ struct cluster_boxes {
 
 /* A neighbour cluster in one word: its number, and the column and row of its cell among 3 x 3,
  * where (1, 1) is the cell of the receiving cluster. A flag says that the pair is in the half
- * list (neighbour_clusters_collect_half). */
+ * list (neighbour_clusters_collect with a range). */
 enum { CLUSTERS_MOST = 1 << 27, NEIGHBOUR_HALF = 1 << 4 };
 SPHFSI_INLINE uint32_t neighbour_code(int32_t cluster, int column, int row)
 {
@@ -68,22 +68,19 @@ struct cluster_list {
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Collects the clusters of the 3 x 3 cells around `cell`. */
+/* Collects the clusters of the 3 x 3 cells around `cell`. Those within `range` (whole cells; empty:
+ * none) only if they are behind it: each pair of these is listed once, flagged NEIGHBOUR_HALF, and
+ * serves both clusters. */
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
-                                const struct cells *cells, enum kind kind, int32_t cell, double h);
+                                const struct cells *cells, enum kind kind, int32_t cell, double h,
+                                struct cluster_range range);
 
 /* Lists the collected clusters within reach (2h) of the box of `cluster`. */
 void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
                         const struct cluster_boxes *boxes, int32_t cluster);
 
-/* Half lists: each pair of clusters within `range` (whole cells) is listed once, flagged
- * NEIGHBOUR_HALF, and serves both clusters. Clusters outside the range are listed as before,
- * without the flag. After collecting, each call of cluster_list_build_half serves the next
- * cluster of the cell, the last one first: first itself (no flag), then its neighbours. */
-void neighbour_clusters_collect_half(struct neighbour_clusters *s,
-                                     const struct cluster_boxes *boxes, const struct cells *cells,
-                                     enum kind kind, int32_t cell, double h,
-                                     struct cluster_range range);
+/* With a range: each call serves the next cluster of the cell, the last one first: first itself (no
+ * flag), then its neighbours. */
 void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,
                              const struct cluster_boxes *boxes);
 

@@ -46,20 +46,22 @@ enum err particles_add(struct particles *particles, struct arena *a, unsigned gr
 typedef uint64_t bits64 __attribute__((may_alias));
 typedef uint32_t bits32 __attribute__((may_alias));
 
-static void permute_8(bits64 *values, const int32_t *order, int64_t n, bits64 *scratch)
+static void permute(void *values, bool wide, const int32_t *order, int64_t n, void *scratch)
 {
+    bits64 *const to_8 = scratch, *const at_8 = values;
+    bits32 *const to_4 = scratch, *const at_4 = values;
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
+    for (int64_t k = 0; k < n; k++)
+        if (wide)
+            to_8[k] = at_8[order[k]];
+        else
+            to_4[k] = at_4[order[k]];
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
-}
-
-static void permute_4(bits32 *values, const int32_t *order, int64_t n, bits32 *scratch)
-{
-#pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
-#pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
+    for (int64_t k = 0; k < n; k++)
+        if (wide)
+            at_8[k] = to_8[k];
+        else
+            at_4[k] = to_4[k];
 }
 
 void particles_permute(struct particles *particles, const int32_t *order, int64_t n, void *scratch)
@@ -69,10 +71,7 @@ void particles_permute(struct particles *particles, const int32_t *order, int64_
     for (int k = 0; k < field_count; k++) {
         void *values = field_array(particles, &field_table[k]);
         if (!values || field_table[k].keep != KEEP_STATE) continue;
-        if (field_table[k].size == 8)
-            permute_8(values, order, n, scratch);
-        else
-            permute_4(values, order, n, scratch);
+        permute(values, field_table[k].size == 8, order, n, scratch);
     }
 }
 

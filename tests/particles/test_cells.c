@@ -2,7 +2,6 @@
  * The cell list against brute force. */
 #include "particles/cells.h"
 
-#include "particles/morton.h"
 #include "rig.h"
 #include "unity.h"
 

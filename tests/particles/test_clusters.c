@@ -56,7 +56,7 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
         neighbour_clusters_collect(&around, &fluid->packed[kind].boxes, cells, kind, cell,
-                                   fluid->k.h);
+                                   fluid->k.h, (struct cluster_range){0});
         for (int32_t m = 0; m < list->count[cell]; m++) {
             const uint32_t own = neighbour_code(list->cluster[cell] + m / CLUSTER, 1, 1);
             cluster_list_build(&near, &around, &fluid->packed[KIND_FLUID].boxes,
@@ -99,8 +99,8 @@ static void count_shares(int32_t cells, int *met)
         const struct cluster_range range = clusters_of(list, first, end);
         for (int32_t k = first; k < end; k++) {
             const int32_t cell = list->active[k];
-            neighbour_clusters_collect_half(&around, &fluid->packed[KIND_FLUID].boxes,
-                                            &rig.sim.cells, KIND_FLUID, cell, fluid->k.h, range);
+            neighbour_clusters_collect(&around, &fluid->packed[KIND_FLUID].boxes, &rig.sim.cells,
+                                       KIND_FLUID, cell, fluid->k.h, range);
             for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) {
                 cluster_list_build_half(&near, &around, &fluid->packed[KIND_FLUID].boxes);
                 TEST_ASSERT_EQUAL_INT(list->cluster[cell] + m, neighbour_number(near.code[0]));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Morton keys: the interleaved bits of both coordinates. */
-#include "particles/morton.h"
+#include "particles/cells.h"
 
 #include "unity.h"
 
