@@ -9,8 +9,8 @@
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make random-cases    1000 random scenes in every build, killed, restarted and forked: same bits
 #   make mutants         put small faults into the sources, count those that tests find:
-#                        docs/mutants.md
-#   make absence         an effect that is off costs nothing: each compiled out: docs/absence.md
+#                        docs/results/mutants.md
+#   make absence         an effect that is off costs nothing: each compiled out: docs/results/absence.md
 
 # Tests of one folder of src/ each, and of the tools.
 UNIT_DIRS := $(patsubst src/%/,%,$(wildcard src/*/)) tools

@@ -73,19 +73,20 @@ static void say_error(const struct scene *scene, enum kind kind, int body, const
     char low[32] = "";
     if (band.low < 0.9 * band.high) snprintf(low, sizeof low, "%.2g %% to ", band.low);
     if (moves || !isfinite(band.low))
-        session_say(o,
-                    "  %s: %.0f particles across; error unknown, because docs/accuracy.md has no "
-                    "case of this kind",
-                    name, n);
+        session_say(
+            o,
+            "  %s: %.0f particles across; error unknown, because docs/results/accuracy.md has no "
+            "case of this kind",
+            name, n);
     else if (band.coarser)
         session_say(o,
                     "  %s: %.0f particles across, fewer than in all cases of this kind in "
-                    "docs/accuracy.md, so the error is not known; use a finer dp",
+                    "docs/results/accuracy.md, so the error is not known; use a finer dp",
                     name, n);
     else
         session_say(o,
                     "  %s: %.0f particles %s about %s%.2g %% (cases of this kind, "
-                    "docs/accuracy.md)",
+                    "docs/results/accuracy.md)",
                     name, n,
                     fluid ? "over its height: error of" : "across: error of the tip displacement",
                     low, band.high);

@@ -127,7 +127,7 @@ static void say_fields(const struct simulation *sim, const struct sphfsi_options
 }
 
 /* The largest load of single instants falls with dp for as long as an impact lasts a few particles;
- * template `baffle`, docs/fluid_verification.md. */
+ * template `baffle`, docs/results/fluid_verification.md. */
 static void say_instants(const struct scene *scene, const struct sphfsi_options *o)
 {
     for (int k = 0; k < scene->n_probe; k++) {

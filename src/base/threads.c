@@ -43,7 +43,7 @@ int thread_cores(void)
 }
 
 /* Two threads were 1.25 times as fast as one where each had 400 particles, 1.6 times with 1300,
- * 1.8 times with 3000 (docs/accuracy.md, "Forecast against reality"). */
+ * 1.8 times with 3000 (docs/results/accuracy.md, "Forecast against reality"). */
 int thread_useful(int64_t n)
 {
     enum { PARTICLES = 1000 };

@@ -10,9 +10,9 @@ on earlier frees. Bytes are those of the run's arena.
 
   test_absence.py           all effects that no scene here uses, left out together (two programs),
   and
-                            docs/absence.md, which must have a row for every effect
+                            docs/results/absence.md, which must have a row for every effect
   test_absence.py --each    each effect by itself, a program for each: make absence, which writes
-                            docs/absence.md
+                            docs/results/absence.md
   test_absence.py --each NAME ...
                             these effects only; writes nothing"""
 import json
@@ -26,7 +26,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build/absence"
-REPORT = ROOT / "docs/absence.md"
+REPORT = ROOT / "docs/results/absence.md"
 ALLOWED = 0.01
 ALLOWED_EACH = 0.0005
 STEPS = 24

@@ -57,7 +57,8 @@ static struct response response_of(const char *set)
     return r;
 }
 
-/* The added mass is too large by the layer of docs/turek_hron_notes.md, which L-6 and L-6a leave.
+/* The added mass is too large by the layer of docs/notes/2026-11-26-turek-hron.md, which L-6 and
+ * L-6a leave.
  */
 static void test_oscillation(void)
 {

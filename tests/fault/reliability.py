@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the fault tests and writes docs/reliability.md: what was tried, how often, and the outcome.
+"""Runs the fault tests and writes docs/results/reliability.md: what was tried, how
+often, and the outcome.
 
 The tests, sanitizers and analysers are those that reliability.md beside this file lists. Their last
 outcomes are kept in tests/fault/checks.json; fuzzers log their counts in tests/fuzz/counts.txt.
@@ -167,7 +168,7 @@ def main():
     parser.add_argument("--report", action="store_true", help="run no fault tests, only write the "
                                                               "report")
     parser.add_argument("--only", action="store_true", help="no fault tests, no report")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "reliability.md")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "results" / "reliability.md")
     args = parser.parse_args()
 
     environment = dict(os.environ, OMP_WAIT_POLICY="passive", PYTHON=sys.executable)

@@ -3,10 +3,10 @@
 """Measures the tests: puts small faults into the sources, one at a time, and counts those that a
 test finds.
 
-    mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md (hours)
+    mutants.py --count 440        faults drawn with a seed from all files, and the report (hours)
     mutants.py --files src/solid  faults of one folder or file only
     mutants.py --again            judges anew what was not found, for instance by new tests
-    mutants.py --report           writes docs/mutants.md from what is kept
+    mutants.py --report           writes docs/results/mutants.md from what is kept
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or
 inverts a condition. The objects that hold the changed line are compiled, and the tests that run it
@@ -345,7 +345,7 @@ def by_folder(results, folders):
 
 
 def report(results, seconds, longest):
-    """docs/mutants.md"""
+    """docs/results/mutants.md"""
     reasons, cover = explained(), json.loads(coverage.SUMMARY.read_text())
     seed = max((r["seed"] for r in results), default=1)
     results = [{**r, **(standing(r) or {"verdict": "line deleted"})} for r in results]
@@ -382,7 +382,7 @@ def report(results, seconds, longest):
         left=table([(f"{file}:{line}", "`" + text.replace("|", "\\|") + "`",
                      why.get((file, text), "")) for file, line, text in cover["missing"]],
                    "where", "line", "why"))
-    (ROOT / "docs/mutants.md").write_text(text.rstrip() + "\n")
+    (ROOT / "docs/results/mutants.md").write_text(text.rstrip() + "\n")
     print("\n".join(text.split("\n")[:6]))
 
 
@@ -419,7 +419,7 @@ def main():
                         "that take longer are not run with faults (%(default)g)")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
-    parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
+    parser.add_argument("--report", action="store_true", help="only write docs/results/mutants.md")
     args = parser.parse_args()
     results = json.loads(KEPT.read_text()) if KEPT.exists() else []
     if args.report:

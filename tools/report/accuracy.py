@@ -4,13 +4,14 @@
 error against cost.
 
 Reads tools/report/accuracy.toml (its head explains it), runs every point that has not been run
-(runs/study, by the effective case and the sources of the program), and writes docs/accuracy.json,
-docs/accuracy.md and its figures. An interrupted study continues where it stopped. Examples:
+(runs/study, by the effective case and the sources of the program), and writes
+docs/results/accuracy.json, docs/results/accuracy.md and its figures. An interrupted study continues
+where it stopped. Examples:
 
   tools/report/accuracy.py                 run all missing points, then write the report
   tools/report/accuracy.py --list          list the points, and the time of those that are missing
   tools/report/accuracy.py --only gate     only points whose names begin with this
-  tools/report/accuracy.py --report        the report from docs/accuracy.json alone
+  tools/report/accuracy.py --report        the report from docs/results/accuracy.json alone
 """
 
 import json
@@ -20,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import study_report
-from common import ROOT, BadFile, load, options, run_tool
+from common import OUT, QUICK, ROOT, BadFile, load, options, run_tool
 from runs import program_hash
 from study import (complain, done, give_jobs, points_of, read_study, record_of, repeats_of,
                    run_point)
@@ -49,7 +50,7 @@ def arguments():
                         help="do not repeat points that an older program has run with the same "
                              "effective case; the report marks them")
     parser.add_argument("--prefix", default="", help="command in front of each run, such as nice")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of the report")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of the report")
     parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
     return parser.parse_args()
 
@@ -122,7 +123,7 @@ def collect(records, holes, study, data):
 
 def main():
     args = arguments()
-    own = ROOT / "docs" / "accuracy.json"
+    own = OUT / "accuracy.json"
     args.data = args.data or (own if args.study.resolve() == STUDY
                               else args.study.with_name("results.json"))
     ours = args.data.resolve() == own

@@ -20,6 +20,12 @@ import runfiles  # noqa: E402  finds the package of the clone
 from runfiles import *  # noqa: E402,F403
 from runfiles import BadFile, np  # noqa: E402
 
+# Where reports go; in their quick form (QUICK=1) to a folder to be looked at.
+QUICK = os.environ.get("QUICK", "") not in ("", "0")
+OUT = ROOT / "build" / "quick" if QUICK else ROOT / "docs" / "results"
+IMAGES = OUT / "img" if QUICK else ROOT / "docs" / "img"
+IMAGES.mkdir(parents=True, exist_ok=True)
+
 PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
 
 

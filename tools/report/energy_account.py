@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes docs/energy_account.md: what the account of energy (docs/theory.md, T-46) finds in scenes
-of every kind, with the default step and smaller ones, and in a grid of plates between waters.
+"""Writes docs/results/energy_account.md: what the account of energy (docs/theory.md, T-46) finds in
+scenes of every kind, with the default step and smaller ones, and in a grid of plates between
+waters.
 
 Example: tools/report/energy_account.py --grid"""
 import itertools
 import statistics
 from pathlib import Path
 
-from common import ROOT, fill, in_scratch, options, run_tool, table, write
+from common import OUT, QUICK, ROOT, fill, in_scratch, options, run_tool, table, write
 from stability_map import TERMS, statics
 
 THIN = "tests/stability/thin.cfg"
@@ -111,7 +112,7 @@ def main():
     parser = options(__doc__)
     parser.add_argument("--grid", action="store_true", help="also 192 plates between waters (ten "
                                                             "minutes)")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs/energy_account.md",
+    parser.add_argument("--out", type=Path, default=OUT / "energy_account.md",
                         help="the document")
     args = parser.parse_args()
     write(args.out, "energy_account.md", options=" --grid" * args.grid, scenes=scenes_table(),

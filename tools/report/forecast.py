@@ -3,7 +3,7 @@
 """Holds what --explain foresees against what runs take: steps and wall time of the shipped cases,
 each cut short by --until so that it takes about as long as --seconds says.
 
-Writes docs/forecast.json, one run a line, and the accuracy report, which shows it. A case
+Writes docs/results/forecast.json, one run a line, and the accuracy report, which shows it. A case
 that fails is shown as that. Examples:
 
   tools/report/forecast.py                     the cases in cases/, one thread and all
@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 import study_report
-from common import PROGRAM, ROOT, BadFile, ask, load, options, run_tool, store_rows
+from common import OUT, PROGRAM, QUICK, ROOT, BadFile, ask, load, options, run_tool, store_rows
 from runs import effective, timed
 from study import machine
 from study_tables import forecast_cells
@@ -29,7 +29,7 @@ def arguments():
     parser.add_argument("cases", nargs="*", help="beginnings of names; all without")
     parser.add_argument("--seconds", type=float, default=6, help="aimed at for a run, as foreseen")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
-    parser.add_argument("--data", type=Path, default=ROOT / "docs" / "forecast.json")
+    parser.add_argument("--data", type=Path, default=OUT / "forecast.json")
     parser.add_argument("--no-report", action="store_true", help="only the data")
     return parser.parse_args()
 
@@ -94,7 +94,7 @@ def main():
     print(f"written {args.data}")
     results = args.data.with_name("accuracy.json")
     return 0 if args.no_report or not results.exists() else study_report.write(results,
-                                                                               ROOT / "docs")
+                                                                               OUT)
 
 
 if __name__ == "__main__":

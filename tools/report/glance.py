@@ -12,11 +12,11 @@ import statistics
 import sys
 import tomllib
 
-from common import ROOT, in_scratch, options, plt
+from common import IMAGES, OUT, QUICK, ROOT, in_scratch, options, plt
 from study_results import Study, cost
 
-IMG = ROOT / "docs" / "img"
-EFFECTS = ROOT / "docs" / "effects.csv"
+IMG = IMAGES
+EFFECTS = OUT / "effects.csv"
 # case of the accuracy study: its name, its main error, what the error is measured against
 MAIN_ERROR = {
     "cantilever": ("cantilever, period", "period", "exact"),
@@ -45,7 +45,7 @@ PASSES, CURED, FAILS = "#3a8f4d", "#e5a823", "#c0392b"
 def draw_accuracy():
     """Error against CPU seconds of every case with default settings; thin: with the scheme of the
     paper."""
-    study = Study(ROOT / "docs" / "accuracy.json")
+    study = Study(ROOT / "docs" / "results" / "accuracy.json")
 
     def rows_of(points, error):
         return sorted((cost(p), 100 * abs(p["errors"][error])) for p in points
@@ -80,7 +80,7 @@ def draw_accuracy():
 def stability_colours():
     """A colour for each scene of the suite; runs of the same scene with a setting, or without a
     remedy that is on by default, are no scenes of their own."""
-    text = (ROOT / "docs/stability.md").read_text()
+    text = (ROOT / "docs/results/stability.md").read_text()
     passes = {}
     for line in text.split("| scene | what it is |")[1].split("\n## ")[0].splitlines():
         cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]

@@ -3,7 +3,8 @@
 """Orders of convergence against manufactured solutions: in the fluid, at no-slip walls and in the
 solid.
 
-  tools/report/manufactured.py                      writes docs/manufactured.md (some minutes on one
+  tools/report/manufactured.py                      writes docs/results/manufactured.md (some
+                                                    minutes on one
   core)
   tools/report/manufactured.py wall --ratios 25 50  one scene at some resolutions, to the screen
 
@@ -12,10 +13,10 @@ The scenes are cases/verify/manufactured_*.cfg; the method is that of Roache (20
 particles, of Negi and Ramachandran (2022, arXiv 2208.10848)."""
 import math
 
-from common import ROOT, np, options, program_version, run_tool, table, write
+from common import OUT, QUICK, ROOT, np, options, program_version, run_tool, table, write
 import sphfsi
 
-REPORT = ROOT / "docs" / "manufactured.md"
+REPORT = OUT / "manufactured.md"
 SCHEMES = {"paper": {"scheme": "paper"}, "standard": {"scheme": "standard"}}
 RATIOS = {"fluid": (25, 50, 100, 200), "wall": (25, 50, 100, 200), "solid": (10, 20, 40, 80)}
 # Least orders that are asked for between the two finest runs.

@@ -1,25 +1,25 @@
 # The goals that write reports. ARGS='...' goes to the tool.
 #
-#   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
+#   make validate        run the paper's cases and the verification cases, write docs/results/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted;
-#                        KEEP=1 keeps the results of the longer runs in docs/validation/, where they count
+#                        KEEP=1 keeps the results of the longer runs in docs/results/validation/, where they count
 #                        as run from then on (ARGS=--again)
-#   make accuracy        run what is missing of the accuracy study, write docs/accuracy.md (ARGS=--list)
-#   make forecast        what --explain foresees against what the shipped cases take: docs/accuracy.md
-#   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
+#   make accuracy        run what is missing of the accuracy study, write docs/results/accuracy.md (ARGS=--list)
+#   make forecast        what --explain foresees against what the shipped cases take: docs/results/accuracy.md
+#   make stability       run the hard cases in their long form and write docs/results/stability.md; goes on where
 #                        it was interrupted
-#   make stability-map   1440 plates over density, thickness and stiffness: docs/stability_map.json, picture
-#   make stability-substeps   sub-steps of the solid against a single rate: docs/stability_substeps.json
-#   make verify-fluid    rest, waves, impact, openings with both schemes: docs/fluid_verification.md
-#   make verify-contact  restitution, pressure, friction, stacks, folds: docs/contact_verification.md
-#   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
-#   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
-#   make turek-hron      docs/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
-#   make energy-account  what the account of energy finds: docs/energy_account.md
+#   make stability-map   1440 plates over density, thickness and stiffness: docs/results/stability_map.json, picture
+#   make stability-substeps   sub-steps of the solid against a single rate: docs/results/stability_substeps.json
+#   make verify-fluid    rest, waves, impact, openings with both schemes: docs/results/fluid_verification.md
+#   make verify-contact  restitution, pressure, friction, stacks, folds: docs/results/contact_verification.md
+#   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/results/open_verification.md
+#   make verify-manufactured  orders of convergence against manufactured solutions: docs/results/manufactured.md
+#   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
+#   make energy-account  what the account of energy finds: docs/results/energy_account.md
 #   make performance     the bench, longest steps and the gate: docs/performance.md
 #   make glance          the charts of the README from the results of the reports
 #   make gallery         run the elastic valve, draw the picture of it in the README
-#   make reliability     run the fault tests and write docs/reliability.md
+#   make reliability     run the fault tests and write docs/results/reliability.md
 
 # goal: the tool and its options. Each is run on the built program by the project's Python.
 validate_TOOL            := tools/report/validation.py $(if $(QUICK),--quick) $(if $(KEEP),--keep)

@@ -4,7 +4,8 @@
 
   tools/report/stability.py --quick     coarse and short; exit status 1 if a scene deviates from the
                                         table
-  tools/report/stability.py --report    the long form; writes docs/stability.md (make stability)
+  tools/report/stability.py --report    the long form; writes docs/results/stability.md (make
+                                        stability)
 
 Names that a criterion can use:
   finished      the run reached its end; otherwise a guard stopped it
@@ -26,11 +27,11 @@ from pathlib import Path
 
 import stability_map
 import stability_substeps
-from common import ROOT, Run, options, read_table, run_tool, table, write
+from common import OUT, ROOT, Run, options, read_table, run_tool, table, write
 from runs import Job
 
 SUITE = ROOT / "tests" / "stability"
-REPORT = ROOT / "docs" / "stability.md"
+REPORT = OUT / "stability.md"
 # Steps of the comparison of the integrators, over the limit; the first run finds the limit.
 FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
 FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` runs the long form)",
@@ -214,7 +215,7 @@ def write_report(rows, integrators, form):
 def main():
     parser = options(__doc__)
     parser.add_argument("--quick", action="store_true", help="coarse and short")
-    parser.add_argument("--report", action="store_true", help="write docs/stability.md")
+    parser.add_argument("--report", action="store_true", help="write docs/results/stability.md")
     parser.add_argument("--keep", action="store_true", help="keep the runs in build/stability and "
                         "do not repeat those that are there")
     parser.add_argument("--kept", action="store_true", help="the long form of scenes whose long "

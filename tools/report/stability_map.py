@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """The stability map: runs a plate between waters (tests/stability/thin.cfg) over density,
 thickness, stiffness, one wet side or two, integrator and scheme. Keeps the results in
-docs/stability_map.json and draws docs/img/stability_map.png. tools/report/stability_report.py puts
-both into docs/stability.md.
+docs/results/stability_map.json and draws docs/img/stability_map.png.
+tools/report/stability_report.py puts both into docs/results/stability.md.
 
 Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), then the
 picture
@@ -18,11 +18,12 @@ import random
 from concurrent.futures import ThreadPoolExecutor
 
 import common
-from common import ROOT, fill, plt, program_version, store_rows, summary_of, table
+from common import (IMAGES, OUT, QUICK, ROOT, fill, plt, program_version, store_rows, summary_of,
+                    table)
 
 CASE = ROOT / "tests/stability/thin.cfg"
-RESULTS = ROOT / "docs/stability_map.json"
-PICTURE = ROOT / "docs/img/stability_map.png"
+RESULTS = OUT / "stability_map.json"
+PICTURE = IMAGES / "stability_map.png"
 
 DENSITIES = (0.01, 0.1, 0.3, 1, 3, 10)        # over that of water
 ACROSS = (2, 3, 5, 10)                       # particles through the thickness
@@ -159,7 +160,7 @@ def grid_size():
 
 
 def report(rows):
-    """Section for docs/stability.md."""
+    """Section for docs/results/stability.md."""
     verdicts = [judge(row) for row in rows]
     gains = [row for row, verdict in zip(rows, verdicts) if verdict == "gains"]
     early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Sub-steps of the solid against a single rate: a dam break on an elastic obstacle
 (tests/stability/obstacle.cfg) whose fluid step holds 1 to 2 solid steps, and the motion of the
-article's cases. Keeps the results in docs/stability_substeps.json; tools/report/stability_report.py
-puts the tables into docs/stability.md.
+article's cases. Keeps the results in docs/results/stability_substeps.json;
+tools/report/stability_report.py puts the tables into docs/results/stability.md.
 
 Example: tools/report/stability_substeps.py                   all rows (40 CPU-minutes)
          tools/report/stability_substeps.py --part obstacle   those of the obstacle, the others as
@@ -14,10 +14,10 @@ import math
 import os
 import statistics
 
-from common import ROOT, in_scratch, load, runfiles, table
+from common import OUT, QUICK, ROOT, in_scratch, load, runfiles, table
 
 CASE = ROOT / "tests/stability/obstacle.cfg"
-RESULTS = ROOT / "docs/stability_substeps.json"
+RESULTS = OUT / "stability_substeps.json"
 ROWS = (  # name, settings
     ("E = 1 MPa, defaults", ()),
     ("precision double", ("precision=double",)),
@@ -91,7 +91,7 @@ def motions():
 
 
 def values():
-    """What the section of docs/stability.md says."""
+    """What the section of docs/results/stability.md says."""
     kept = load(RESULTS)
     rows, ratios = [], []
     for row in kept["obstacle"]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report of the accuracy study (docs/accuracy.md and its figures) from its collected
+"""The report of the accuracy study (docs/results/accuracy.md and its figures) from its collected
 results."""
 
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 
 from matplotlib.ticker import LogFormatter
 
-from common import COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
+from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
 from palette import shrink
 from study import SCENES
 from study_presets import fronts, preset_table, write_evidence
@@ -181,9 +181,10 @@ def write(data, out, evidence=None):
     study = Study(data)
     if evidence:
         write_evidence(study, evidence)
-    (out / "img").mkdir(parents=True, exist_ok=True)
+    images = IMAGES if out == OUT else out / "img"
+    images.mkdir(parents=True, exist_ok=True)
     for case in study.cases:
-        draw_case(study, case, out / "img" / f"accuracy_{case}.png")
+        draw_case(study, case, images / f"accuracy_{case}.png")
     rules = study.definition["study"]
     knobs = "\n\n".join(f"### {entry.get('title', case)}: "
                         f"{main_error(entry)}\n\n{knob_table(study, case)}"

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The benchmark of Turek and Hron (2006): runs its cases, reads drag, lift and the displacement of
-A, finds out whether they rest, repeat themselves or do neither yet, and writes docs/turek_hron.md.
+A, finds out whether they rest, repeat themselves or do neither yet, and writes
+docs/results/turek_hron.md.
 
 examples:
   tools/report/turek_hron.py run fsi2 --across 10        runs the case into runs/turek_hron/fsi2-10
   tools/report/turek_hron.py read runs/turek_hron/*      prints what the runs show
-  tools/report/turek_hron.py keep runs/turek_hron/*      adds it to docs/turek_hron.json
-  tools/report/turek_hron.py report                      writes docs/turek_hron.md from there
+  tools/report/turek_hron.py keep runs/turek_hron/*      adds it to docs/results/turek_hron.json
+  tools/report/turek_hron.py report                      writes docs/results/turek_hron.md from
+                                                         there
   tools/report/turek_hron.py pictures runs/turek_hron/fsi2-10   draws docs/img/turek_hron_*.png
 """
 import json
@@ -15,13 +17,14 @@ import math
 import os
 from pathlib import Path
 
-from common import ROOT, Run, load, np, options, plt, run_tool, store, table, write
+from common import (IMAGES, OUT, ROOT, Run, load, np, options, plt, run_tool, store, table,
+                    write)
 from palette import shrink
 from runs import Job
 
 CASES = ROOT / "cases" / "turek_hron"
-KEPT = ROOT / "docs" / "turek_hron.json"
-PAGE = ROOT / "docs" / "turek_hron.md"
+KEPT = OUT / "turek_hron.json"
+PAGE = OUT / "turek_hron.md"
 
 # Mean, amplitude and frequency (Hz) in mm and N/m; amplitude and frequency None: steady. Turek and
 # Hron (2006) for CSM, CFD and FSI1; the finest levels quoted by the verification pages of
@@ -343,7 +346,6 @@ def report():
     head = ["case", "across", "version", "simulated s", "end", "particles (fluid, solid)",
             "CPU s | CPU s a second", "quantity", "found", "reference"]
     write(PAGE, "turek_hron.md", headline="\n".join(headline(kept)),
-          notes=(ROOT / "docs" / "turek_hron_notes.md").read_text().strip(),
           runs=table(head, (row for run in kept for row in rows_of(run))).replace(
               "|---|\n", "|---|---|\n", 1),
           others="\n".join(f"| {n} | {e:+.1f} | {c:.0f} | {s} |" for n, e, c, s in OTHERS))
@@ -372,7 +374,7 @@ def pictures(run):
     ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %")
     ax.margins(y=0.12)
     ax.legend(fontsize=7)
-    fig.savefig(ROOT / "docs" / "img" / "turek_hron_cost.png", dpi=100, bbox_inches="tight")
+    fig.savefig(IMAGES / "turek_hron_cost.png", dpi=100, bbox_inches="tight")
     if not run:
         return
     times, series = columns(run)
@@ -386,7 +388,7 @@ def pictures(run):
         axis.set_ylabel(f"{name}, {UNIT[name]}")
     axes[-1].set_xlabel("time, s")
     name = Path(run).name.replace("-", "_")
-    path = ROOT / "docs" / "img" / f"turek_hron_{name}.png"
+    path = IMAGES / f"turek_hron_{name}.png"
     fig.savefig(path, dpi=80, bbox_inches="tight")
     shrink(path)
 
@@ -404,7 +406,7 @@ def main():
     for name in ("read", "keep"):
         sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+",
                                                                          type=Path)
-    sub.add_parser("report", help="write docs/turek_hron.md")
+    sub.add_parser("report", help="write docs/results/turek_hron.md")
     draw = sub.add_parser("pictures", help="draw error against cost, and the histories of a run")
     draw.add_argument("history", nargs="?", type=Path)
     args = parser.parse_args()

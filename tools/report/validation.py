@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the paper's five cases and the verification cases, and writes docs/validation.md.
+"""Runs the paper's five cases and the verification cases, and writes docs/results/validation.md.
 
 Runs that are finished, of the same effective case and program, are not repeated; interrupted ones
 go on from their checkpoint. Without --quick the paper's resolutions are run: many hours. With
---keep, what the report reads of the longer runs goes to docs/validation/NAME.zip as they end,
-without the snapshots, and counts as run from then on, on any machine and with any version, until
-its case changes. Examples:
+--keep, what the report reads of the longer runs goes to docs/results/validation/NAME.zip as they
+end, without the snapshots, and counts as run from then on, on any machine and with any version,
+until its case changes. Examples:
 
   tools/report/validation.py --quick --jobs 2
   tools/report/validation.py --only gate,=plate --no-report --keep
@@ -17,7 +17,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from common import ROOT, options, run_tool
+from common import OUT, options, run_tool
 from validation_kept import FOLDER as KEPT, Kept
 from validation_report import write_report
 from validation_runs import FOLDER, JOBS, Runner, chosen
@@ -50,7 +50,7 @@ def main():
     runner = Runner(Kept(KEPT), args.any_version, args.again, args.keep)
     with ThreadPoolExecutor(1 if args.no_run else max(1, args.jobs)) as pool:
         list(pool.map(runner.store if args.no_run else runner.run, jobs))
-    wrong = [] if args.no_report else write_report(ROOT / "docs", runner.failed, runner.kept)
+    wrong = [] if args.no_report else write_report(OUT, runner.failed, runner.kept)
     for line in wrong:
         print(f"validate: {line}", file=sys.stderr)
     return bool(wrong)

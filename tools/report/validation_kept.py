@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Results of long runs of the validation that are kept in the repository, docs/validation/NAME.zip.
+"""Results of long runs of the validation that are kept in docs/results/validation/NAME.zip.
 
 An archive holds what the report reads of a run without its snapshots: summary.json, the effective
 case, probes.csv, ledger.csv, and in measured.json the numbers that take the snapshots or every row.
@@ -19,7 +19,7 @@ from common import ROOT, BadFile, Run, ask, check_increasing, read_text, sentenc
 from sphfsi.draw_ledger import read_ledger
 from validation_measures import FILE, NotRun, measure_all
 
-FOLDER = ROOT / "docs" / "validation"
+FOLDER = ROOT / "docs" / "results" / "validation"
 ENDED = ("finished", "guard")  # exit reasons after which a run would end in the same way again
 TABLES = ("probes.csv", "ledger.csv")
 NEEDED = {"summary.json", "case.cfg", FILE}

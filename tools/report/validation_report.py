@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Writes docs/validation.md and its figures from the existing runs.
+"""Writes docs/results/validation.md and its figures from the existing runs.
 
 A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or
 was not run, its table says so. An error in a run, a row, a target or a section is reported in its
@@ -10,7 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from common import (ROOT, BadFile, Run, last_line, machine, program_version, read_text, sentence,
+from common import (IMAGES, OUT, ROOT, BadFile, Run, last_line, machine, program_version,
+                    read_text, sentence,
                     table, words_of)
 from palette import shrink
 from validation_kept import ENDED, check_ended, means
@@ -27,7 +28,8 @@ class Report:
     results."""
 
     def __init__(self, docs, failed, kept):
-        self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
+        self.docs, self.failed = Path(docs), failed
+        self.images = IMAGES if self.docs == OUT else self.docs / "img"
         self.targets, self.kept = [], kept
         self.runs = {}   # name: the run, or why there is none
         self.wrong = {}  # what is wrong with files or the program: where it was met first
@@ -173,14 +175,14 @@ class Report:
 
     def picture(self, path, caption, origin=""):
         shrink(path, {ORIGIN: origin} if origin else {})
-        return [f"![{caption}](img/{path.name})", "", f"*{caption}*", ""]
+        return [f"![{caption}](../img/{path.name})", "", f"*{caption}*", ""]
 
     def standing(self, path, caption):
         """A picture that was drawn when the snapshots were there."""
         from PIL import Image
         with Image.open(path) as image:
             origin = image.info.get(ORIGIN) or "runs and a version that it does not name"
-        return [f"![{caption}](img/{path.name})", "",
+        return [f"![{caption}](../img/{path.name})", "",
                 f"*{caption}; an earlier picture, of {origin}*", ""]
 
 

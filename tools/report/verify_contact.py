@@ -3,19 +3,19 @@
 """Runs small scenes of contact at two or three resolutions and says how far each is off (make
 verify-contact, some minutes on one core).
 
-  tools/report/verify_contact.py                 writes docs/contact_verification.md
+  tools/report/verify_contact.py                 writes docs/results/contact_verification.md
   tools/report/verify_contact.py --only disc     runs these scenes again, keeps the figures of the
   others
   tools/report/verify_contact.py --list          says which scenes there are
 
 The scenes are cases/verify/contact_*.cfg and two others. tools/report/verify_contact_measures.py
-says how each figure is taken. The figures are kept in docs/contact_verification.json."""
+says how each figure is taken. The figures are kept in docs/results/contact_verification.json."""
 import math
 
 import verify_contact_measures as of
-from common import ROOT, cell, judged, limit_text, measure_scene, run_scenes, run_tool, table
+from common import OUT, cell, judged, limit_text, measure_scene, run_scenes, run_tool, table
 
-REPORT = ROOT / "docs" / "contact_verification.md"
+REPORT = OUT / "contact_verification.md"
 LINE = [{"D": 1.2e-3}, {"D": 2.4e-3}]
 
 

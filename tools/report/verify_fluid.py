@@ -3,19 +3,19 @@
 """Runs small scenes of still water, waves, impact, openings and bodies with both schemes of the
 fluid and says how far each is off (make verify-fluid, ten minutes on one core).
 
-  tools/report/verify_fluid.py                     writes docs/fluid_verification.md
+  tools/report/verify_fluid.py                     writes docs/results/fluid_verification.md
   tools/report/verify_fluid.py --only 'still water'   runs these scenes again, keeps the figures of
   the others
   tools/report/verify_fluid.py --list              says which scenes there are
 
 The scenes are those of cases/verify, shipped cases and templates.
 tools/report/verify_fluid_measures.py says how each figure is taken. The figures are kept in
-docs/fluid_verification.json."""
+docs/results/fluid_verification.json."""
 import verify_fluid_measures as of
-from common import (ROOT, cell, kept, limit_text, measure_scene, number, run_scenes, run_tool,
+from common import (OUT, cell, kept, limit_text, measure_scene, number, run_scenes, run_tool,
                     table)
 
-REPORT = ROOT / "docs" / "fluid_verification.md"
+REPORT = OUT / "fluid_verification.md"
 SCHEMES = ("paper", "standard")
 
 

@@ -5,18 +5,18 @@ minutes on one core): a vortex that leaves, a weir with given discharge, a flow 
 periodically, a jet on a plate, a cylinder in a stream.
 
 examples:
-  tools/report/verify_open.py               writes docs/open_verification.md
+  tools/report/verify_open.py               writes docs/results/open_verification.md
   tools/report/verify_open.py --only weir   runs these scenes again, keeps the figures of the others
 
 The scenes are cases/verify/open_*.cfg and cylinder.cfg. The figures are kept in
-docs/open_verification.json."""
+docs/results/open_verification.json."""
 import math
 
-from common import (ROOT, BadFile, cell, judged, limit_text, measure_scene, np, number, run_scenes,
+from common import (OUT, BadFile, cell, judged, limit_text, measure_scene, np, number, run_scenes,
                     run_tool, table)
 from sphfsi.snapshots import KINDS, Snapshots
 
-REPORT = ROOT / "docs" / "open_verification.md"
+REPORT = OUT / "open_verification.md"
 G = 9.81
 
 
