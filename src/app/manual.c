@@ -26,6 +26,7 @@ static const char *const section_meanings[][2] = {
      "Fluid at the start. Several sections may differ in shape, surface, pressure and velocity; "
      "their other values must be equal."},
     {"wall", "Rigid bodies, at rest or with a prescribed motion."},
+    {"rigid", "Rigid bodies that move freely."},
     {"solid", "Elastic bodies."},
     {"contact", "Parameters of contact between bodies, or no contact."},
     {"load", "A force on a region of a solid."},
@@ -73,7 +74,8 @@ static void default_of(const struct param *param, char *text, size_t size)
     case PARAM_INTEGER:
     case PARAM_CHOICE: value_of(param, value, text, size); break;
     case PARAM_VECTOR:
-        snprintf(text, size, "%g, %g", param->vector_default[0], param->vector_default[1]);
+        if (!isnan(param->vector_default[0]))
+            snprintf(text, size, "%g, %g", param->vector_default[0], param->vector_default[1]);
         break;
     case PARAM_TEXT: snprintf(text, size, "%s", param->text_default); break;
     default: break;

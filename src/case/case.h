@@ -136,10 +136,15 @@ extern const char *const shape_words[];
 void case_apply_presets(struct reader *r);
 void case_apply_defaults(struct scene *scene);
 
+/* case/rigid.c: rigid bodies as walls with a motion; sections of a kind without these. */
+enum err case_place_rigid(struct reader *r) SPHFSI_CHECKED;
+int case_given_count(const struct scene *scene, enum section_id id);
+
 /* case/check.c: names of other sections; then conditions on a valid scene, on each section by a
  * function of its own, and on effects (case/check_effects.c). */
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
+enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_motion(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_probe(struct reader *r, const void *section) SPHFSI_CHECKED;

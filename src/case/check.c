@@ -40,7 +40,10 @@ static enum err check_names(struct reader *r, const struct param *param, const v
             TRY(check_name(r, param, section, hinges->item[k].other, param->also));
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
-        return check_name(r, param, section, text, one ? param->kind : param->also);
+        return check_name(r, param, section, text,
+                          !one                            ? param->also
+                          : probe->quantity == PROBE_POSE ? SECTION_rigid
+                                                          : param->kind);
     for (int k = 0; scene_listed(text, k, name); k++)
         TRY(check_name(r, param, section, name, param->also));
     return ERR_OK;
@@ -312,24 +315,18 @@ enum err case_check(struct reader *r)
         enum section_id section;
         enum err (*check)(struct reader *r, const void *section);
     } checks[] = {
-        {SECTION_top, check_top},
-        {SECTION_numerics, check_numerics},
-        {SECTION_output, check_output},
-        {SECTION_relax, check_relax},
-        {SECTION_fluid, check_fluid},
-        {SECTION_solid, check_solid},
-        {SECTION_motion, case_check_motion},
-        {SECTION_inflow, case_check_open},
-        {SECTION_outflow, case_check_open},
-        {SECTION_probe, case_check_probe},
-        {SECTION_contact, check_contact},
-        {SECTION_load, check_load},
-        {SECTION_reference, check_reference},
+        {SECTION_top, check_top},          {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},    {SECTION_relax, check_relax},
+        {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
+        {SECTION_rigid, case_check_rigid}, {SECTION_motion, case_check_motion},
+        {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
+        {SECTION_probe, case_check_probe}, {SECTION_contact, check_contact},
+        {SECTION_load, check_load},        {SECTION_reference, check_reference},
     };
-    if (r->scene->n_fluid == 0 && r->scene->n_solid == 0)
+    if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)
         return bad_line(r, 1,
-                        "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
-                        "section");
+                        "nothing to simulate: the case needs a [fluid NAME], a [solid NAME] or a "
+                        "[rigid NAME] section");
     for (size_t n = 0; n < COUNT_OF(checks); n++)
         for (int k = 0; k < section_count(r->scene, checks[n].section); k++)
             TRY(case_go_on(r, checks[n].check(r, section_at(r->scene, checks[n].section, k))));

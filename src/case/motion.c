@@ -196,6 +196,20 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
     return p;
 }
 
+/* A rigid body keeps its accelerations within a step. */
+static struct motion_state rigid_at(const struct rigid_motion *rigid, double time)
+{
+    struct motion_state m = rigid->now;
+    const double since = time - rigid->time;
+    for (int c = 0; c < 2; c++) {
+        m.d[c] += since * (m.v[c] + 0.5 * since * m.a[c]);
+        m.v[c] += since * m.a[c];
+    }
+    m.angle += since * (m.rate + 0.5 * since * m.angular_acceleration);
+    m.rate += since * m.angular_acceleration;
+    return m;
+}
+
 static struct motion_state prescribed_at(const struct scene *scene, int motion_index, double time)
 {
     struct motion_state m = {0};
@@ -207,6 +221,8 @@ static struct motion_state prescribed_at(const struct scene *scene, int motion_i
             hook->at(hook->context, time, m.d, m.v, m.a); /* < 0: rest is sought (T-78) */
         return m;
     }
+    if (motion_index >= scene_rigid_motion(scene, 0))
+        return rigid_at(&scene->rigid_motion[motion_index - scene_rigid_motion(scene, 0)], time);
     const struct scene_motion *motion = &scene->motion[motion_index];
     if (time < motion->start) return m;
     const bool over = time >= motion->stop;

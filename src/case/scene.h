@@ -181,6 +181,11 @@ SPHFSI_INLINE void place_of_lattice(const struct scene_lattice *l, double x, dou
     at[1] = turned ? x * l->turn[1] + y * l->turn[0] : y;
 }
 
+/* Of a rigid body, per depth: kg/m, kg m, m. */
+struct rigid_mass {
+    double mass, inertia, centre[2];
+};
+
 /* A table, loaded from its file: n rows of a time and two values. n == 0: none. */
 struct scene_table {
     int n;
@@ -229,7 +234,10 @@ struct scene {
     struct scene_table *motion_data; /* [n_motion] */
     struct scene_table gravity_data;
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
-    struct scene_points points[3];   /* by enum kind of particles/particles.h: fluid, wall, solid */
+    /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
+    struct rigid_motion *rigid_motion;
+    struct rigid_mass *rigid_mass; /* [n_rigid], by sampling */
+    struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h;                                     /* smoothing length */
     double c0, rho0;    /* speed of sound and density of the fluid; 0: no fluid */
@@ -312,6 +320,20 @@ struct motion_hook { /* a function of a program with the library, used instead *
     void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
     void *context;
 };
+/* The present motion of a rigid body: of the simulation of the scene that was moved last. */
+struct rigid_motion {
+    double time;
+    struct motion_state now; /* its velocity and accelerations continue it */
+};
+/* The wall and the motion of a rigid body. */
+SPHFSI_INLINE int scene_rigid_wall(const struct scene *scene, int rigid)
+{
+    return scene->n_wall - scene->n_rigid + rigid;
+}
+SPHFSI_INLINE int scene_rigid_motion(const struct scene *scene, int rigid)
+{
+    return scene->n_motion - scene->n_rigid + rigid;
+}
 /* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given, plus the table of
  * top.gravity_file. top.gravity itself is the value at t = 0 without the table. */
 void scene_gravity_at(const struct scene *scene, double t, double g[2]);

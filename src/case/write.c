@@ -111,7 +111,8 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     const struct shape_list *const shapes = value;
     const struct hinge_list *const hinges = value;
     char text[SCENE_TEXT];
-    const bool may_be_absent = param->type > PARAM_VECTOR || isnan(param->number.value);
+    const bool may_be_absent =
+        param->type > PARAM_VECTOR || isnan(param->number.value) || isnan(param->vector_default[0]);
     if (may_be_absent && param_is_default(param, section)) return;
     if (!param_repeats(param)) fprintf(out, "%s = ", param->key);
     switch (param->type) {
@@ -194,7 +195,7 @@ enum err scene_write(const struct scene *scene, const char *path, struct diag *d
     write_section(out, scene, SECTION_top, 0, path);
     write_constants(out, scene);
     for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
-        for (int k = 0; k < section_count(scene, (enum section_id)id); k++)
+        for (int k = 0; k < case_given_count(scene, (enum section_id)id); k++)
             write_section(out, scene, (enum section_id)id, k, path);
     const bool failed = ferror(out) != 0;
     if (fclose(out) != 0 || failed)

@@ -41,13 +41,12 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
                 warn_at(check->diag, check->scene, line,
                         "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
                         "%c = %g m would fit",
-                        kind_names[region->kind], region->name, "xy"[c], a[c], l -> dp, "xy"[c],
-                        fit);
+                        region->word, region->name, "xy"[c], a[c], l -> dp, "xy"[c], fit);
             else
                 warn_at(check->diag, check->scene, line,
                         "an edge of [%s %s] is %.2g dp off the lattice, which is rotated by "
                         "%.4g degrees; move the edge or choose another dp",
-                        kind_names[region->kind], region->name, fabs(a[c] - fit) / l->dp,
+                        region->word, region->name, fabs(a[c] - fit) / l->dp,
                         l->angle * (180 / PI));
         }
     }
@@ -153,7 +152,7 @@ static void warn_of_thin(struct check *check, const struct region *region, const
     warn_at(check->diag, check->scene, wall ? wall->line : region->line,
             "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts "
             "with the fluid behind it; %s prevents that",
-            kind_names[region->kind], region->name, thick, 2 * scene->h,
+            region->word, region->name, thick, 2 * scene->h,
             !directly ? "numerics.sides = one"
             : wall    ? "a thicker wall or a finer dp"
                       : "a finer dp");
@@ -223,7 +222,7 @@ static void warn_of_cuts(struct check *check, const struct region *region)
                 "`minus` removes no particle of [%s %s], because it is narrower than dp = %g "
                 "m or lies outside, so the opening is closed; enlarge or move it, or use a "
                 "smaller dp",
-                kind_names[region->kind], region->name, region->lattice.dp);
+                region->word, region->name, region->lattice.dp);
     }
 }
 
@@ -321,12 +320,11 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
     const struct region *const p = &check->shapes.regions[a], *const q = &check->shapes.regions[b];
     char between[2 * SCENE_NAME + 32] = "in";
     *told = true;
-    if (a != b)
-        snprintf(between, sizeof between, "between [%s %s] and", kind_names[p->kind], p->name);
+    if (a != b) snprintf(between, sizeof between, "between [%s %s] and", p->word, p->name);
     warn_at(check->diag, check->scene, line,
             "the gap %s [%s %s] at (%.4g, %.4g) m is %.2g m wide, %s; use dp = %.2g m or less, or "
             "close the gap",
-            between, kind_names[q->kind], q->name, at[0], at[1], width * dp,
+            between, q->word, q->name, at[0], at[1], width * dp,
             closed ? "and closed by sampling, so no fluid passes"
                    : "one particle: between a fifth and four fifths of the flow passes, and may "
                      "gain energy",

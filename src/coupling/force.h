@@ -133,6 +133,13 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
     }
 }
 
+/* FX_IMPEDANCE if the wetted surface of the particles of a kind is needed (T-35a, T-95). */
+SPHFSI_INLINE effect_set wetted_effect(effect_set effects, enum kind kind)
+{
+    const effect_set needs = kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID;
+    return effects & needs ? FX_IMPEDANCE : 0;
+}
+
 /* A cell, for the sets of effects that are frequent; `any` has those of the case. */
 typedef void SWEEP(force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
                           const struct cells *cells, int32_t cell,
@@ -154,7 +161,7 @@ typedef void SWEEP(force)(const struct fluid *fluid, struct particles *particles
     FORCE(body_in_flow, BODY_IN_FLOW_SURFACE)                  \
     FORCE(body_in_flow_impedance, BODY_IN_FLOW_SURFACE | FX_IMPEDANCE)
 FORCES(FORCE)
-FORCE(any, fluid->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+FORCE(any, (fluid->effects & ~(effect_set)FX_IMPEDANCE) | wetted_effect(fluid->effects, kind))
 #undef FORCE
 
 static SWEEP(force) * SWEEP(force_for)(effect_set effects)
@@ -176,8 +183,8 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
                        const struct cells *cells)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
-    SWEEP(force) *const force = SWEEP(force_for)(
-        fluid->effects & (effect_set)(SURFACE_EFFECTS | (kind == KIND_SOLID ? FX_IMPEDANCE : 0)));
+    SWEEP(force) *const force = SWEEP(force_for)((fluid->effects & (effect_set)SURFACE_EFFECTS) |
+                                                 wetted_effect(fluid->effects, kind));
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
         force(fluid, particles, kind, cells, fluid->near_fluid[kind][n], &k);

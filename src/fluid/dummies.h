@@ -207,7 +207,8 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
     gather_velocity(d, particles, fx, u, v);
     /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
      * (L-6); and on a structure that of the interface impulse (T-35b). */
-    gather(d, d->kind == KIND_SOLID ? particles->interface_pressure : NULL, acting);
+    gather(d, d->kind == KIND_SOLID || fx & FX_RIGID ? particles->interface_pressure : NULL,
+           acting);
     for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
     for (int r = 0; r < d->count; r++)
         volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
@@ -283,12 +284,14 @@ typedef void SWEEP(dummies_cell)(const struct fluid *fluid, struct particles *pa
     }
 DUMMIES(wall, KIND_WALL, 0u)
 DUMMIES(moving_wall, KIND_WALL, FX_MOTION)
+DUMMIES(rigid, KIND_WALL, FX_MOTION | FX_RIGID)
 DUMMIES(solid, KIND_SOLID, 0u)
 #undef DUMMIES
 
 static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind kind)
 {
     if (kind == KIND_SOLID) return SWEEP(dummies_solid);
+    if (effects & FX_RIGID) return SWEEP(dummies_rigid);
     return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
 }
 

@@ -17,8 +17,11 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
         while (first < walls->n && walls->body[first] != k) first++;
         int64_t end = first;
         while (end < walls->n && walls->body[end] == k) end++;
-        m->body[m->n++] =
-            (struct moving_wall){.section = k, .motion = motion, .first = first, .end = end};
+        m->body[m->n++] = (struct moving_wall){.section = k,
+                                               .motion = motion,
+                                               .first = first,
+                                               .end = end,
+                                               .free = k >= scene_rigid_wall(scene, 0)};
     }
     return ERR_OK;
 }
@@ -84,6 +87,7 @@ double moving_wall_power(const struct moving_wall *b, const struct particles *wa
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls)
 {
     double power = 0;
-    for (int k = 0; k < m->n; k++) power += moving_wall_power(&m->body[k], walls);
+    for (int k = 0; k < m->n; k++)
+        if (!m->body[k].free) power += moving_wall_power(&m->body[k], walls);
     return power;
 }

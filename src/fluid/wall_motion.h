@@ -14,6 +14,7 @@ struct moving_wall {
     struct motion_state placed; /* its last position, if `known` */
     bool known;
     bool rests; /* placed without velocity */
+    bool free;  /* a rigid body: its power on the fluid is no work from outside */
 };
 
 struct wall_motion {
@@ -33,7 +34,7 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct 
 /* Sorts the walls again if any has moved since the last sorting. */
 void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particles *walls);
 
-/* Largest squared speed, and power on the fluid of all walls and of one, W/m. */
+/* Largest squared speed; power on the fluid of all walls with a given motion, and of one, W/m. */
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
 double moving_wall_power(const struct moving_wall *b, const struct particles *walls);

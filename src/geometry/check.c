@@ -43,8 +43,10 @@ static enum err find_area(struct sampler *sampler, const struct region *region)
             cut.item[cut.n++] = clamps->item[k];
     struct scene_lattice *const to = &sampler->scene->solid_lattice[region->body];
     to->area_free = part;
-    TRY(outlines_area(&region->add, &cut, 0.25 * l->spacing[1], &to->area, &sampler->temp,
-                      sampler->diag));
+    struct moments of;
+    TRY(outlines_moments(&region->add, &cut, 0.25 * l->spacing[1], &of, &sampler->temp,
+                         sampler->diag));
+    to->area = of.area;
     to->area_error = (double)n * square(l->dp) / to->area - 1;
     return ERR_OK;
 }

@@ -120,7 +120,7 @@ static enum err check_buffer_point(const struct sampler *sampler, const struct s
         const struct region *const region = &sampler->regions[r];
         if (region->kind == KIND_FLUID || !geometry_covers_strictly(region, x[0], x[1])) continue;
         char what[SCENE_NAME + 16];
-        snprintf(what, sizeof what, "lies in [%s %s]", kind_names[region->kind], region->name);
+        snprintf(what, sizeof what, "lies in [%s %s]", region->word, region->name);
         return refuse(sampler, o, what, x,
                       region->kind == KIND_WALL
                           ? "shorten the line, or cut an opening in the wall with `minus`"

@@ -340,9 +340,19 @@ static int add_heights(const struct outlines *o, double *to)
     return n;
 }
 
+static void add_interval(struct moments *of, double weight, double y, double from, double to)
+{
+    const double length = weight * (to - from);
+    of->area += length;
+    of->x += 0.5 * length * (from + to);
+    of->y += length * y;
+    of->xx += length * (from * from + from * to + to * to) / 3;
+    of->yy += length * y * y;
+}
+
 /* Gauss's two points between neighbouring heights, where the width of polygons is linear. */
-enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
-                       double *area, struct arena *a, struct diag *d)
+enum err outlines_moments(const struct outlines *add, const struct outlines *minus, double step,
+                          struct moments *of, struct arena *a, struct diag *d)
 {
     const size_t capacity = (size_t)(outlines_ends(add) + outlines_ends(minus)) + 4;
     double *const height = arena_alloc(a, capacity, sizeof *height, "area of shapes", d);
@@ -352,7 +362,7 @@ enum err outlines_area(const struct outlines *add, const struct outlines *minus,
     n += add_heights(minus, height + n);
     enum { MOST = 1 << 16 }; /* parts in which Gauss' rule is exact to round-off */
     qsort(height, (size_t)n, sizeof *height, ascending);
-    *area = 0;
+    *of = (struct moments){0};
     for (int k = 0; k + 1 < n; k++) {
         const double high = height[k + 1] - height[k];
         const int parts = high < MOST * step ? (int)ceil(high / step) : MOST;
@@ -360,7 +370,8 @@ enum err outlines_area(const struct outlines *add, const struct outlines *minus,
             const double part = high / parts, gauss = 0.5 + (j % 2 ? 0.5 : -0.5) / sqrt(3);
             const double y = height[k] + (j / 2 + gauss) * part;
             const int ends = outlines_union(add, minus, y, line, line + capacity);
-            for (int e = 0; e + 1 < ends; e += 2) *area += 0.5 * part * (line[e + 1] - line[e]);
+            for (int e = 0; e + 1 < ends; e += 2)
+                add_interval(of, 0.5 * part, y, line[e], line[e + 1]);
         }
     }
     return ERR_OK;

@@ -44,9 +44,13 @@ int outlines_union(const struct outlines *add, const struct outlines *minus, dou
 /* The largest count that outline_crossings returns for all pieces together. */
 int outlines_ends(const struct outlines *o);
 
-/* Area of `add` minus `minus`, by lines at most `step` apart. */
-enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
-                       double *area, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+/* Integrals over `add` minus `minus` by lines at most `step` apart, exact for polygons that do not
+ * overlap. */
+struct moments {
+    double area, x, y, xx, yy; /* of 1, x, y, x^2 and y^2 */
+};
+enum err outlines_moments(const struct outlines *add, const struct outlines *minus, double step,
+                          struct moments *of, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
 bool outline_contains(const struct outline *o, double x, double y);
 /* The first piece that has a point inside, or -1. */

@@ -86,8 +86,7 @@ static enum err fail_overlap(struct sampler *sampler, const struct region *mine,
                wall = mine->kind == KIND_WALL || its->kind == KIND_WALL;
     return fail_at(sampler->diag, sampler->scene, mine->line,
                    "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s%s",
-                   (long long)count, kind_names[mine->kind], mine->name, kind_names[its->kind],
-                   its->name, x, y,
+                   (long long)count, mine->word, mine->name, its->word, its->name, x, y,
                    fluid || !wall ? "move one of the shapes, or subtract the overlap with `minus`"
                    : mine->kind == its->kind ? "walls that move differently must not overlap"
                                              : "only the clamped part of a solid may lie in a wall",

@@ -67,12 +67,14 @@ static void add_region(struct sampler *sampler, enum kind kind, int body,
                        const struct scene_section_common *common, const struct shape_list *shape,
                        const struct shape_list *minus)
 {
-    sampler->regions[sampler->n_regions++] = (struct region){.kind = kind,
-                                                             .body = body,
-                                                             .name = common->name,
-                                                             .line = common->line,
-                                                             .list = shape,
-                                                             .minus_list = minus};
+    sampler->regions[sampler->n_regions++] =
+        (struct region){.kind = kind,
+                        .body = body,
+                        .word = section_table[common->section].word,
+                        .name = common->name,
+                        .line = common->line,
+                        .list = shape,
+                        .minus_list = minus};
 }
 
 static enum err draw_region(struct sampler *sampler, struct region *region)
@@ -103,6 +105,9 @@ static enum err list_regions(struct sampler *sampler)
     for (int k = scene->n_solid; k < n - scene->n_fluid; k++)
         TRY(geometry_thicken(sampler, &sampler->regions[k]));
     for (int k = 0; k < n - scene->n_fluid; k++) TRY(draw_region(sampler, &sampler->regions[k]));
+    for (int k = 0; k < scene->n_rigid; k++)
+        TRY(geometry_rigid_mass(sampler, k,
+                                &sampler->regions[scene->n_solid + scene_rigid_wall(scene, k)]));
     return ERR_OK;
 }
 
@@ -242,12 +247,12 @@ static enum err count_points(struct sampler *sampler, struct region *region)
             sampler, fail_at(sampler->diag, sampler->scene, region->list->item[k].line,
                              "shape %d of [%s %s] contains no particle, because it is narrower "
                              "than dp = %g m or lies between lattice points; enlarge or move it",
-                             k + 1, kind_names[region->kind], region->name, region->lattice.dp)));
+                             k + 1, region->word, region->name, region->lattice.dp)));
     }
     if (region->n || empty) return ERR_OK;
     return geometry_go_on(sampler, fail_at(sampler->diag, sampler->scene, region->line,
                                            "nothing is left of [%s %s] after its `minus`",
-                                           kind_names[region->kind], region->name));
+                                           region->word, region->name));
 }
 
 /* Stores a point given in the axes of its lattice. */

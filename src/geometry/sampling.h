@@ -17,8 +17,8 @@
 /* The region of one section. Its shapes are in the axes of its lattice. */
 struct region {
     enum kind kind;
-    int body; /* index of the section */
-    const char *name;
+    int body;                /* index of the section */
+    const char *word, *name; /* of the section */
     int line;
     const struct shape_list *list, *minus_list;
     struct outlines add, minus;
@@ -111,6 +111,11 @@ bool geometry_covers_strictly(const struct region *region, double x, double y);
 
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *sampler) SPHFSI_CHECKED;
+
+/* Mass, centre and inertia of a rigid body from its shapes, which are not yet rotated
+ * (geometry/rigid.c). */
+enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct region *region)
+    SPHFSI_CHECKED;
 
 /* Effective domain; probes inside their bodies; initial values finite. */
 enum err geometry_extent(struct sampler *sampler) SPHFSI_CHECKED;

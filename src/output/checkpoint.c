@@ -127,6 +127,9 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
                                 FORK_LOADS});
         add(list, (struct part){"open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS});
     }
+    if (sim->rigid.n > 0)
+        add(list, (struct part){"rigid", run, ITEM_DOUBLE, sim->rigid.state,
+                                (size_t)sim->rigid.n * RIGID_NUMBERS, FORK_LOADS});
     if (n_carried > 0)
         add(list,
             (struct part){"rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS});

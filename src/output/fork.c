@@ -34,6 +34,7 @@ static enum err fork_walls(struct simulation *sim, struct diag *d)
 {
     struct particles *particles = &sim->kind[KIND_WALL];
     struct motion_state m = {0};
+    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     for (int64_t i = 0; i < particles->n; i++) {
         const struct scene_wall *const w = &sim->scene->wall[particles->body[i]];
         if (!w->motion[0]) {

@@ -38,8 +38,9 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
     [PROBE_ACCELERATION] = {"acceleration", "ax_m_per_s2,ay_m_per_s2",
                             "acceleration of a material point of a solid"},
     [PROBE_POSE] = {"pose", "cx_m,cy_m,angle_rad",
-                    "position of the centre of mass of a solid, and its counter-clockwise rotation "
-                    "by least squares over its particles, between -pi and pi"},
+                    "position of the centre of mass of a solid or rigid body, and its "
+                    "counter-clockwise rotation: of a solid by least squares over its particles, "
+                    "between -pi and pi"},
     [PROBE_REACTION] = {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
                         "reaction force of its clamps and hinges on a solid, and its "
                         "counter-clockwise moment about `point`"},
@@ -207,6 +208,11 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
     pr->motion = -1;
     pr->kind = KIND_SOLID;
     pr->body = scene_find_solid(sim->scene, sp->body);
+    if (pr->target == TARGET_SOLID && pr->body < 0) {
+        pr->kind = KIND_WALL;
+        pr->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
+        return ERR_OK;
+    }
     if (pr->target == TARGET_BODY) return find_bodies(pr, sim->scene, sp->body, a, d);
     if (*sp->on) return ride(pr, sp, sim, a, d);
     return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, sim, a, d) : ERR_OK;
@@ -388,6 +394,20 @@ static void pose(const struct probe *pr, const struct simulation *sim, double ou
     rate[2] = (along * to_across - across * to_along) / (square(across) + square(along));
 }
 
+/* Of a rigid body: the angle counts turns. */
+static void rigid_pose(const struct probe *pr, const struct simulation *sim, double out[3],
+                       double rate[3])
+{
+    const struct motion_state m =
+        motion_at(sim->scene, scene_rigid_motion(sim->scene, pr->body), sim->state.time);
+    for (int c = 0; c < 2; c++) {
+        out[c] = m.centre[c] + m.d[c];
+        rate[c] = m.v[c];
+    }
+    out[2] = m.angle;
+    rate[2] = m.rate;
+}
+
 static void energy(const struct probe *pr, const struct simulation *sim, double out[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
@@ -471,7 +491,7 @@ static void values(const struct probe *pr, struct simulation *sim, double *row, 
     case PROBE_FLUX: *row = fluid_flux(sim, pr->point, pr->to); break;
     case PROBE_STRAIN: strain(pr, sim, row); break;
     case PROBE_ACCELERATION: acceleration(pr, sim, row); break;
-    case PROBE_POSE: pose(pr, sim, row, rate); break;
+    case PROBE_POSE: (pr->kind == KIND_WALL ? rigid_pose : pose)(pr, sim, row, rate); break;
     case PROBE_REACTION: reaction(pr, sim, row); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(pr, sim, row); break;
     case PROBE_QUANTITIES: break;

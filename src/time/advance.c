@@ -16,6 +16,14 @@ void advance_structure(struct simulation *sim, double dt, double kick)
     sim->state.solid_evaluations += n;
 }
 
+void advance_rigid(struct simulation *sim, double time, double dt, double kick)
+{
+    double gravity[2];
+    scene_gravity_at(sim->scene, time + (sim->rigid.centred ? 0.5 * dt : 0), gravity);
+    rigid_advance(&sim->rigid, gravity, dt, kick);
+    energy_of_rigid(sim);
+}
+
 /* The extremes over a range of fluid particles, without branches. */
 static struct extremes extremes_of(const struct particles *particles, int64_t from, int64_t end)
 {

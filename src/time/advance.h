@@ -14,6 +14,9 @@ void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
  * fluid for `kick`. */
 void advance_structure(struct simulation *sim, double dt, double kick);
 
+/* The step of rigid bodies from a time on, in the same way. */
+void advance_rigid(struct simulation *sim, double time, double dt, double kick);
+
 /* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
  * any kind. */
 void update_extremes(struct simulation *sim);

@@ -103,10 +103,24 @@ static double add_solids(struct simulation *sim, struct energies *solid)
     return lowest;
 }
 
+static void add_rigid(const struct simulation *sim, struct energies *wall)
+{
+    for (int k = 0; k < sim->rigid.n; k++) {
+        const struct rigid_energy e = rigid_energy(&sim->rigid, k, sim->state.dt);
+        struct ledger *const row = &wall[scene_rigid_wall(sim->scene, k)].row;
+        row->kinetic += e.kinetic;
+        row->potential += e.potential;
+        row->momentum_x += e.momentum[0];
+        row->momentum_y += e.momentum[1];
+        row->mass += e.mass;
+    }
+}
+
 static double find_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
     memset(of, 0, ENERGY_ENTRIES * sizeof *of);
     if (sim->effects & FX_FLUID) add_fluid(sim, of);
+    if (sim->effects & FX_RIGID) add_rigid(sim, &of[energy_entry(KIND_WALL, 0)]);
     return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
 }
 
@@ -273,13 +287,17 @@ void energy_join_touching(struct simulation *sim)
 
 /* Work that the fluid has still to receive from a body: the impulse that waits (T-35b) at the
  * velocity that the fluid uses. */
-static void find_waiting_work(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
+static void find_waiting_work(const struct simulation *sim, double of[ENERGY_ENTRIES])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
-    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    memset(of, 0, ENERGY_ENTRIES * sizeof *of);
+    for (int k = 0; k < sim->rigid.n; k++)
+        of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k))] =
+            rigid_energy(&sim->rigid, k, sim->state.dt).waiting;
     for (int64_t i = 0; i < particles->n && particles->interface_impulse_x; i++)
-        of[particles->body[i]] += particles->interface_impulse_x[i] * particles->wx[i] +
-                                  particles->interface_impulse_y[i] * particles->wy[i];
+        of[energy_entry(KIND_SOLID, particles->body[i])] +=
+            particles->interface_impulse_x[i] * particles->wx[i] +
+            particles->interface_impulse_y[i] * particles->wy[i];
 }
 
 /* Energy that the work on a section changes. */
@@ -291,17 +309,17 @@ static double own_energy(const struct energies *e)
 static void find_terms(const struct simulation *sim, const struct energies of[ENERGY_ENTRIES],
                        double terms[ENERGY_ENTRIES][ENERGY_TERMS])
 {
-    const int first_solid = energy_entry(KIND_SOLID, 0);
-    double waiting[SCENE_MAX_SECTIONS];
+    const int first_wall = energy_entry(KIND_WALL, 0);
+    double waiting[ENERGY_ENTRIES];
     find_waiting_work(sim, waiting);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         const struct energy_entry *const e = &sim->state.energy.entry[k];
-        const bool solid = k >= first_solid;
+        const bool body = k >= first_wall;
         double *const term = terms[k];
         memset(term, 0, ENERGY_TERMS * sizeof *term);
-        term[solid ? TERM_SOLID : TERM_FLUID] = own_energy(&of[k]) - e->supplied;
+        term[body ? TERM_SOLID : TERM_FLUID] = own_energy(&of[k]) - e->supplied;
         term[TERM_DISSIPATION] = e->dissipated + of[k].damper;
-        if (solid) term[TERM_INTERFACE] = e->interface - waiting[k - first_solid];
+        if (body) term[TERM_INTERFACE] = e->interface - waiting[k];
         term[TERM_RESTARTS] = e->restarts;
         for (int t = 0; t < TERM_ALL; t++) term[TERM_ALL] += term[t];
         term[TERM_ALL] += e->dummies + of[k].repulsion;
@@ -312,7 +330,7 @@ void energy_begin(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES];
-    double waiting[SCENE_MAX_SECTIONS];
+    double waiting[ENERGY_ENTRIES];
     memset(account, 0, sizeof *account);
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
     if (!(sim->effects & FX_ENERGY_ACCOUNT)) return;
@@ -329,10 +347,9 @@ void energy_begin(struct simulation *sim)
         for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = available;
         e->lowest[TERM_ALL] = of[k].dummies + of[k].damper + of[k].repulsion;
         e->lowest[TERM_DISSIPATION] = of[k].damper;
+        e->interface = waiting[k];
         e->region = k;
     }
-    for (int k = 0; k < sim->scene->n_solid; k++)
-        account->entry[energy_entry(KIND_SOLID, k)].interface = waiting[k];
     join_distant(sim, of[energy_entry(KIND_SOLID, 0)].row.contact > 0);
 }
 

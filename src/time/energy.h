@@ -58,6 +58,9 @@ void energy_after_step(struct simulation *sim);
  * but one, which Verlet carries on as a solution of its own. Rates must be up to date. */
 void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS]);
 
+/* The work of the fluid on rigid bodies in a step. */
+void energy_of_rigid(struct simulation *sim);
+
 /* Bodies that have exchanged a force belong to one region from now on. */
 void energy_join_touching(struct simulation *sim);
 

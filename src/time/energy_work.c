@@ -71,8 +71,10 @@ static void integrate(struct simulation *sim, const struct powers *power, double
     }
     for (int k = 0; k < sim->wall_motion.n; k++) {
         const struct moving_wall *const wall = &sim->wall_motion.body[k];
-        entry_of(sim, KIND_WALL, wall->section)->dummies -=
-            dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
+        struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
+        const double work = dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
+        e->dummies -= work;
+        if (wall->free) e->interface += work;
     }
 }
 
@@ -188,6 +190,16 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
     }
 }
 
+void energy_of_rigid(struct simulation *sim)
+{
+    for (int k = 0; k < sim->rigid.n && keeps_account(sim); k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_WALL, scene_rigid_wall(sim->scene, k));
+        e->supplied += sim->rigid.body[k].work;
+        e->interface += sim->rigid.body[k].work;
+        note_work(e, WORK_OF_FLUID, sim->rigid.body[k].work);
+    }
+}
+
 /* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
  * ledger has the potential energy of the value at t = 0. */
 static double gravity_work(struct simulation *sim)
@@ -210,6 +222,14 @@ static double gravity_work(struct simulation *sim)
         py += mass * particles->vy[i];
         energy_supply(sim, KIND_SOLID, particles->body[i],
                       dt * mass * (gx * particles->vx[i] + gy * particles->vy[i]));
+    }
+    for (int k = 0; k < sim->rigid.n; k++) {
+        if (!sim->rigid.body[k].given->gravity) continue;
+        const double *const v = sim->rigid.state[k].v, mass = sim->rigid.body[k].mass[0];
+        px += mass * v[0];
+        py += mass * v[1];
+        energy_supply(sim, KIND_WALL, scene_rigid_wall(sim->scene, k),
+                      dt * mass * (gx * v[0] + gy * v[1]));
     }
     return dt * (gx * px + gy * py);
 }

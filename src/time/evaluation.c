@@ -10,6 +10,7 @@
 
 void move_walls(struct simulation *sim, double time)
 {
+    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], time);
 }
 

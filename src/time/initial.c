@@ -234,8 +234,15 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_MOTION) {
         TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene, &sim->kind[KIND_WALL],
                                d));
+        if (sim->effects & FX_RIGID)
+            TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
+                             &sim->kind[KIND_WALL],
+                             sim->integrator->ahead > 0 || !(sim->effects & FX_FLUID), d));
         move_walls(sim, 0);
     }
+    if (!(sim->effects & (FX_FLUID | FX_SOLID)))
+        sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step =
+            rigid_longest_step(&sim->rigid);
     TRY(choose_rate(sim, d));
     set_guards(sim);
     update_extremes(sim);

@@ -76,6 +76,7 @@ static void leapfrog_step(struct simulation *sim, double t_limit)
     update_fluid(sim, dt, dt_old, st->dt_old);
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, 0.5 * (dt_old + dt));
+    if (sim->effects & FX_RIGID) advance_rigid(sim, sim->state.time, dt, 0.5 * (dt_old + dt));
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

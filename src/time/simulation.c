@@ -95,7 +95,8 @@ static void count_work(struct simulation *sim)
 
 static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
-    TRY(solid_only_step(sim, t_limit, d));
+    const bool solid = sim->effects & FX_SOLID;
+    TRY((solid ? solid_only_step : rigid_only_step)(sim, t_limit, d));
     count_work(sim);
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     find_speed(sim);
@@ -103,7 +104,7 @@ static enum err step_without_fluid(struct simulation *sim, double t_limit, struc
     /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
     energy_test_due(sim);
     TRY(guards_check(sim, d));
-    timestep_recheck_solid(sim);
+    if (solid) timestep_recheck_solid(sim);
     return ERR_OK;
 }
 
@@ -138,6 +139,7 @@ static enum err step_with_fluid(struct simulation *sim, double t_limit, struct d
 static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     sim->solid.time = sim->state.time;
+    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     if (sim->effects & FX_FLUID) {
         TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
         TRY(step_with_fluid(sim, t_limit, d));
@@ -162,6 +164,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
 {
     TRY(energy_check_saved(&sim->state.energy, d));
     sim->evaluated = false;
+    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     if (sim->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
             if (sim->kind[kind].capacity && (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
@@ -198,5 +201,7 @@ uint64_t simulation_hash(struct simulation *sim)
     struct state state = sim->state;
     state.energy_start = state.gain = state.gain_share = state.gain_since = 0;
     h = hash_bytes(h, &state, offsetof(struct state, energy));
+    if (sim->effects & FX_RIGID)
+        h = hash_bytes(h, sim->rigid.state, (size_t)sim->rigid.n * sizeof *sim->rigid.state);
     return sim->effects & FX_OPEN ? open_hash(&sim->open, h) : h;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "implicit/implicit.h"
+#include "time/advance.h"
 #include "time/evaluation.h"
 #include "time/guards.h"
 #include "time/timestep.h"
@@ -131,7 +132,7 @@ enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d)
     const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
     const double bound = find_bounds(sim);
     const bool external = sim->external[KIND_SOLID].at != NULL;
-    const int batch = external || sim->gravity_varies || implicit ? 1 : SOLID_BATCH;
+    const int batch = external || sim->gravity_varies || implicit || sim->rigid.n ? 1 : SOLID_BATCH;
     /* Rounding of the times must not add a step. */
     const double left = t_limit - begin, steps = max2(1, ceil(left / bound - 1e-6));
     const bool hits = steps <= batch;
@@ -144,8 +145,23 @@ enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d)
     TRY(advance_batch(sim, near, dt, &n, &cut, d));
     if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
+    if (sim->effects & FX_RIGID) advance_rigid(sim, begin, st->time - begin, st->time - begin);
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     book_lone(sim, dt, n);
+    return ERR_OK;
+}
+
+enum err rigid_only_step(struct simulation *sim, double t_limit, struct diag *d)
+{
+    struct state *const st = &sim->state;
+    const double bound = find_bounds(sim), left = t_limit - st->time,
+                 steps = max2(1, ceil(left / bound - 1e-6));
+    const double begin = st->time, dt = steps <= 2 ? left / steps : bound;
+    TRY(observe(sim, begin + (1 + 1e-6) * dt, d));
+    advance_rigid(sim, begin, dt, dt);
+    st->time = steps <= 1 ? t_limit : begin + dt;
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    book_lone(sim, dt, 1);
     return ERR_OK;
 }

@@ -9,4 +9,7 @@
  * within them the states on both sides of the time that it waits for. */
 enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
+/* One step of rigid bodies without fluid and solids. */
+enum err rigid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
 #endif

@@ -8,6 +8,7 @@
 #include "fluid/open.h"
 #include "fluid/wall_motion.h"
 #include "particles/cells.h"
+#include "rigid/rigid.h"
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
@@ -90,6 +91,7 @@ struct simulation {
     struct cells cells;
     struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
     struct wall_motion wall_motion; /* walls that move; unused where none does */
+    struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
     struct open open;               /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */

@@ -107,6 +107,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     clock = phase_add(sim, PHASE_solid, clock);
 
     advance_fluid(sim, correct_rows, &dt);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
         energy_of_solid(sim, dt, 1, true);

@@ -47,6 +47,8 @@ static void verlet_step(struct simulation *sim, double t_limit)
     advance_fluid(sim, update_verlet_rows, &(struct step_sizes){dt, sim->state.dt, euler});
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
+    if (sim->effects & FX_RIGID)
+        advance_rigid(sim, sim->state.time, dt, 0.5 * (sim->state.dt + dt));
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

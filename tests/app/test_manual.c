@@ -49,6 +49,7 @@ static const char scene_text[] =
     "[outflow more]\nfrom = 0.3, 0.1\nto = 0.2, 0.1\npressure = 0\n"
     "[solid post]\nshape = box 0.5, 0, 0.52, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
     "[solid more]\nlike = post\nshape = box 0.7, 0, 0.72, 0.1\n"
+    "[rigid raft]\nshape = box 0.85, 0, 0.95, 0.1\ndensity = 500\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
     "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
     "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
@@ -68,6 +69,7 @@ static const char *companion(const struct param *param)
         return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
     if (is(param, "solid", "joined")) return "solid more.shape=box 0.52, 0, 0.54, 0.1";
     if (is(param, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
+    if (is(param, "rigid", "minus")) return "rigid raft.shape=box 0.2, 0.3, 0.6, 0.5";
     if (is(param, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(param, "probe", "point")) return "probe more.quantity=pressure";
     if (is(param, "probe", "to")) return "probe more.quantity=flux";
@@ -99,6 +101,7 @@ static void example_is_accepted(const struct param *param)
         snprintf(set, sizeof set, "%s%s.%s=%s", word,
                  !section_table[param->section].named ? ""
                  : first                              ? " water"
+                 : param->section == SECTION_rigid    ? " raft"
                                                       : " more",
                  param->key, example);
     const char *sets[] = {set, companion(param)};
@@ -111,6 +114,7 @@ static void example_is_accepted(const struct param *param)
     if (is(param, "outflow", "velocity") || is(param, "outflow", "speed") ||
         is(param, "outflow", "level"))
         *strstr(text, "pressure = 0") = '#';
+    if (is(param, "rigid", "mass")) *strstr(strstr(text, "[rigid raft]"), "density") = '#';
     if (is(param, "load", "traction")) *strstr(text, "force") = '#';
     if (is(param, "probe", "point") || is(param, "probe", "to") || is(param, "probe", "on"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);

@@ -42,7 +42,7 @@ static const struct {
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
      "fluid, "
-     "wall, solid, contact, load, motion, inflow, outflow, probe, reference"},
+     "wall, solid, rigid, contact, load, motion, inflow, outflow, probe, reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
      "`laminar_viscosity`?"},
@@ -118,7 +118,8 @@ static const struct {
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\n", NULL,
      "bad.cfg:3: [solid a] lacks `poisson`: Poisson ratio nu"},
     {TOP, NULL,
-     "bad.cfg:1: nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] section"},
+     "bad.cfg:1: nothing to simulate: the case needs a [fluid NAME], a [solid NAME] or a [rigid "
+     "NAME] section"},
     {"dp = 0.5 MPa\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 0.5 MPa: a pressure (Pa) where a length (m) is expected"},
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 mm\npoisson = 0.3\n",

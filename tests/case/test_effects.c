@@ -72,6 +72,8 @@ static const struct {
     {TOP FLUID WALL, FX_FLUID | FX_WALL, EFFECT_WALL, "line 6: [wall bed]"},
     {TOP FLUID WALL "motion = m\n[motion m]\nvelocity = 1, 0\n", FX_FLUID | FX_WALL | FX_MOTION,
      EFFECT_MOTION, "line 8: [wall bed] motion"},
+    {TOP FLUID "[rigid r]\nshape = box 0, 0.2, 0.1, 0.3\ndensity = 500\n",
+     FX_FLUID | FX_WALL | FX_MOTION | FX_RIGID, EFFECT_RIGID, "line 6: [rigid r]"},
     {TOP PLAIN_SOLID, FX_SOLID | FX_CONTACT, EFFECT_SOLID, "line 3: [solid s]"},
     {TOP SOLID "artificial_viscosity = 0\n", FX_SOLID | FX_CONTACT | FX_HOURGLASS, EFFECT_HOURGLASS,
      "line 3: [solid s] hourglass"},

@@ -18,7 +18,7 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-LAYERS = ("base expr particles case geometry fluid solid implicit coupling time output check "
+LAYERS = ("base expr particles case geometry fluid rigid solid implicit coupling time output check "
           "app").split()
 LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg "
            "stdbool stddef stdint stdio stdlib string sys/auxv time unistd".split())

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+#include "rigid/rigid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/cholesky.h"
+
+enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
+                      const struct wall_motion *motion, struct particles *walls, bool centred,
+                      struct diag *d)
+{
+    *rigid = (struct rigid){.n = scene->n_rigid, .scene = scene, .walls = walls};
+    rigid->centred = centred;
+    rigid->impedance = scene->rho0 * scene->c0;
+    rigid->mean_time = scene->n_fluid > 0 ? scene->h / scene->c0 : 0;
+    rigid->body = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->body, "rigid bodies", d);
+    rigid->state = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->state, "rigid bodies", d);
+    if (!rigid->body || !rigid->state) return ERR_MEMORY;
+    for (int k = 0; k < rigid->n; k++) {
+        const struct rigid_mass *const m = &scene->rigid_mass[k];
+        rigid->body[k] = (struct rigid_body){.given = &scene->rigid[k],
+                                             .mass = {m->mass, m->mass, m->inertia},
+                                             .centre = {m->centre[0], m->centre[1]}};
+        for (int b = 0; b < motion->n; b++)
+            if (motion->body[b].section == scene_rigid_wall(scene, k))
+                rigid->body[k].wall = &motion->body[b];
+        rigid->state[k] = (struct rigid_state){
+            .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
+    }
+    return ERR_OK;
+}
+
+double rigid_longest_step(const struct rigid *rigid)
+{
+    const double *const g = rigid->scene->top.gravity;
+    double rate2 = 1; /* for bodies that nothing moves */
+    for (int k = 0; k < rigid->n; k++) {
+        const double *const mass = rigid->body[k].mass, *const v = rigid->state[k].v;
+        const double r2 = mass[2] / mass[0];
+        rate2 = max2(rate2, sqrt((square(g[0]) + square(g[1])) / r2));
+        rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
+    }
+    return 1e-3 / sqrt(rate2);
+}
+
+/* What a value with a rate is at the end of a step of dt. */
+static void at_end(const struct rigid *rigid, double dt, const double value[3],
+                   const double rate[3], double end[3])
+{
+    for (int c = 0; c < 3; c++) end[c] = value[c] + (rigid->centred ? 0 : 0.5 * dt * rate[c]);
+}
+
+void rigid_publish(const struct rigid *rigid, double time, double dt)
+{
+    for (int k = 0; k < rigid->n; k++) {
+        const struct rigid_state *const s = &rigid->state[k];
+        struct motion_state *const now = &rigid->scene->rigid_motion[k].now;
+        double v[3];
+        at_end(rigid, dt, s->v, s->last, v);
+        *now =
+            (struct motion_state){.angle = s->x[2],
+                                  .rate = v[2],
+                                  .angular_acceleration = s->a[2],
+                                  .centre = {rigid->body[k].centre[0], rigid->body[k].centre[1]}};
+        memcpy(now->d, s->x, sizeof now->d);
+        memcpy(now->v, v, sizeof now->v);
+        memcpy(now->a, s->a, sizeof now->a);
+        rigid->scene->rigid_motion[k].time = time;
+    }
+}
+
+/* --- the fluid --- */
+
+/* T-97: the fluid receives the impulse over this time, s. It is longer than any step, which
+ * keeps the mean acceleration of a light body stable. */
+static double exchange_time(const struct rigid *rigid) { return 2 * rigid->mean_time; }
+
+/* The generalised vector of a vector w at a particle: with its moment about the centre of mass at
+ * the last evaluation. */
+static void with_moment(const struct rigid_body *body, double x, double y, double wx, double wy,
+                        double to[3])
+{
+    const struct motion_state *const m = &body->wall->placed;
+    to[0] = wx;
+    to[1] = wy;
+    to[2] = (x - m->centre[0] - m->d[0]) * wy - (y - m->centre[1] - m->d[1]) * wx;
+}
+
+/* Force of the fluid on a body, and its impedance Z: rho0 c0 on the wetted surface (T-95). */
+static void find_fluid(const struct rigid *rigid, const struct rigid_body *body, double force[3],
+                       double impedance[3][3])
+{
+    const struct particles *const p = rigid->walls;
+    memset(force, 0, 3 * sizeof *force);
+    memset(impedance, 0, 9 * sizeof **impedance);
+    for (int64_t i = body->wall->first; i < body->wall->end; i++) {
+        const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
+        double f[3], normal[3];
+        with_moment(body, p->x[i], p->y[i], p->fx[i], p->fy[i], f);
+        for (int c = 0; c < 3; c++) force[c] += f[c];
+        if (!(wet > 0)) continue;
+        with_moment(body, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
+        for (int c = 0; c < 3; c++)
+            for (int e = 0; e < 3; e++)
+                impedance[c][e] += rigid->impedance / wet * normal[c] * normal[e];
+    }
+}
+
+/* T-97: the pressure that gives the fluid the impulse; `faster` is the velocity beyond the
+ * expected one. */
+static void add_pressure(const struct rigid *rigid, const struct rigid_body *body, double left,
+                         const double faster[3])
+{
+    struct particles *const p = rigid->walls;
+    for (int64_t i = body->wall->first; i < body->wall->end; i++) {
+        const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
+        double normal[3], along = 0;
+        with_moment(body, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
+        for (int c = 0; c < 3 && wet > 0; c++) along += normal[c] / wet * faster[c];
+        p->interface_pressure[i] = left * p->interface_pressure[i] - 2 * rigid->impedance * along;
+    }
+}
+
+/* --- a step --- */
+
+/* Solves (M + T Z) z = z. */
+static void solve(const struct rigid_body *body, double time, double impedance[3][3], double z[3])
+{
+    double matrix[3][3];
+    for (int c = 0; c < 3; c++)
+        for (int e = 0; e < 3; e++)
+            matrix[c][e] = time * impedance[c][e] + (c == e ? body->mass[c] : 0);
+    (void)cholesky_solve(matrix[0], 3, 3, 0, z);
+}
+
+static void advance_body(struct rigid *rigid, int k, const double gravity[2], double dt,
+                         double kick)
+{
+    struct rigid_body *const body = &rigid->body[k];
+    struct rigid_state *const s = &rigid->state[k];
+    const double time = exchange_time(rigid), part = time > 0 ? kick / time : 0;
+    const double early = rigid->centred ? 0.5 * dt : 0, weight = kick / (kick + rigid->mean_time);
+    double impulse[3], impedance[3][3], faster[3];
+    find_fluid(rigid, body, impulse, impedance);
+    for (int c = 0; c < 3; c++) {
+        impulse[c] = kick * impulse[c] - part * s->impulse[c];
+        const double weight_force =
+            c < 2 && body->given->gravity ? kick * body->mass[c] * gravity[c] : 0;
+        faster[c] = impulse[c] + weight_force - kick * body->mass[c] * s->a[c];
+        s->x[c] += early * s->v[c];
+    }
+    solve(body, time, impedance, faster);
+    body->work = 0;
+    for (int c = 0; c < 3; c++) {
+        double resisted = 0;
+        for (int e = 0; e < 3; e++) resisted += time * impedance[c][e] * faster[e];
+        const double change = kick * s->a[c] + faster[c];
+        body->work += (impulse[c] - resisted) * (s->v[c] + 0.5 * change);
+        s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
+        s->impulse[c] += kick * s->rate[c];
+        s->v[c] += change;
+        s->last[c] = change / kick;
+        s->a[c] += weight * faster[c] / kick;
+        s->x[c] += (dt - early) * s->v[c];
+    }
+    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, faster);
+}
+
+void rigid_advance(struct rigid *rigid, const double gravity[2], double dt, double kick)
+{
+    for (int k = 0; k < rigid->n; k++) advance_body(rigid, k, gravity, dt, kick);
+}
+
+/* --- energy --- */
+
+struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    const struct rigid_state *const s = &rigid->state[k];
+    const double *const g = rigid->scene->top.gravity;
+    struct rigid_energy e = {.mass = body->mass[0]};
+    double v[3], impulse[3];
+    at_end(rigid, dt, s->v, s->last, v);
+    at_end(rigid, dt, s->impulse, s->rate, impulse);
+    for (int c = 0; c < 3; c++) {
+        e.kinetic += 0.5 * body->mass[c] * square(v[c]);
+        e.waiting += impulse[c] * v[c];
+        if (c == 2) continue;
+        e.momentum[c] = body->mass[c] * v[c] - impulse[c];
+        e.potential -=
+            body->given->gravity ? body->mass[c] * g[c] * (body->centre[c] + s->x[c]) : 0;
+    }
+    return e;
+}

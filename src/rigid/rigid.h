@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ * Rigid bodies: moving walls whose motion is three unknowns, the displacement of the centre of mass
+ * and the angle. README.md tells the order of a step. */
+#ifndef SPHFSI_RIGID_RIGID_H
+#define SPHFSI_RIGID_RIGID_H
+
+#include "fluid/wall_motion.h"
+
+/* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
+struct rigid_state {
+    double x[3];       /* displacement, m, rad */
+    double v[3];       /* velocity; half a step before x unless `centred` */
+    double last[3];    /* acceleration of the last step, m/s^2, 1/s^2 */
+    double a[3];       /* mean acceleration, as the fluid's equations use it (T-98) */
+    double impulse[3]; /* that the fluid has still to receive, N s/m and N s (T-97) */
+    double rate[3];    /* of the impulse in the last step, N/m and N */
+};
+enum { RIGID_NUMBERS = sizeof(struct rigid_state) / sizeof(double) };
+
+struct rigid_body {
+    const struct scene_rigid *given;
+    const struct moving_wall *wall; /* its particles */
+    double mass[3];                 /* kg/m, kg/m, kg m */
+    double centre[2];               /* of mass at the start, m */
+    double work;                    /* of the fluid in the last step, J/m */
+};
+
+struct rigid {
+    int n;
+    struct rigid_body *body;
+    struct rigid_state *state;
+    const struct scene *scene;
+    struct particles *walls;
+    double impedance; /* rho0 c0; 0: no fluid */
+    double mean_time; /* h/c0: of the mean acceleration, s; 0: no fluid */
+    bool centred;     /* forces are found in the middle of a step */
+};
+
+enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
+                      const struct wall_motion *motion, struct particles *walls, bool centred,
+                      struct diag *d) SPHFSI_CHECKED;
+
+/* Without fluid and solids, s: a thousandth of the time in which gravity or its velocity moves a
+ * body by its radius of gyration. */
+double rigid_longest_step(const struct rigid *rigid);
+
+/* Gives the scene the motion of the bodies at a time, after a step of dt: motion_at continues it.
+ */
+void rigid_publish(const struct rigid *rigid, double time, double dt);
+
+/* A step of dt. The rates of the last evaluation act for `kick`, as on the fluid (T-96). */
+void rigid_advance(struct rigid *rigid, const double gravity[2], double dt, double kick);
+
+/* Energy and momentum of a body, per depth; `waiting`: the work that the fluid has still to
+ * receive. */
+struct rigid_energy {
+    double kinetic, potential, momentum[2], mass, waiting;
+};
+struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt);
+
+#endif

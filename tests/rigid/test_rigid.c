@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT
+ * Rigid bodies: mass from shapes, free motion, exchange of momentum with the fluid, light
+ * bodies, and a body that floats as deep as Archimedes says. */
+#include "rig.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                          "integrator=leapfrog"};
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+#define FREE "dp = 3 cm\nend_time = 1\n[domain]\nlower = -20, -20\nupper = 20, 20\n"
+
+static const struct rigid_state *state(void) { return rig.sim.rigid.state; }
+
+/* A frame, 0.4 m x 0.2 m less a hole of 0.2 m x 0.1 m in its right half; and a disc. */
+static void test_mass_is_that_of_the_shapes(void)
+{
+    rig_open(&rig,
+             FREE "[rigid frame]\nshape = box 0, 0, 0.4, 0.2\nminus = box 0.2, 0.05, 0.4, 0.15\n"
+                  "density = 100\n"
+                  "[rigid disc]\nshape = circle 1, 1, 0.3\nmass = 7\n",
+             NULL);
+    const struct rigid_mass *const m = rig.scene.rigid_mass;
+    const double area = 0.06, x = (0.08 * 0.2 - 0.02 * 0.3) / area;
+    const double about_origin =
+        0.4 * 0.2 * (0.16 + 0.04) / 3 - 0.02 * (0.04 + 0.01) / 12 - 0.02 * (0.3 * 0.3 + 0.1 * 0.1);
+    assert_near(1e-11, 6, m[0].mass, "mass of the frame");
+    assert_near(1e-12, x, m[0].centre[0], "centre, x");
+    assert_near(1e-12, 0.1, m[0].centre[1], "centre, y");
+    assert_near(1e-12, 100 * (about_origin - area * (x * x + 0.01)), m[0].inertia, "inertia");
+    assert_near(1e-12, 7, m[1].mass, "mass of the disc");
+    assert_near(1e-6, 0.5 * 7 * 0.09, m[1].inertia, "inertia of the disc");
+}
+
+static void test_a_body_falls_and_spins_exactly(void)
+{
+    rig_open(&rig,
+             "gravity = 0.5, -9.81\n" FREE "[rigid a]\nshape = box 0, 0, 0.4, 0.2\ndensity = 500\n"
+             "velocity = 1, 2\nspin = 3\n",
+             NULL);
+    rig_run(&rig, 1);
+    const double *const v = state()->v, *const x = state()->x;
+    assert_near(1e-9, 1.25, x[0], "x");
+    assert_near(1e-9, 2 - 4.905, x[1], "y");
+    assert_near(1e-9, 3, x[2], "angle");
+    assert_near(1e-9, 2 - 9.81, v[1], "vy");
+    assert_near(1e-9, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
+}
+
+/* Without gravity and walls, what the body loses the fluid has, or has still to receive. */
+static void test_momentum_is_exchanged(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 FREE
+                 "[fluid w]\nshape = box 0, 0, 0.6, 0.6\nsound_speed = 20\n"
+                 "[rigid a]\nshape = box -0.3, 0.12, 0, 0.3\ndensity = 100\nvelocity = 0.5, 0\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.02);
+        const struct ledger row = simulation_ledger(&rig.sim);
+        const double all = 100 * 0.3 * 0.18 * 0.5;
+        assert_at_most(0.45, state()->v[0], "velocity after the impact");
+        /* Verlet's two solutions have the momentum in their mean. */
+        assert_near(k == 1 ? 0.02 * all : 1e-5 * all, all, row.momentum_x, "momentum, x");
+        assert_near(k == 1 ? 0.02 * all : 1e-5 * all, 0, row.momentum_y, "momentum, y");
+    }
+}
+
+#define TANK                                                                                 \
+    "dp = 2 cm\nend_time = 2\ngravity = 0, -9.81\nprecision = double\n"                      \
+    "[fluid w]\nshape = box 0, 0, 0.8, 0.4\nminus = box 0.2, 0.2, 0.6, 0.6\nsurface = 0.4\n" \
+    "sound_speed = 30\n[wall tank]\nshape = polyline: 0, 0.9; 0, 0; 0.8, 0; 0.8, 0.9\n"
+
+/* A hundredth of the density of water, dropped from the place of a body half as dense: it leaps,
+ * and no step or guard has to prevent more. */
+static void test_a_light_body_is_stable(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig, TANK "[rigid a]\nshape = box 0.2, 0.2, 0.6, 0.6\ndensity = 10\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.02);
+        /* The surface is that of twice the mass of fluid per area; a fluid of four bodies' width
+         * moves with it: the body follows with less than g. */
+        assert_at_most(9.81 * 0.02 * 4, state()->v[1], "velocity upwards");
+        TEST_ASSERT_TRUE(state()->v[1] > 0);
+        rig_run(&rig, 0.3);
+        TEST_ASSERT_TRUE(isfinite(state()->x[1]));
+    }
+}
+
+/* Half as dense as water, from its floating position: it stays within a quarter of a spacing. */
+static void test_a_body_floats(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig, TANK "[rigid a]\nshape = box 0.2, 0.2, 0.6, 0.6\ndensity = 500\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.5);
+        assert_near(0.005, 0, state()->x[1], "heave");
+        assert_near(0.002, 0, state()->x[0], "sway");
+        assert_near(0.02, 0, state()->x[2], "roll");
+    }
+}
+
+static void test_bad_input_is_refused(void)
+{
+    rig_refuses(FREE "[rigid a]\nshape = box 0, 0, 1, 1\n", "needs `density` or `mass`");
+    rig_refuses(FREE "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\nmass = 1\n",
+                "has both `density` and `mass`");
+    rig_refuses(FREE "[rigid a]\ndensity = 1\n", "[rigid a] lacks `shape`");
+    rig_refuses(FREE "[wall a]\nshape = box 3, 3, 4, 4\n"
+                     "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n",
+                "has the name of [wall a]");
+    rig_refuses(FREE "[wall w]\nshape = box 0, 0, 1, 1\n"
+                     "[rigid a]\nshape = box 0.5, 0, 1.5, 1\ndensity = 1\n",
+                "[rigid a]");
+    rig_refuses("dp = 0.1\nend_time = 1\n[domain]\nlower = 0, 0\nupper = 1, 1\nperiodic = x\n"
+                "[fluid w]\nshape = box 0, 0, 1, 0.5\nsound_speed = 1\n"
+                "[rigid a]\nshape = box 0, 0.5, 0.5, 1\ndensity = 1\n",
+                "periodic");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_mass_is_that_of_the_shapes);
+    RUN_TEST(test_a_body_falls_and_spins_exactly);
+    RUN_TEST(test_momentum_is_exchanged);
+    RUN_TEST(test_a_light_body_is_stable);
+    RUN_TEST(test_a_body_floats);
+    RUN_TEST(test_bad_input_is_refused);
+    return UNITY_END();
+}
