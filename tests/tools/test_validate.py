@@ -6,8 +6,6 @@ missing."""
 
 import json
 import math
-import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -18,11 +16,7 @@ with packages():
     import h5py  # noqa: F401  the snapshots need it
     import numpy as np
     import metrics
-    import validation_cases
-    import validation_checks
-    import validation_kept
-    import validation_report
-    import validation_runs
+    import validation
     from runs import Job, program_hash
     from runfiles import BadFile, Reference, Run, read_table
 
@@ -64,7 +58,6 @@ def test_fits():
     omega, decay = metrics.damped_sine(time, 3 * np.exp(-0.1 * time) * np.cos(5.4 * time + 1), 5.2)
     near(omega, 5.4, 1e-3)
     near(decay, 0.1, 2e-3)
-    near(metrics.order([1, 0.5, 0.25], [0.08, 0.02, 0.005]), 2, 1e-9)
     near(metrics.strongest(time, 2 + np.sin(2 * np.pi * 7 * time)), 7, 0.05)
 
 
@@ -127,95 +120,63 @@ def test_tables(folder):
         path.write_text("time_s,value\n" + rows)
         refuses(["probes.csv, row 2", "time_s is 0.1 after 0."], curve)
         assert curve(sort=True).time[0] == 0.1
-    for shipped in validation_cases.REFERENCES.glob("*.csv"):
+    for shipped in validation.REFERENCES.glob("*.csv"):
         table, _ = read_table(shipped)
         if "time_s" in table:
             Reference("", shipped, shipped.stem, shipped.stem)
 
 
-def test_build(folder):
-    """The patch test is that of the build folder that make names, which its rule does."""
-    program = folder / "tests" / "converge" / "test_solid_patch"
-    program.parent.mkdir(parents=True)
-    program.write_text("#!/bin/sh\necho linear field: largest error of the gradient 2e-15\n")
-    program.chmod(0o755)
-    ask = ("import validation_checks as v, validation_report as r; t = r.Report('', {}, None); "
-           "v.patch(t); "
-           "print(t.targets[0][2])")
-    done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True,
-                          cwd=ROOT / "tools" / "report", env={**os.environ, "BUILD": str(folder)})
-    assert done.stdout.strip() == "2.0e-15", done.stdout
-    rules = subprocess.run(["make", "-C", str(ROOT), "-n", "validate", "B=build/other", "SETUP=no"],
-                           capture_output=True, text=True, check=True,
-                           env={k: v for k, v in os.environ.items() if not k.startswith("MAKE")})
-    assert "BUILD='build/other'" in rules.stdout, rules.stdout[-500:]
-
-
 def test_runner(folder):
     """Finished runs of the same case stay; another setting runs anew; an interrupted one goes
-    on."""
-    job = Job(folder / "tiny", ROOT / "cases" / "still_water.cfg",
+    on; what is kept of a run counts until its case changes."""
+    job = Job(folder / "sluice-tiny", ROOT / "cases" / "still_water.cfg",
               ["dp=2 cm", "wall=8 cm", "end_time=20 ms"])
-    runner = validation_runs.Runner(validation_kept.Kept(folder / "kept"))
-    validation_runs.say = lambda text: None
-    runner.run(job)
-    assert not runner.failed, runner.failed
+    validation.FIGURES["sluice"] = lambda run: {"rows": len(run.table("ledger.csv")["time_s"])}
+    found = validation.run_job(job)
+    assert found["outcome"] == "finished" and found["rows"] > 1 and found["steps"] > 1, found
     summary = job.folder / "summary.json"
 
     def edit(**more):
         job.store({**json.loads(job.record_path.read_text()), **more})
-    assert job.record()["outcome"] == "finished"
     before = summary.stat().st_mtime_ns
-    runner.run(job)
-    assert summary.stat().st_mtime_ns == before
+    assert validation.run_job(job) == found and summary.stat().st_mtime_ns == before
     edit(program="older")
     assert not job.record() and job.record(any_program=True)["outcome"] == "finished"
     edit(program=program_hash(), outcome="started")
-    runner.run(job)
-    assert job.record()["outcome"] == "finished" and \
+    assert validation.run_job(job)["outcome"] == "finished" and \
         json.loads(summary.read_text())["restarted_from"]
     job.sets[2] = "end_time=1 ms"
-    assert not job.record()
-    runner.run(job)
+    assert not job.record() and validation.definition_hash(job) != found["definition"]
+    validation.run_job(job)
     assert 1e-3 <= json.loads(summary.read_text())["time"] < 2e-3
     job.sets.append("water.no_such_key=1")
-    runner.run(job)
-    assert "no_such_key" in runner.failed["tiny"], runner.failed
-
-
-def report_text(folder, failed):
-    validation_report.write_report(folder, failed, validation_kept.Kept(folder / "kept"))
-    return (folder / "validation.md").read_text()
+    assert validation.run_job(job) is None
 
 
 def test_report(folder):
-    """Without runs every section stands and says so; a broken reference ends its own section only;
-    a run that a guard stopped is shown as failed; no figure is drawn without data."""
-    for job in validation_runs.JOBS:
-        job.folder = folder / "runs" / job.name
-    halted = validation_runs.BY_NAME["plate"].folder
-    halted.mkdir(parents=True)
-    (halted / "summary.json").write_text(json.dumps(
-        {"exit_reason": "guard", "message": "too fast", "time": 0.25, "version": "v"}))
-    text = report_text(folder, {"bar-5": "line 3: no such key"})
-    for title, _ in validation_report.sections():
+    """Without runs every section stands and says so; a run that a guard stopped is shown as
+    stopped; what is measured is judged."""
+    validation.REPORT = folder / "validation.md"
+    exact = validation.deflections()[0]
+    stopped = {"name": "gate", "version": "v", "outcome": "unstable", "message": "too fast",
+               "time": 0.25}
+    plate = {"name": "plate", "version": "v", "outcome": "finished", "mean": 1.05 * exact,
+             "std": -0.019 * exact, "half": -0.06 * exact, "fast": 1e-9, "peak": 2 * exact,
+             "peak_at": 0.01, "frequency": 270.0, "steps": 5, "solid_substeps": 50,
+             "wall_seconds": 1.0, "threads": 1, "play": 80.0, "lost": 1.0, "gain": 0.1,
+             "momentum_x": 0.0, "momentum_y": 0.0, "mass": 0.0, "density": 0.01}
+    fine = {**plate, "name": "plate-3.125mm-leapfrog", "mean": 1.01 * exact}
+    validation.write_report({row["name"]: row for row in (stopped, plate, fine)})
+    text = validation.REPORT.read_text()
+    for title in validation.SECTIONS:
         assert f"## {title}" in text, title
-    assert "failed at t = 0.25 s: too fast" in text
-    assert "failed: line 3: no such key" in text
-    assert "Not reported" in text and "not run" in text
-    pictures = [p.name for p in (folder / "img").iterdir()]
-    assert pictures == [], pictures
-    broken = folder / "reference"
-    broken.mkdir()
-    for path in validation_cases.REFERENCES.glob("*.csv"):
-        (broken / path.name).write_text(path.read_text())
-    (broken / "gate_antoci_2007_x.csv").write_text("time_s,value\n0.04,wet\n")
-    (broken / "dam_break_lobovsky_2014.csv").unlink()
-    validation_cases.REFERENCES = validation_checks.REFERENCES = broken
-    text = report_text(folder, {})
-    assert "**Not reported: " in text and "gate_antoci_2007_x.csv, line 2" in text
-    assert "dam_break_lobovsky_2014.csv: No such file" in text
-    assert "## Free rotation" in text and "Table 1" in text
+    assert "stopped at t = 0.25 s: too fast" in text and "*Not run.*" in text
+    for row in ("within 4 % of 2-D elasticity, symplectic | +5.00 % | **missed**",
+                "2 % (standard deviation), symplectic | 1.81 % | met",
+                "2 % (half of the range), symplectic | 5.71 % | **missed**",
+                "closer to 2-D elasticity at half the spacing | +1.00 % |",
+                "no water pressed into bodies or walls, dp = 1 mm, Verlet | baffle-verlet has not"):
+        assert row in text, (row, text)
 
 
 def main():
@@ -224,10 +185,9 @@ def main():
     test_exact_solutions()
     test_distances()
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("report", "tables", "build"):
+        for name in ("report", "tables"):
             (Path(folder) / name).mkdir()
         test_tables(Path(folder) / "tables")
-        test_build(Path(folder) / "build")
         test_runner(Path(folder))
         test_report(Path(folder) / "report")
     print("the validation measures what it says and shows what is missing")

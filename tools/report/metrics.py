@@ -46,11 +46,6 @@ def damped_sine(time, value, omega, mean=False):
     return best
 
 
-def order(steps, errors):
-    """Order of convergence: slope of log error over log step."""
-    return float(np.polyfit(np.log(steps), np.log(np.abs(errors)), 1)[0])
-
-
 def strongest(time, value, least=0.0):
     """Frequency (Hz) of the highest peak of the spectrum above `least`, the mean taken out."""
     value = (value - value.mean()) * np.hanning(len(value))
@@ -105,21 +100,6 @@ def elastica(load, points=400):
         low, high = (middle, high) if shoot(middle)[1] < 0 else (low, middle)
     state = shoot(0.5 * (low + high))
     return float(state[2]), float(state[3])
-
-
-def lattice_shear(h_over_dp):
-    """Square of the speed of shear waves across the diagonal of an even lattice under a pressure p,
-    over p/rho: the sum of V s^2 W_tt over the neighbours, s along the diagonal and t across it,
-    which follows from Eq. 3b for small displacements. A fluid has none; kernel of Eq. 4."""
-    n, h = int(2 * h_over_dp) + 1, h_over_dp
-    x, y = (a.ravel() for a in np.meshgrid(np.arange(-n, n + 1.0), np.arange(-n, n + 1.0)))
-    r = np.hypot(x, y)
-    x, y, r = (a[(r > 0) & (r < 2 * h)] for a in (x, y, r))
-    q, norm = r / h, 7 / (4 * np.pi * h ** 2)
-    first = -5 * norm * q * (1 - q / 2) ** 3 / h
-    second = norm * (7.5 * q - 5 * (1 - q / 2)) * (1 - q / 2) ** 2 / h ** 2
-    along, across = (x + y) ** 2 / 2, (x - y) ** 2 / 2
-    return float(np.sum(along * (second * across / r ** 2 + first / r * (1 - across / r ** 2))))
 
 
 def nearest(points, others, reach):

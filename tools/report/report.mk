@@ -1,9 +1,8 @@
-# The goals that write reports. ARGS='...' goes to the tool.
+# The goals that write reports. ARGS='...' goes to the tool. With QUICK=1 each runs in minutes, coarse
+# and short, and writes to build/quick instead of docs.
 #
-#   make validate        run the paper's cases and the verification cases, write docs/results/validation.md: hours;
-#                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted;
-#                        KEEP=1 keeps the results of the longer runs in docs/results/validation/, where they count
-#                        as run from then on (ARGS=--again)
+#   make validate        run the article's five cases: docs/results/validation.md: hours; it goes on
+#                        where it was interrupted
 #   make accuracy        run what is missing of the accuracy study, write docs/results/accuracy.md (ARGS=--list)
 #   make forecast        what --explain foresees against what the shipped cases take: docs/results/accuracy.md
 #   make stability       run the hard cases in their long form and write docs/results/stability.md; goes on where
@@ -22,7 +21,7 @@
 #   make reliability     run the fault tests and write docs/results/reliability.md
 
 # goal: the tool and its options. Each is run on the built program by the project's Python.
-validate_TOOL            := tools/report/validation.py $(if $(QUICK),--quick) $(if $(KEEP),--keep)
+validate_TOOL            := tools/report/validation.py
 accuracy_TOOL            := tools/report/accuracy.py
 forecast_TOOL            := tools/report/forecast.py
 stability_TOOL           := tools/report/stability.py --report --keep
@@ -41,13 +40,13 @@ reliability_TOOL         := tests/fault/reliability.py
 REPORTS := $(patsubst %_TOOL,%,$(filter %_TOOL,$(.VARIABLES)))
 
 .PHONY: $(REPORTS) help-reports gallery
+export QUICK
 $(REPORTS): $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) $($@_TOOL) $(ARGS)
 	$(if $(filter accuracy,$@),@$(MAKE) --no-print-directory all)
 
 # What a report runs beside the program. Several runs at a time must not spin while they wait.
 validate stability-map: export OMP_WAIT_POLICY := passive
-validate: $(B)/tests/converge/test_solid_patch
 verify-manufactured: $(SHARED)
 bench performance: $(BENCHES)
 reliability: $(TESTS)

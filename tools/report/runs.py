@@ -43,6 +43,12 @@ def case_hash(text):
     return hashlib.sha256(re.sub(r"(?m)^(#|title|source).*\n", "", text).encode()).hexdigest()[:16]
 
 
+def definition_hash(job):
+    """Hash of what a run is defined by: the text of its case but for comments, and its settings."""
+    text = re.sub(r"\s*#.*", "", job.case.read_text(encoding="utf-8"))
+    return hashlib.sha256("\n".join([text, *job.sets]).encode()).hexdigest()[:16]
+
+
 @functools.cache
 def effective(*arguments):
     return ask("--effective", *arguments)
