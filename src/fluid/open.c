@@ -2,9 +2,9 @@
 #include "fluid/open.h"
 
 #include "base/hash.h"
+#include "base/simd.h"
 #include "expr/expr.h"
-#include "fluid/across.h"
-#include "fluid/eos.h"
+#include "particles/kernel.h"
 
 #include <math.h>
 
@@ -12,6 +12,28 @@
  * far in front of it is relabelled without delay. Fluid that oscillates about the line by less
  * creates no copies. */
 #define BAND 0.5
+
+static const struct scene_open *boundary_of(const struct open *o, const struct particles *particles,
+                                            int64_t i)
+{
+    return &o->boundary[particles->open[i] - 1];
+}
+
+/* Where a particle is: in front of the line on the side of the fluid, and along the line; and its
+ * projection on the line. */
+struct place {
+    double in, along, on_line[2];
+};
+
+static struct place place_of(const struct scene_open *b, const struct particles *particles,
+                             int64_t i)
+{
+    const double x[] = {particles->x[i], particles->y[i]};
+    struct place at;
+    scene_open_place(b, x, &at.in, &at.along);
+    for (int c = 0; c < 2; c++) at.on_line[c] = x[c] - at.in * b->inward[c];
+    return at;
+}
 
 int64_t open_places(const struct scene *scene)
 {
@@ -80,12 +102,8 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
     o->rate = arena_alloc(a, n, sizeof *o->rate, "open boundaries", d);
     const size_t capacity = (size_t)o->capacity;
     o->member = arena_alloc(a, capacity, sizeof *o->member, "open boundaries", d);
-    o->mirror_p = arena_alloc(a, capacity, sizeof *o->mirror_p, "open boundaries", d);
-    o->mirror_u = arena_alloc(a, capacity, sizeof *o->mirror_u, "open boundaries", d);
-    o->mirror_v = arena_alloc(a, capacity, sizeof *o->mirror_v, "open boundaries", d);
     o->flow = arena_alloc(a, capacity, sizeof *o->flow, "open boundaries", d);
-    if (!o->flow || !o->boundary || !o->at || !o->sum || !o->count || !o->rate || !o->member ||
-        !o->mirror_p || !o->mirror_u || !o->mirror_v)
+    if (!o->flow || !o->boundary || !o->at || !o->sum || !o->count || !o->rate || !o->member)
         return ERR_MEMORY;
     for (int k = 0; k < o->n; k++) {
         o->boundary[k] = scene_open_at(scene, k);
@@ -93,6 +111,88 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
         o->sum[k][OPEN_MEAN_FLOW] = (double)NAN;
     }
     return ERR_OK;
+}
+
+/* --- the fluid across a line --- */
+
+/* Sums of the kernel, without its norm, over the fluid around a point: of pressure and velocity,
+ * which times the vector to the particles; of that vector and its products; of rho/rho0 times the
+ * vector back. */
+enum { S_W, S_P, S_U, S_UX, S_UY, S_V, S_VX, S_VY, S_X, S_Y, S_XX, S_XY, S_YY, S_GX, S_GY, S_SUMS };
+
+/* Adds up to four particles of a cell from i on, at vectors (x, y) from the point. */
+SPHFSI_INLINE void add_across(four_double sum[S_SUMS], double inv_h,
+                              const struct particles *particles, int32_t i, int count,
+                              four_double x, four_double y)
+{
+    const four_long lane = {0, 1, 2, 3};
+    const four_double r2 = x * x + y * y;
+    const four_long seen = (four_long)(r2 < square(KERNEL_REACH / inv_h)) & (lane < count);
+    if (!(seen[0] | seen[1] | seen[2] | seen[3])) return;
+    const four_double q = four_sqrt(r2) * inv_h, t = 1 - 0.5 * q;
+    four_double w = t * t * (t * t) * (2 * q + 1);
+    for (int r = 0; r < CLUSTER; r++)
+        w[r] = seen[r] && particles->open[i + r] == 0 ? w[r] : 0; /* not the buffers */
+    const four_double u = FOUR(particles->vx, i), v = FOUR(particles->vy, i), wx = w * x,
+                      wy = w * y, mass = 1 + FOUR(particles->dens, i);
+    sum[S_W] += w;
+    sum[S_P] += w * FOUR(particles->p, i);
+    sum[S_U] += w * u;
+    sum[S_UX] += wx * u;
+    sum[S_UY] += wy * u;
+    sum[S_V] += w * v;
+    sum[S_VX] += wx * v;
+    sum[S_VY] += wy * v;
+    sum[S_X] += wx;
+    sum[S_Y] += wy;
+    sum[S_XX] += wx * x;
+    sum[S_XY] += wx * y;
+    sum[S_YY] += wy * y;
+    sum[S_GX] -= wx * mass;
+    sum[S_GY] -= wy * mass;
+}
+
+/* The fluid within reach of a point, without the buffers. */
+static void state_across(const struct fluid_constants *k, const struct particles *particles,
+                         const struct cells *cells, const double at[2], double sum[S_SUMS])
+{
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_window window = cells_window(cells, at, KERNEL_REACH * k->h);
+    four_double s[S_SUMS] = {{0}};
+    for (int m = 0; m < window.n[0] * window.n[1]; m++) {
+        const int32_t cell = window_cell(cells, &window, m);
+        if (cell < 0) continue;
+        const double cx = cell_centre_x(cells, cell), cy = cell_centre_y(cells, cell);
+        const double dx = cells_minimum_image(cells, 0, cx - at[0]) - cx,
+                     dy = cells_minimum_image(cells, 1, cy - at[1]) - cy;
+        for (int32_t n = 0, i = list->start[cell]; n < list->count[cell]; n += 4, i += 4)
+            add_across(s, 1 / k->h, particles, i, list->count[cell] - n, FOUR(particles->x, i) + dx,
+                       FOUR(particles->y, i) + dy);
+    }
+    for (int m = 0; m < S_SUMS; m++) sum[m] = (s[m][0] + s[m][2]) + (s[m][1] + s[m][3]);
+}
+
+/* T-51: the value at the point of the linear field fitted to the sums of a velocity; their mean if
+ * the particles span no plane. */
+static double linear_value(const double s[S_SUMS], int velocity)
+{
+    const double w = s[S_W], x = s[S_X] / w, y = s[S_Y] / w;
+    const double xx = s[S_XX] / w - x * x, xy = s[S_XY] / w - x * y, yy = s[S_YY] / w - y * y;
+    const double det = xx * yy - xy * xy, value = s[velocity] / w;
+    if (!(det > 0.01 * square(xx + yy))) return value;
+    const double cx = s[velocity + 1] / w - x * value, cy = s[velocity + 2] / w - y * value;
+    return value - ((yy * x - xy * y) * cx + (xx * y - xy * x) * cy) / det;
+}
+
+/* Velocity along a direction of the fluid around a point; without fluid `otherwise`. */
+static double flow_along(const struct fluid_constants *k, const struct particles *particles,
+                         const struct cells *cells, const double at[2], const double n[2],
+                         double otherwise)
+{
+    double s[S_SUMS];
+    state_across(k, particles, cells, at, s);
+    if (!(s[S_W] > 0)) return otherwise;
+    return linear_value(s, S_U) * n[0] + linear_value(s, S_V) * n[1];
 }
 
 /* --- fields of the buffers --- */
@@ -109,52 +209,37 @@ static void given_acceleration(const struct open_moment at[OPEN_TIMES],
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (t[OPEN_AFTER] - t[OPEN_BEFORE]);
 }
 
-/* T-51: velocity of a buffer from the fluid around its particle's projection on the line.
- * Velocities that varied along the normal would compress the buffer, because it has none along the
- * line. Without fluid there the velocity does not change. */
-static void mirror_velocity(struct open *o, int64_t m, const struct fluid_constants *k,
-                            const struct particles *particles, const struct cells *cells,
-                            const double on_line[2])
-{
-    const double *const n = o->boundary[particles->open[o->member[m]] - 1].inward;
-    const struct across s = state_across(k, particles, cells, on_line);
-    if (!(s.w > 0)) return;
-    const double normal =
-        linear_value(&s, s.u, s.ux, s.uy) * n[0] + linear_value(&s, s.v, s.vx, s.vy) * n[1];
-    o->mirror_u[m] = normal * n[0];
-    o->mirror_v[m] = normal * n[1];
-}
-
 /* A buffer particle's pressure from the fluid at its mirror image in the line (T-52), and with a
- * given pressure its velocity. With a given velocity: the pressure that T-10 gives a wall with that
- * velocity (T-50). Without fluid there its fields do not change. */
-static void mirror_fields(struct open *o, int64_t m, const struct fluid_constants *k,
-                          const struct particles *particles, const struct cells *cells, double time)
+ * given pressure its velocity, from the fluid around its projection on the line (T-51): velocities
+ * that varied along the normal would compress the buffer, because it has none along the line. With
+ * a given velocity: the pressure that T-10 gives a wall with that velocity (T-50). Without fluid
+ * there its fields do not change. */
+static void mirror_fields(const struct open *o, struct open_member *m,
+                          const struct fluid_constants *k, const struct particles *particles,
+                          const struct cells *cells, double time)
 {
-    const int32_t i = o->member[m];
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
-    const double x[2] = {particles->x[i], particles->y[i]};
-    double in, along, on_line[2], mirror[2], a[2];
-    scene_open_place(b, x, &in, &along);
-    for (int axis = 0; axis < 2; axis++) {
-        on_line[axis] = x[axis] - in * b->inward[axis];
-        mirror[axis] = on_line[axis] + fabs(in) * b->inward[axis];
-    }
-    const struct across s = state_across(k, particles, cells, mirror);
-    o->mirror_u[m] = particles->vx[i];
-    o->mirror_v[m] = particles->vy[i];
+    const int32_t i = m->particle;
+    const struct scene_open *const b = boundary_of(o, particles, i);
+    const struct place at = place_of(b, particles, i);
+    double mirror[2], a[2], s[S_SUMS];
+    for (int c = 0; c < 2; c++) mirror[c] = at.on_line[c] + fabs(at.in) * b->inward[c];
+    state_across(k, particles, cells, mirror, s);
+    const double w = s[S_W];
+    m->v[0] = particles->vx[i];
+    m->v[1] = particles->vy[i];
     if (b->kind == OPEN_PRESSURE) {
-        o->mirror_p[m] = s.w > 0 ? s.p_w / s.w : (double)NAN;
-        mirror_velocity(o, m, k, particles, cells, on_line);
+        m->p = w > 0 ? s[S_P] / w : (double)NAN;
+        const double normal = flow_along(k, particles, cells, at.on_line, b->inward, (double)NAN);
+        for (int c = 0; c < 2 && !isnan(normal); c++) m->v[c] = normal * b->inward[c];
         return;
     }
-    o->mirror_p[m] = eos_pressure(particles->dens[i], k->rho0, k->c0);
-    if (!(s.w > 0)) return;
-    given_acceleration(o->at[particles->open[i] - 1], k, on_line, time, a);
-    const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
-    o->mirror_p[m] = (s.p_w + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
-                                         (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
-                     s.w;
+    m->p = eos_pressure(particles->dens[i], k->rho0, k->c0);
+    if (!(w > 0)) return;
+    given_acceleration(o->at[particles->open[i] - 1], k, at.on_line, time, a);
+    const double from[2] = {particles->x[i] - mirror[0], particles->y[i] - mirror[1]};
+    m->p = (s[S_P] + k->rho0 * ((k->gravity[0] - a[0]) * (s[S_GX] + w * from[0]) +
+                                (k->gravity[1] - a[1]) * (s[S_GY] + w * from[1]))) /
+           w;
 }
 
 /* The given pressure at a point of the line, Pa. */
@@ -179,13 +264,10 @@ static double odd_pressure(const struct scene_open *b, double given, double mirr
 static double flow_at(const struct scene_open *b, const struct fluid_constants *k,
                       const struct particles *particles, const struct cells *cells, double along)
 {
+    const double out[] = {-b->inward[0], -b->inward[1]};
     double x[2];
-    for (int axis = 0; axis < 2; axis++)
-        x[axis] = b->from[axis] + along * b->along[axis] + k->dp * b->inward[axis];
-    const struct across s = state_across(k, particles, cells, x);
-    if (!(s.w > 0)) return 0;
-    return -linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] -
-           linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
+    for (int c = 0; c < 2; c++) x[c] = b->from[c] + along * b->along[c] + k->dp * b->inward[c];
+    return flow_along(k, particles, cells, x, out, 0);
 }
 
 /* The mean flow out of the fluid through each boundary that uses it. */
@@ -206,7 +288,7 @@ static void find_flow(struct open *o, const struct fluid_constants *k,
     }
 }
 
-/* Counts a particle that is created (sign 1) or removed (-1). */
+/* Adds momentum and energy of a particle to the sums of its boundary, or takes them off. */
 static void count_particle(struct open *o, const struct fluid_constants *k,
                            const struct particles *particles, int64_t i, double sign)
 {
@@ -216,36 +298,30 @@ static void count_particle(struct open *o, const struct fluid_constants *k,
     sum[OPEN_ENERGY] += sign * particle_energy(k, k->gravity, particles, i);
 }
 
-static void set_particle(struct open *o, int64_t m, const struct fluid_constants *k,
-                         struct particles *particles, double time)
+static void set_particle(const struct open *o, const struct open_member *m,
+                         const struct fluid_constants *k, struct particles *particles, double time)
 {
-    const int32_t i = o->member[m];
+    const int32_t i = m->particle;
     const int number = particles->open[i] - 1;
     const struct scene_open *const b = &o->boundary[number];
-    double v[2] = {o->mirror_u[m], o->mirror_v[m]}, pressure = o->mirror_p[m], in, along;
-    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &in, &along);
-    const double on_line[2] = {particles->x[i] - in * b->inward[0],
-                               particles->y[i] - in * b->inward[1]};
+    const struct place at = place_of(b, particles, i);
+    double v[2] = {m->v[0], m->v[1]}, pressure = m->p;
     if (b->kind == OPEN_PRESSURE) {
-        double given = given_pressure(b, k, on_line, time);
+        double given = given_pressure(b, k, at.on_line, time);
         if (b->absorb > 0) /* T-53 */
             given += k->rho0 * k->c0 * (o->rate[number].flow - o->sum[number][OPEN_MEAN_FLOW]);
         pressure = odd_pressure(b, given, pressure);
     } else {
-        scene_open_velocity(&o->at[number][OPEN_NOW].boundary, on_line, time, v);
+        scene_open_velocity(&o->at[number][OPEN_NOW].boundary, at.on_line, time, v);
     }
-    particles->vx[i] = v[0];
-    particles->vy[i] = v[1];
     particles->dens[i] = eos_dens(pressure, k->rho0, k->c0);
     if (particles->dens_slow) particles->dens_slow[i] = particles->dens[i];
-    if (particles->vx_half) {
-        particles->vx_half[i] = v[0];
-        particles->vy_half[i] = v[1];
-    }
-    if (particles->vx_old) {
-        particles->vx_old[i] = v[0];
-        particles->vy_old[i] = v[1];
-    }
+    double *const velocity[][2] = {{particles->vx, particles->vy},
+                                   {particles->vx_half, particles->vy_half},
+                                   {particles->vx_old, particles->vy_old}};
+    for (int c = 0; c < 2; c++)
+        for (int n = 0; n < 3; n++)
+            if (velocity[n][c]) velocity[n][c][i] = v[c];
 }
 
 void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
@@ -256,13 +332,14 @@ void open_set(struct open *o, const struct fluid_constants *k, struct particles 
     for (int64_t i = 0; i < particles->n; i++)
         particles->p[i] = eos_pressure(particles->dens[i], k->rho0, k->c0);
 #pragma omp parallel for schedule(static)
-    for (int64_t m = 0; m < o->n_members; m++) mirror_fields(o, m, k, particles, cells, time);
+    for (int64_t m = 0; m < o->n_members; m++)
+        mirror_fields(o, &o->member[m], k, particles, cells, time);
     find_flow(o, k, particles, cells);
     for (int64_t m = 0; m < o->n_members; m++) {
-        const int32_t i = o->member[m];
+        const int32_t i = o->member[m].particle;
         const double u = particles->vx[i], v = particles->vy[i],
                      energy = particle_energy(k, k->gravity, particles, i);
-        set_particle(o, m, k, particles, time);
+        set_particle(o, &o->member[m], k, particles, time);
         if (!counts) continue;
         double *const sum = o->sum[particles->open[i] - 1];
         sum[OPEN_MOMENTUM_X] += particle_mass(k, particles, i) * (particles->vx[i] - u);
@@ -275,7 +352,7 @@ void open_hold(struct open *o, const struct fluid_constants *k, struct particles
 {
     for (int n = 0; n < o->n; n++) o->rate[n].force[0] = o->rate[n].force[1] = o->rate[n].power = 0;
     for (int64_t m = 0; m < o->n_members; m++) {
-        const int32_t i = o->member[m];
+        const int32_t i = o->member[m].particle;
         struct open_rate *const r = &o->rate[particles->open[i] - 1];
         r->force[0] -= particle_mass(k, particles, i) * particles->ax[i];
         r->force[1] -= particle_mass(k, particles, i) * particles->ay[i];
@@ -304,11 +381,8 @@ bool open_due(const struct open *o, const struct particles *particles, double dp
 {
     bool due = false;
     for (int64_t m = 0; m < o->n_members; m++) {
-        const int32_t i = o->member[m];
-        double in, along;
-        scene_open_place(&o->boundary[particles->open[i] - 1],
-                         (const double[]){particles->x[i], particles->y[i]}, &in, &along);
-        due |= in > BAND * dp;
+        const int32_t i = o->member[m].particle;
+        due |= place_of(boundary_of(o, particles, i), particles, i).in > BAND * dp;
     }
     return due;
 }
@@ -339,27 +413,22 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k,
             "because more fluid enters than leaves; a larger [domain] or an [outflow] may help",
             b->word, b->common->name, (long long)particles->capacity);
     const int64_t to = particles->n++;
-    double place, along;
+    const struct place at = place_of(b, particles, i);
+    const double aside = aside_of(b, at.along, k->dp);
     particles_copy(particles, i, to);
-    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &place, &along);
-    const double aside = aside_of(b, along, k->dp);
     particles->id[to] = o->next_id++;
-    particles->x[to] += (in - place) * b->inward[0] + aside * b->along[0];
-    particles->y[to] += (in - place) * b->inward[1] + aside * b->along[1];
+    particles->x[to] += (in - at.in) * b->inward[0] + aside * b->along[0];
+    particles->y[to] += (in - at.in) * b->inward[1] + aside * b->along[1];
     o->count[number][OPEN_ENTERED]++;
     count_particle(o, k, particles, to, 1);
     return ERR_OK;
 }
 
-/* The strip of a buffer, one spacing wide along the normal, that a particle lies in, and its
- * distance from the line. Every place on the line belongs to one strip, so fluid that returns
- * adds none. */
-static int strip_of(const struct scene_open *b, const struct particles *particles, int64_t i,
-                    double dp, double *in)
+/* The strip of a buffer, one spacing wide along the normal, that a place lies in. Every place on
+ * the line belongs to one strip, so fluid that returns adds none. */
+static int strip_of(const struct scene_open *b, const struct place *at, double dp)
 {
-    double along;
-    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, in, &along);
-    return (int)floor(along / strip_width(b, dp));
+    return (int)floor(at->along / strip_width(b, dp));
 }
 
 /* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are
@@ -367,13 +436,15 @@ static int strip_of(const struct scene_open *b, const struct particles *particle
 static double last_of_strip(const struct open *o, const struct particles *particles, int64_t i,
                             int64_t fresh, double dp)
 {
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
-    double last, in;
-    const int own = strip_of(b, particles, i, dp, &last);
+    const struct scene_open *const b = boundary_of(o, particles, i);
+    const struct place own = place_of(b, particles, i);
+    double last = own.in;
     for (int64_t m = 0; m < o->n_members + particles->n - fresh; m++) {
-        const int64_t j = m < o->n_members ? o->member[m] : fresh + m - o->n_members;
-        if (particles->open[j] == particles->open[i] && strip_of(b, particles, j, dp, &in) == own)
-            last = min2(last, in);
+        const int64_t j = m < o->n_members ? o->member[m].particle : fresh + m - o->n_members;
+        const struct place at = place_of(b, particles, j);
+        if (particles->open[j] == particles->open[i] &&
+            strip_of(b, &at, dp) == strip_of(b, &own, dp))
+            last = min2(last, at.in);
     }
     return last;
 }
@@ -383,7 +454,7 @@ static double last_of_strip(const struct open *o, const struct particles *partic
 static enum err fill_strip(struct open *o, const struct fluid_constants *k,
                            struct particles *particles, int64_t i, int64_t fresh, struct diag *d)
 {
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
+    const struct scene_open *const b = boundary_of(o, particles, i);
     const double spacing = k->dp / (1 + particles->dens[i]);
     if (particles->y[i] > b->level) return ERR_OK; /* NAN: none */
     double in = last_of_strip(o, particles, i, fresh, k->dp) - spacing;
@@ -396,39 +467,36 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k,
 static bool strip_is_full(const struct open *o, const struct particles *particles, int64_t i,
                           double dp)
 {
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
-    double place, in;
-    const int own = strip_of(b, particles, i, dp, &place);
+    const struct scene_open *const b = boundary_of(o, particles, i);
+    const struct place own = place_of(b, particles, i);
     bool full = particles->y[i] > b->level; /* it runs off over the inflow; NAN: none */
     for (int64_t m = 0; m < o->n_members && !full; m++) {
-        const int64_t j = o->member[m];
+        const int64_t j = o->member[m].particle;
+        const struct place at = place_of(b, particles, j);
         full = particles->open[j] == particles->open[i] &&
-               strip_of(b, particles, j, dp, &in) == own && fabs(in - place) < BAND * dp &&
+               strip_of(b, &at, dp) == strip_of(b, &own, dp) && fabs(at.in - own.in) < BAND * dp &&
                particles->vx[j] * b->inward[0] + particles->vy[j] * b->inward[1] > 0;
     }
     return full && b->kind == OPEN_VELOCITY;
 }
 
-/* The boundary whose buffer contains fluid at x, from 1; 0: none. */
-static int32_t buffer_at(const struct open *o, const double x[2], double dp)
+/* Whether a place is in the buffer or in front of it. The sides of the buffer are walls, which do
+ * not affect its motion. */
+static bool in_buffer(const struct scene_open *b, const struct place *at, double dp)
+{
+    return at->in >= -b->depth - dp && at->along > 0 && at->along < b->length;
+}
+
+/* The boundary whose buffer contains fluid particle i, from 1; 0: none. */
+static int32_t buffer_at(const struct open *o, const struct particles *particles, int64_t i,
+                         double dp)
 {
     for (int k = 0; k < o->n; k++) {
         const struct scene_open *const b = &o->boundary[k];
-        double in, along;
-        scene_open_place(b, x, &in, &along);
-        if (in < -BAND * dp && in > -b->depth - dp && along > 0 && along < b->length) return k + 1;
+        const struct place at = place_of(b, particles, i);
+        if (at.in < -BAND * dp && in_buffer(b, &at, dp)) return k + 1;
     }
     return 0;
-}
-
-/* Whether a buffer particle is still in the buffer or in front of it. The sides of the buffer are
- * walls, which do not affect its motion. */
-static bool stays(const struct open *o, const struct particles *particles, int64_t i, double dp)
-{
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
-    double in, along;
-    scene_open_place(b, (const double[]){particles->x[i], particles->y[i]}, &in, &along);
-    return in >= -b->depth - dp && along > 0 && along < b->length;
 }
 
 /* Removes the particles that have left their buffers, and those that found no space in one. */
@@ -437,9 +505,13 @@ static void end_particles(struct open *o, const struct fluid_constants *k,
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < particles->n; i++) {
-        const bool found_no_room = particles->open[i] < 0;
-        if (found_no_room) particles->open[i] = -particles->open[i];
-        if (found_no_room || (particles->open[i] && !stays(o, particles, i, k->dp))) {
+        bool ends = particles->open[i] < 0; /* found no space */
+        if (ends) particles->open[i] = -particles->open[i];
+        if (particles->open[i]) {
+            const struct place at = place_of(boundary_of(o, particles, i), particles, i);
+            ends |= !in_buffer(boundary_of(o, particles, i), &at, k->dp);
+        }
+        if (ends) {
             o->count[particles->open[i] - 1][OPEN_LEFT]++;
             count_particle(o, k, particles, i, -1);
             continue;
@@ -453,7 +525,7 @@ static void end_particles(struct open *o, const struct fluid_constants *k,
 /* Marks fluid that is to be removed. The given velocity is then not all that passes the line. */
 static void mark_returned(struct open *o, struct particles *particles, int64_t i, struct diag *d)
 {
-    const struct scene_open *const b = &o->boundary[particles->open[i] - 1];
+    const struct scene_open *const b = boundary_of(o, particles, i);
     if (!o->warned)
         diag_warn(
             d,
@@ -470,16 +542,15 @@ enum err open_exchange(struct open *o, const struct fluid_constants *k, struct p
     const int64_t n = particles->n; /* copies follow behind */
     enum err e = ERR_OK;
     for (int64_t i = 0; i < n && !e; i++) {
-        const double x[2] = {particles->x[i], particles->y[i]};
-        double in, along;
         if (particles->open[i] == 0) {
-            particles->open[i] = buffer_at(o, x, k->dp);
+            particles->open[i] = buffer_at(o, particles, i, k->dp);
             if (particles->open[i] && strip_is_full(o, particles, i, k->dp))
                 mark_returned(o, particles, i, d);
             continue;
         }
-        scene_open_place(&o->boundary[particles->open[i] - 1], x, &in, &along);
-        if (in <= 0 || !stays(o, particles, i, k->dp)) continue;
+        const struct scene_open *const b = boundary_of(o, particles, i);
+        const struct place at = place_of(b, particles, i);
+        if (at.in <= 0 || !in_buffer(b, &at, k->dp)) continue;
         e = fill_strip(o, k, particles, i, n, d);
         particles->open[i] = 0;
     }
@@ -503,7 +574,7 @@ enum err open_list(struct open *o, const struct particles *particles, struct dia
                              "the buffers of the open boundaries contain four times as many "
                              "particles as at the start. Fluid collects in them; a finer dp or a "
                              "line further from the disturbance may help");
-        o->member[o->n_members++] = (int32_t)i;
+        o->member[o->n_members++].particle = (int32_t)i;
     }
     return ERR_OK;
 }

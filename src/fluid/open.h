@@ -32,6 +32,12 @@ struct open_moment {
     struct expr *speed, *velocity[2]; /* those of the boundary; NULL: not given */
 };
 
+/* A particle of a buffer, with pressure and velocity of the fluid across the line. */
+struct open_member {
+    int32_t particle;
+    double p, v[2];
+};
+
 struct open {
     int n;
     struct scene_open *boundary;
@@ -41,10 +47,9 @@ struct open {
     int64_t next_id;
     struct open_rate *rate;
     int64_t n_members, capacity;
-    bool warned;                            /* of fluid that ran back and is removed */
-    int32_t *member;                        /* particles of all buffers, in the order of memory */
-    double *mirror_p, *mirror_u, *mirror_v; /* [n_members]: the fluid across the line */
-    double *flow;                           /* along a line, m/s */
+    bool warned;                /* of fluid that ran back and is removed */
+    struct open_member *member; /* of all buffers, in the order of memory */
+    double *flow;               /* along a line, m/s */
 };
 
 /* Number of fluid particles, in all, that a scene with open boundaries has memory for. */

@@ -85,7 +85,7 @@ static void test_buffers_see_the_fluid_across_the_line(void)
     open_set(o, &rig.sim.fluid.k, p, &rig.sim.cells, 0.5, false);
     int seen[2] = {0};
     for (int64_t m = 0; m < o->n_members; m++) {
-        const int32_t i = o->member[m];
+        const int32_t i = o->member[m].particle;
         const bool inflow = p->open[i] == 1;
         const double line = inflow ? 0 : 1, mirror[2] = {2 * line - p->x[i], p->y[i]};
         wall_at[0] = mirror[0], wall_at[1] = mirror[1];
@@ -93,11 +93,11 @@ static void test_buffers_see_the_fluid_across_the_line(void)
         if (!(s.w > 0)) continue;
         seen[!inflow]++;
         const double more = inflow ? 1000 * (3 - 2) * (p->x[i] - mirror[0]) : 0;
-        assert_near(1e-8, s.f / s.w + more, o->mirror_p[m], "pressure");
+        assert_near(1e-8, s.f / s.w + more, o->member[m].p, "pressure");
         if (inflow) continue;
         const struct fit u = around((const double[]){line, p->y[i]}, u_of);
-        assert_near(1e-9, plane(&u), o->mirror_u[m], "velocity along x");
-        assert_near(1e-12, 0, o->mirror_v[m], "velocity along y");
+        assert_near(1e-9, plane(&u), o->member[m].v[0], "velocity along x");
+        assert_near(1e-12, 0, o->member[m].v[1], "velocity along y");
     }
     TEST_ASSERT_TRUE(seen[0] >= 30 && seen[1] >= 30);
 }
@@ -110,7 +110,7 @@ static void test_what_is_set_is_booked(void)
     double want[2][3] = {{0}};
     for (int sign = -1; sign <= 1; sign += 2) {
         for (int64_t m = 0; m < o->n_members; m++) {
-            const int32_t i = o->member[m];
+            const int32_t i = o->member[m].particle;
             double *const sum = want[p->open[i] - 1];
             sum[0] += sign * k->mass * p->vx[i];
             sum[1] += sign * k->mass * p->vy[i];
