@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include "solid/loads.h"
+
 /* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
  * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
  * velocity that the fluid uses. Zero for dry and clamped particles. dt = 0: the root of the

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "implicit/implicit.h"
+#include "solid/loads.h"
 #include "solid/packed.h"
 
 static const char what[] = "matrix of the solid";

@@ -5,6 +5,36 @@
 
 #include "solid/types.h"
 
+/* A point of a body that stays in place, on another body or on a moving wall. */
+struct hinge {
+    double at[2];     /* at t = 0, m */
+    int body[2];      /* the section, and the other one; -1: not a solid */
+    int bond[2];      /* of these bodies */
+    int motion;       /* of the wall; -1: none */
+    double target[2]; /* of the last forces: velocity after their kick, or acceleration */
+    int line;
+};
+
+/* A particle around a hinge. */
+struct hinge_node {
+    int32_t particle;
+    int hinge, end;          /* end: 1 of its body, 2 of the other one */
+    double weight, inv_mass; /* negative for the other body; 0 where a clamp holds the particle */
+    double value[2];         /* scratch: velocity or acceleration without the hinges */
+};
+
+struct hinges {
+    const struct scene *scene;
+    int n;
+    struct hinge *hinge;
+    int64_t n_nodes;
+    struct hinge_node *node; /* in the order of their particles */
+    double *matrix;          /* [2 n][2 n] */
+    double *force;           /* [2 n] of the last call, on the body, N/m */
+    double kick;             /* its dt */
+    bool released;           /* hinges_forces does nothing */
+};
+
 /* Finds the particles around each hinge and their weights. solid->body is set; the particles of all
  * clamps have free = 0. */
 enum err hinges_create(struct hinges *hinges, struct arena *a, const struct scene *scene,

@@ -142,7 +142,7 @@ enum err loads_create(struct loads *v, struct arena *a, const struct scene *scen
 
 /* --- during the run --- */
 
-static void move(struct loads *v, double time)
+void loads_move(struct loads *v, double time)
 {
     for (int b = 0; b < v->scene->n_solid && v->n_held; b++)
         v->motion[b] = motion_at(v->scene, moving_clamp(v->scene, b), time);
@@ -150,11 +150,10 @@ static void move(struct loads *v, double time)
 
 void loads_place_clamps(struct loads *v, struct particles *particles, double time)
 {
-    move(v, time);
+    loads_move(v, time);
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];
-        const struct motion_point at =
-            motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
+        const struct motion_point at = loads_motion(v, particles, i);
         particles->ux[i] = at.x[0] - particles->X[i];
         particles->uy[i] = at.x[1] - particles->Y[i];
         particles->vx[i] = at.v[0];
@@ -179,11 +178,10 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
         }
     }
     if (v->released) return;
-    move(v, time);
+    loads_move(v, time);
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];
-        const struct motion_point at =
-            motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
+        const struct motion_point at = loads_motion(v, particles, i);
         const double mass = solid->body[particles->body[i]].mass;
         const double fx = mass * (at.a[0] - particles->sx[i]),
                      fy = mass * (at.a[1] - particles->sy[i]);

@@ -5,9 +5,44 @@
 
 #include "solid/types.h"
 
+/* One [load] section: its particles are `first` to `end` of the list. */
+struct load_region {
+    int section;
+    int64_t first, end;
+    double share; /* of a particle in the force; or the length of surface that it represents, m */
+    bool varies;  /* with time, beyond `history` */
+};
+
+struct loads {
+    const struct scene *scene;
+    int n_loads;
+    struct load_region *load;
+    int64_t n_loaded;
+    int32_t *loaded;
+    double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
+    double *factor;  /* [n_loads] now */
+    /* Particles of clamps that move; their `free` is 1, so that they record the force on them. */
+    int64_t n_held;
+    int32_t *held;
+    double *held_power;          /* [n_held] of the clamp, W/m, */
+    double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
+    struct motion_state *motion; /* [n_solid] now */
+    bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
+};
+
 /* Finds the particles with loads and moving clamps. */
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
                       struct particles *particles, struct diag *d) SPHFSI_CHECKED;
+
+/* Finds what the clamps do at a time. */
+void loads_move(struct loads *v, double time);
+
+/* And with it the motion of particle i of a clamp. */
+SPHFSI_INLINE struct motion_point loads_motion(const struct loads *v,
+                                               const struct particles *particles, int64_t i)
+{
+    return motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
+}
 
 /* Sets position and velocity of the particles of moving clamps at a time. By one thread. */
 void loads_place_clamps(struct loads *v, struct particles *particles, double time);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Arrays in the precision of the solid's sweeps. */
+ * Arrays in the precision of the solid's sweeps; reference neighbours as packs and slots. */
 #ifndef SPHFSI_SOLID_PACKED_H
 #define SPHFSI_SOLID_PACKED_H
 
@@ -20,9 +20,10 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
                                                  : (double)((const float *)array)[i];
 }
 
-/* The packed fields that the scene needs, for the particles p. Sweeps in double precision use the
- * particle fields themselves where these exist. s->body, sweeps and variational are set. */
-enum err solid_packed_create(struct solid *solid, struct arena *a,
-                             const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
+/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
+ * the weights of the gradient, and sums these (S_GX, S_GY). Bodies, sweeps and packed fields are
+ * set. */
+enum err solid_stencil_create(struct solid *solid, struct arena *a,
+                              const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -38,23 +38,6 @@ static void hold(const struct solid *solid, const struct particles *particles, i
     now[1][i] = to[1];
 }
 
-static void hold_moving(const struct solid *solid, const struct particles *particles, double time)
-{
-    const struct loads *const v = solid->loads;
-    struct motion_state motion = {0};
-    int body = -1;
-    for (int64_t k = 0; k < v->n_held; k++) {
-        const int32_t i = v->held[k];
-        if (particles->body[i] != body) {
-            body = particles->body[i];
-            motion =
-                motion_at(v->scene, scene_find_motion(v->scene, v->scene->solid[body].clamp_motion),
-                          time);
-        }
-        hold(solid, particles, i, motion_of_point(&motion, particles->X[i], particles->Y[i]).a);
-    }
-}
-
 struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
                                          double time)
 {
@@ -74,7 +57,11 @@ struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *
     memset(now[3], 0, bytes);
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->free[i] == 0) hold(solid, particles, i, rest);
-    if (solid->loads) hold_moving(solid, particles, time);
+    if (solid->loads) loads_move(solid->loads, time);
+    for (int64_t k = 0; solid->loads && k < solid->loads->n_held; k++) {
+        const int32_t i = solid->loads->held[k];
+        hold(solid, particles, i, loads_motion(solid->loads, particles, i).a);
+    }
     if (solid->hinges) hinges_hold(solid->hinges, now, &now[2], time);
     return (struct solid_forces_now){now[0], now[1], now[2], now[3]};
 }

@@ -10,7 +10,6 @@
 #include "case/effects.h"
 #include "case/params.h"
 #include "solid/packed.h"
-#include "solid/stencil.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {
@@ -91,6 +90,47 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
     return &solid_sweeps_mixed;
 }
 
+/* Whether the scene needs a packed field. */
+static bool lane_needed(const struct solid *solid, int lane)
+{
+    bool mixed = false;
+    for (int k = 0; k < solid->n_bodies; k++) mixed |= solid->body[k].mixed;
+    switch (lane) {
+    case S_PAIRS_X:
+    case S_PAIRS_Y: return solid->variational;
+    case S_DRAG: return mixed;
+    case S_LOW_X:
+    case S_LOW_Y: return solid->sweeps->size < sizeof(double);
+    default: return true;
+    }
+}
+
+/* The packed fields that the scene needs. Sweeps in double precision use the particle fields
+ * themselves where these exist. */
+static enum err packed_create(struct solid *solid, struct arena *a,
+                              const struct particles *particles, struct diag *d)
+{
+    double *const field[SOLID_PACKED_FIELDS] = {
+        [S_UX] = particles->ux,   [S_UY] = particles->uy,   [S_VX] = particles->vx,
+        [S_VY] = particles->vy,   [S_UXX] = particles->Uxx, [S_UXY] = particles->Uxy,
+        [S_UYX] = particles->Uyx, [S_UYY] = particles->Uyy, [S_PXX] = particles->Pxx,
+        [S_PXY] = particles->Pxy, [S_PYX] = particles->Pyx, [S_PYY] = particles->Pyy,
+    };
+    for (int k = 0; k < SOLID_PACKED_FIELDS; k++) {
+        if (!lane_needed(solid, k)) continue;
+        solid->lane[k] = field[k];
+        if (field[k] && solid->sweeps->size == sizeof(double)) continue;
+        solid->lane[k] = arena_alloc(a, (size_t)particles->n, solid->sweeps->size,
+                                     "packed fields of the solid", d);
+        if (!solid->lane[k]) return ERR_MEMORY;
+    }
+    for (int64_t i = 0; solid->lane[S_DRAG] && i < particles->n; i++) {
+        const struct solid_body *const b = &solid->body[particles->body[i]];
+        solid_set(solid, solid->lane[S_DRAG], i, b->density * b->viscosity);
+    }
+    return ERR_OK;
+}
+
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d)
 {
@@ -113,7 +153,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     }
     join_bodies(solid, scene);
     solid->sweeps = choose_sweeps(solid, scene, particles, implicit);
-    TRY(solid_packed_create(solid, a, particles, d));
+    TRY(packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {
         solid->scratch[k] =

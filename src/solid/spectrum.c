@@ -34,58 +34,60 @@ static double norm(const double *x, const double *y, int64_t n)
 }
 
 /* Copies a field of both components. */
-static void keep(double *const to[2], const double *x, const double *y, int64_t n)
+static void keep(double *const to[2], double *const from[2], int64_t n)
 {
-    memcpy(to[0], x, (size_t)n * sizeof *x);
-    memcpy(to[1], y, (size_t)n * sizeof *y);
+    for (int c = 0; c < 2; c++) memcpy(to[c], from[c], (size_t)n * sizeof *to[c]);
 }
 
-/* field = base + scaled direction. */
-static void set_field(double *const field[2], double *const base[2], const double *dx,
-                      const double *dy, int64_t n, double factor)
+static void clear(double *const field[2], int64_t n)
 {
-    for (int64_t i = 0; i < n; i++) {
-        field[0][i] = base[0][i] + factor * dx[i];
-        field[1][i] = base[1][i] + factor * dy[i];
-    }
+    for (int c = 0; c < 2; c++) memset(field[c], 0, (size_t)n * sizeof *field[c]);
 }
 
-/* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to
- * `amplitude` at most. Stores the difference from its result at the base in (sx, sy). Returns the
- * factor by which that is larger. */
+/* A field, displacement or velocity, that varies about its base; the operator's result there. */
+struct variation {
+    double *field[2], *base[2], *rest[2];
+    double amplitude; /* keeps it in the linear range */
+    bool both_signs;
+};
+
+/* The operator where the field is its base plus a scaled direction; its result to (sx, sy). */
+static void operator_at(struct solid *solid, struct particles *particles, const struct variation *v,
+                        double *const direction[2], double factor)
+{
+    for (int c = 0; c < 2; c++)
+        for (int64_t i = 0; i < particles->n; i++)
+            v->field[c][i] = v->base[c][i] + factor * direction[c][i];
+    solid_operator(solid, particles, !v->both_signs);
+}
+
+/* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to the
+ * amplitude at most. Stores the difference from its result at the base in (sx, sy). Returns the
+ * factor by which that is larger. The viscous force acts on approaching pairs only: the other half
+ * of the pairs responds to the opposite field. */
 static double apply_operator(struct solid *solid, struct particles *particles,
-                             double *const field[2], double *const base[2], double amplitude,
-                             bool both_signs)
+                             const struct variation *v)
 {
-    const double factor = amplitude / largest(particles->sx, particles->sy, particles->n);
-    const double asked = factor * norm(particles->sx, particles->sy, particles->n);
-    double *const other[2] = {particles->x0, particles->y0};
-    const double *const rest[2] = {solid->scratch[2], solid->scratch[3]};
-    if (both_signs) {
-        /* The viscous force acts on approaching pairs only: the other half of the pairs responds to
-         * the opposite field. */
-        set_field(field, base, particles->sx, particles->sy, particles->n, -factor);
-        keep(other, particles->sx, particles->sy, particles->n);
-        solid_operator(solid, particles, false);
-        set_field(field, base, other[0], other[1], particles->n, factor);
-        keep(other, particles->sx, particles->sy, particles->n);
-    } else {
-        set_field(field, base, particles->sx, particles->sy, particles->n, factor);
+    const int64_t n = particles->n;
+    double *const s[2] = {particles->sx, particles->sy};
+    double *const direction[2] = {particles->x0, particles->y0};
+    const double factor = v->amplitude / largest(s[0], s[1], n);
+    const double asked = factor * norm(s[0], s[1], n);
+    keep(direction, s, n);
+    if (v->both_signs) {
+        operator_at(solid, particles, v, direction, -factor);
+        keep(v->rest, s, n);
     }
-    solid_operator(solid, particles, !both_signs);
-    for (int64_t i = 0; i < particles->n; i++) {
-        particles->sx[i] -= both_signs ? other[0][i] : rest[0][i];
-        particles->sy[i] -= both_signs ? other[1][i] : rest[1][i];
-    }
-    return norm(particles->sx, particles->sy, particles->n) / asked;
+    operator_at(solid, particles, v, direction, factor);
+    for (int c = 0; c < 2; c++)
+        for (int64_t i = 0; i < n; i++) s[c][i] -= v->rest[c][i];
+    return norm(s[0], s[1], n) / asked;
 }
 
-/* Largest ratio of the operator's change to a small change of the field, displacement or velocity;
- * `amplitude` keeps it in the linear range. Power iteration approaches it from below: after so many
- * iterations 0.3 % are missing at kappa = 50; one percent is added. */
+/* Largest ratio of the operator's change to a small change of the field. Power iteration approaches
+ * it from below: after so many iterations 0.3 % are missing at kappa = 50; one percent is added. */
 static double largest_factor(struct solid *solid, struct particles *particles,
-                             double *const field[2], double *const base[2], double amplitude,
-                             bool both_signs)
+                             const struct variation *v)
 {
     enum { ROUNDS = 60 };
     double factor = 0;
@@ -93,7 +95,7 @@ static double largest_factor(struct solid *solid, struct particles *particles,
     scramble(particles->sy, particles->n, 2, particles->free);
     for (int round = 0; round < ROUNDS; round++) {
         if (!(largest(particles->sx, particles->sy, particles->n) > 0)) return 0;
-        factor = apply_operator(solid, particles, field, base, amplitude, both_signs);
+        factor = apply_operator(solid, particles, v);
     }
     return 1.01 * factor;
 }
@@ -110,46 +112,48 @@ double solid_step_of(double omega2, double damping)
 double solid_stable_step(struct solid *solid, struct particles *particles, double *omega,
                          double *damping)
 {
-    double *const rates[2] = {solid->scratch[4], solid->scratch[5]};
-    keep(rates, particles->sx, particles->sy, particles->n);
-    const size_t bytes = (size_t)particles->n * sizeof *particles->vx;
-    double *const u[2] = {particles->ux, particles->uy}, *const v[2] = {particles->vx,
-                                                                        particles->vy};
-    double *const base[2] = {solid->scratch[0], solid->scratch[1]};
-    double *const rest[2] = {solid->scratch[2], solid->scratch[3]};
-    double *const kept[2] = {particles->vx0, particles->vy0};
+    const int64_t n = particles->n;
+    double *const *const scratch = solid->scratch;
+    double *const s[2] = {particles->sx, particles->sy}, *const rates[2] = {scratch[4], scratch[5]},
+                  *const kept[2] = {particles->vx0, particles->vy0};
+    struct variation u = {.field = {particles->ux, particles->uy},
+                          .base = {scratch[0], scratch[1]},
+                          .rest = {scratch[2], scratch[3]}},
+                     v = u;
     /* At a base strain of 1 the rounding error of float is a thousandth of the change; velocities
      * have the same amplitude. */
-    const double amplitude = (solid->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * solid->dp;
-    keep(kept, particles->vx, particles->vy, particles->n);
-    memset(particles->vx, 0, bytes);
-    memset(particles->vy, 0, bytes);
+    u.amplitude = (solid->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * solid->dp;
+    v.field[0] = particles->vx;
+    v.field[1] = particles->vy;
+    v.both_signs = true;
+    keep(rates, s, n);
+    keep(kept, v.field, n);
+    clear(v.field, n);
     solid_operator(solid, particles, true);
-    keep(rest, particles->sx, particles->sy, particles->n);
-    keep(base, particles->ux, particles->uy, particles->n);
-    *omega = sqrt(largest_factor(solid, particles, u, base, amplitude, false));
-    keep(u, base[0], base[1], particles->n);
-    memset(base[0], 0, bytes);
-    memset(base[1], 0, bytes);
+    keep(u.rest, s, n);
+    keep(u.base, u.field, n);
+    *omega = sqrt(largest_factor(solid, particles, &u));
+    keep(u.field, u.base, n);
+    clear(v.base, n);
     *damping = 0;
     bool damped = false;
     double rate = 0; /* of mass damping */
     for (int k = 0; k < solid->n_bodies; k++) {
         damped |= solid->body[k].viscosity + solid->body[k].damping_time > 0;
         rate = max2(rate, solid->body[k].mass_damping);
+        solid->body[k].damping_time *= 0.5; /* linear: it acts on both signs, half of it on each */
     }
-    /* Linear damping acts on both signs: half of it on each. */
-    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].damping_time *= 0.5;
     if (damped) {
         solid_operator(solid, particles, true);
-        *damping = largest_factor(solid, particles, v, base, amplitude * *omega, true);
+        v.amplitude = u.amplitude * *omega;
+        *damping = largest_factor(solid, particles, &v);
     }
     for (int k = 0; k < solid->n_bodies; k++) solid->body[k].damping_time *= 2;
     *damping += rate;
-    keep(v, kept[0], kept[1], particles->n);
+    keep(v.field, kept, n);
     /* Later readers get the fields of the body, not of a trial. */
     solid_stress(solid, particles);
-    keep((double *[2]){particles->sx, particles->sy}, rates[0], rates[1], particles->n);
+    keep(s, rates, n);
     /* The eigenvalues of a sum of two operators are at most the sum of the largest of each. */
     return solid_step_of(square(*omega), *damping);
 }

@@ -8,7 +8,6 @@
 #include "base/point_grid.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
-#include "solid/stencil.h"
 
 /* Neighbours of one particle within 2h. */
 enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
@@ -64,8 +63,7 @@ static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
 
 /* Computes the gradient at a particle from the fields of its neighbours. */
 struct gradient_moments {
-    double inverse[2][5]; /* rows d/dX and d/dY of the inverse moment matrix */
-    bool quadratic;
+    double inverse[2][5]; /* rows d/dX and d/dY of the inverse moment matrix; linear: of L */
 };
 
 /* Monomials of the offset from a particle, in units of h. */
@@ -92,9 +90,10 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
  * least squares). If the neighbours cannot determine a quadratic field, as across two particles,
  * the gradient stays linear. false: not even linear. */
 static bool find_moments(const struct solid *solid, const struct particles *particles, int64_t i,
-                         const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
+                         const int32_t *found, int n, struct gradient_moments *m)
 {
-    const double h = solid->body[particles->body[i]].h, dp = solid->body[particles->body[i]].dp;
+    const struct solid_body *const own = &solid->body[particles->body[i]];
+    const double h = own->h, dp = own->dp;
     double M[5][5] = {{0}};
     for (int k = 0; k < n; k++) {
         const double x = reference_distance(particles->X[found[k]], particles->X[i], dp) / h;
@@ -105,10 +104,9 @@ static bool find_moments(const struct solid *solid, const struct particles *part
         for (int r = 0; r < 5; r++)
             for (int c = 0; c < 5; c++) M[r][c] += weight * b[r] * b[c];
     }
-    memset(m, 0, sizeof *m);
-    m->quadratic =
-        quadratic && solve_row(M, 5, 0, m->inverse[0]) && solve_row(M, 5, 1, m->inverse[1]);
-    if (m->quadratic) return true;
+    if (own->gradient == GRADIENT_QUADRATIC && solve_row(M, 5, 0, m->inverse[0]) &&
+        solve_row(M, 5, 1, m->inverse[1]))
+        return true;
     memset(m, 0, sizeof *m);
     return solve_row(M, 2, 0, m->inverse[0]) && solve_row(M, 2, 1, m->inverse[1]);
 }
@@ -123,8 +121,7 @@ static void gradient_weight(const struct solid_body *own, const struct gradient_
     const double weight = -square(h * own->dp) * kernel_slope(sqrt(X * X + Y * Y), h) / h;
     for (int axis = 0; axis < 2; axis++) {
         G[axis] = 0;
-        for (int k = 0; k < (m->quadratic ? 5 : 2); k++)
-            G[axis] += weight * m->inverse[axis][k] * b[k];
+        for (int k = 0; k < 5; k++) G[axis] += weight * m->inverse[axis][k] * b[k];
     }
 }
 
@@ -174,47 +171,40 @@ static int pack_slots(const struct solid *solid, const struct particles *particl
     return n;
 }
 
-/* Slots in the layout of the sweeps, with the sets that are stored already by hash. */
-struct slot_sets {
-    int64_t *offset; /* [capacity] */
-    char *weight;
-    int64_t capacity;
-    int32_t *pack; /* [size] a pack with this set, -1: free */
-    size_t size;   /* a power of two */
-};
-
 /* Bytes of the weights of a slot. */
 static size_t slot_bytes(const struct solid *solid)
 {
     return SOLID_WEIGHTS * (size_t)solid->sweeps->lanes * solid->sweeps->size;
 }
 
-/* Moves the n slots of the sets to memory for `capacity`. */
-static enum err slots_move(struct slot_sets *sets, const struct solid *solid, struct arena *a,
-                           int64_t n, int64_t capacity, struct diag *d)
+/* Moves the slots to memory for `capacity`. */
+static enum err slots_move(struct solid *solid, struct arena *a, int64_t capacity, struct diag *d)
 {
-    int64_t *const offset =
-        arena_alloc(a, (size_t)capacity, sizeof *offset, "slots of the solid", d);
-    char *const weight =
-        arena_alloc(a, (size_t)capacity, slot_bytes(solid), "slots of the solid", d);
+    const size_t n = (size_t)solid->n_slots, all = (size_t)capacity;
+    int64_t *const offset = arena_alloc(a, all, sizeof *offset, "slots of the solid", d);
+    void *const weight = arena_alloc(a, all, slot_bytes(solid), "slots of the solid", d);
     if (!offset || !weight) return ERR_MEMORY;
-    if (n) {
-        memcpy(offset, sets->offset, (size_t)n * sizeof *offset);
-        memcpy(weight, sets->weight, (size_t)n * slot_bytes(solid));
-    }
-    sets->offset = offset;
-    sets->weight = weight;
-    sets->capacity = capacity;
+    if (n) memcpy(offset, solid->offset, n * sizeof *offset);
+    if (n) memcpy(weight, solid->weight, n * slot_bytes(solid));
+    solid->offset = offset;
+    solid->weight = weight;
     return ERR_OK;
 }
+
+/* The sets that are stored already, by hash. */
+struct slot_sets {
+    int32_t *pack; /* [size] a pack with this set, -1: free */
+    size_t size;   /* a power of two */
+};
 
 /* Finds a set equal to the n slots behind those stored, or stores these. */
 static void reuse_slots(struct solid *solid, const struct slot_sets *sets, int32_t pack_index,
                         int n)
 {
     struct solid_pack *const pack = &solid->pack[pack_index];
-    const int64_t *const offset = &sets->offset[solid->n_slots];
-    const char *const weight = &sets->weight[(size_t)solid->n_slots * slot_bytes(solid)];
+    const char *const all = solid->weight;
+    const int64_t *const offset = &solid->offset[solid->n_slots];
+    const char *const weight = &all[(size_t)solid->n_slots * slot_bytes(solid)];
     const size_t offsets = (size_t)n * sizeof *offset, weights = (size_t)n * slot_bytes(solid);
     pack->n_slots = n;
     size_t k = hash_bytes(hash_bytes(HASH_START, offset, offsets), weight, weights);
@@ -222,8 +212,8 @@ static void reuse_slots(struct solid *solid, const struct slot_sets *sets, int32
         const struct solid_pack *const other = &solid->pack[sets->pack[k]];
         const size_t first = (size_t)other->first_slot;
         if (other->body == pack->body && other->n_slots == n &&
-            memcmp(&sets->offset[first], offset, offsets) == 0 &&
-            memcmp(&sets->weight[first * slot_bytes(solid)], weight, weights) == 0) {
+            memcmp(&solid->offset[first], offset, offsets) == 0 &&
+            memcmp(&all[first * slot_bytes(solid)], weight, weights) == 0) {
             pack->first_slot = other->first_slot;
             return;
         }
@@ -258,24 +248,24 @@ static enum err store_slots(struct solid *solid, struct arena *a, struct arena *
     if (!sets.pack || !drafts) return ERR_MEMORY;
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
     const int lanes = solid->sweeps->lanes;
+    int64_t capacity = 0;
     for (int64_t k = 0; k < solid->n_packs; k++) {
         const int n = pack_slots(solid, particles, grid, moments, &solid->pack[k], drafts);
-        if (solid->n_slots + n > sets.capacity)
-            TRY(slots_move(&sets, solid, scratch, solid->n_slots, 2 * (solid->n_slots + n), d));
+        if (solid->n_slots + n > capacity) {
+            capacity = 2 * (solid->n_slots + n);
+            TRY(slots_move(solid, scratch, capacity, d));
+        }
         for (int m = 0; m < n; m++) {
             const int64_t slot = solid->n_slots + m;
-            sets.offset[slot] = drafts[m].offset;
+            solid->offset[slot] = drafts[m].offset;
             for (int w = 0; w < SOLID_WEIGHTS; w++)
                 for (int l = 0; l < lanes; l++)
-                    solid_set(solid, sets.weight, (slot * SOLID_WEIGHTS + w) * lanes + l,
+                    solid_set(solid, solid->weight, (slot * SOLID_WEIGHTS + w) * lanes + l,
                               drafts[m].weight[w][l]);
         }
         reuse_slots(solid, &sets, (int32_t)k, n);
     }
-    TRY(slots_move(&sets, solid, a, solid->n_slots, solid->n_slots, d));
-    solid->offset = sets.offset;
-    solid->weight = sets.weight;
-    return ERR_OK;
+    return slots_move(solid, a, solid->n_slots, d);
 }
 
 /* Moments of every particle; also checks the number of neighbours. */
@@ -292,8 +282,7 @@ static enum err all_moments(const struct solid *solid, const struct point_grid *
                 "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
                 "use a smaller h_over_dp; bodies that overlap also cause this",
                 particles->X[i], particles->Y[i], MAX_NEIGHBOURS);
-        const bool quadratic = solid->body[particles->body[i]].gradient == GRADIENT_QUADRATIC;
-        if (!find_moments(solid, particles, i, found, n, quadratic, &moments[i]))
+        if (!find_moments(solid, particles, i, found, n, &moments[i]))
             return diag_fail(
                 d, ERR_INPUT,
                 "the solid particle at (%.6g, %.6g) m has too few neighbours to determine a "

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The data of a solid: bodies, packs and slots, loads and hinges. What acts on
- * them is declared in the header of its name. */
+ * The data of a solid: bodies, packs and slots. */
 #ifndef SPHFSI_SOLID_TYPES_H
 #define SPHFSI_SOLID_TYPES_H
 
@@ -142,65 +141,6 @@ struct solid {
     solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
-};
-
-/* --- loads and prescribed motion --- */
-
-/* One [load] section: its particles are `first` to `end` of the list. */
-struct load_region {
-    int section;
-    int64_t first, end;
-    double share; /* of a particle in the force; or the length of surface that it represents, m */
-    bool varies;  /* with time, beyond `history` */
-};
-
-struct loads {
-    const struct scene *scene;
-    int n_loads;
-    struct load_region *load;
-    int64_t n_loaded;
-    int32_t *loaded;
-    double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
-    double *factor;  /* [n_loads] now */
-    /* Particles of clamps that move; their `free` is 1, so that they record the force on them. */
-    int64_t n_held;
-    int32_t *held;
-    double *held_power;          /* [n_held] of the clamp, W/m, */
-    double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
-    struct motion_state *motion; /* [n_solid] now */
-    bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
-};
-
-/* --- hinges --- */
-
-/* A point of a body that stays in place, on another body or on a moving wall. */
-struct hinge {
-    double at[2];     /* at t = 0, m */
-    int body[2];      /* the section, and the other one; -1: not a solid */
-    int bond[2];      /* of these bodies */
-    int motion;       /* of the wall; -1: none */
-    double target[2]; /* of the last forces: velocity after their kick, or acceleration */
-    int line;
-};
-
-/* A particle around a hinge. */
-struct hinge_node {
-    int32_t particle;
-    int hinge, end;          /* end: 1 of its body, 2 of the other one */
-    double weight, inv_mass; /* negative for the other body; 0 where a clamp holds the particle */
-    double value[2];         /* scratch: velocity or acceleration without the hinges */
-};
-
-struct hinges {
-    const struct scene *scene;
-    int n;
-    struct hinge *hinge;
-    int64_t n_nodes;
-    struct hinge_node *node; /* in the order of their particles */
-    double *matrix;          /* [2 n][2 n] */
-    double *force;           /* [2 n] of the last call, on the body, N/m */
-    double kick;             /* its dt */
-    bool released;           /* hinges_forces does nothing */
 };
 
 #endif
