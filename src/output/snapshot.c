@@ -16,6 +16,25 @@ enum { VTK_VERTEX = 1 };
 
 /* --- a snapshot --- */
 
+/* The source of a snapshot. */
+struct source {
+    const struct simulation *sim;
+    double unit; /* to which positions are rounded; 0: not rounded */
+    int64_t n, steps_before, points_before;
+};
+
+static int64_t step_value(enum data what, const struct source *source)
+{
+    switch (what) {
+    case D_PARTS_BEFORE: return source->steps_before;
+    case D_PARTS: return 1;
+    case D_POINTS_BEFORE:
+    case D_CELLS_BEFORE:
+    case D_IDS_BEFORE: return source->points_before;
+    default: return source->n; /* points, cells, identifiers */
+    }
+}
+
 static int64_t integer_value(enum data what, const struct simulation *sim, enum kind kind,
                              int64_t i)
 {
@@ -27,12 +46,6 @@ static int64_t integer_value(enum data what, const struct simulation *sim, enum 
     }
 }
 
-/* The source of a snapshot. */
-struct source {
-    const struct simulation *sim;
-    double unit; /* to which positions are rounded; 0: not rounded */
-};
-
 /* A snapshot_values callback: rows are the particles of all kinds, in the order of the kinds. */
 static void values_of(const void *context, enum data what, int column, int64_t n, void *values)
 {
@@ -41,6 +54,13 @@ static void values_of(const void *context, enum data what, int column, int64_t n
     const double unit = what == D_POINTS ? source->unit : 0;
     double *real = values;
     int64_t *integer = values;
+    if (what < D_POINTS) {
+        if (what == D_TIME)
+            *real = sim->state.time;
+        else
+            *integer = step_value(what, source);
+        return;
+    }
     if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a VTK cell */
         for (int64_t row = 0; row < n; row++) integer[row] = row;
         return;
@@ -54,20 +74,6 @@ static void values_of(const void *context, enum data what, int column, int64_t n
             const double value = snapshot_value(what, sim, (enum kind)kind, i, column);
             *real++ = unit > 0 ? nearbyint(value / unit) * unit : value;
         }
-}
-
-static bool append_step_rows(hid_t root, double time, int64_t n, int64_t steps, int64_t points)
-{
-    int64_t before = points, part = steps, one = 1;
-    return snapshot_file_append(root, D_TIME, &time) &&
-           snapshot_file_append(root, D_POINTS_COUNT, &n) &&
-           snapshot_file_append(root, D_CELLS_COUNT, &n) &&
-           snapshot_file_append(root, D_IDS_COUNT, &n) &&
-           snapshot_file_append(root, D_PARTS_BEFORE, &part) &&
-           snapshot_file_append(root, D_PARTS, &one) &&
-           snapshot_file_append(root, D_POINTS_BEFORE, &before) &&
-           snapshot_file_append(root, D_CELLS_BEFORE, &before) &&
-           snapshot_file_append(root, D_IDS_BEFORE, &before);
 }
 
 static int64_t count_points(const struct simulation *sim)
@@ -94,13 +100,10 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file,
      * below carry no information, and would take as long to compress as all other fields together.
      */
     const double unit = layout->doubles ? 0 : ldexp(1, ilogb(sim->scene->top.dp) - 20);
-    const struct source source = {sim, unit};
-    const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
-    const bool ok = root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
-                    append_step_rows(root, sim->state.time, n, steps, rows[D_POINTS]) &&
-                    snapshot_file_append_points(root, layout, n, values_of, &source);
-    H5Gclose(root);
-    return ok && snapshot_file_set_steps(file, steps + 1);
+    const bool ok = steps >= 0 && snapshot_file_rows(file, steps, rows);
+    const struct source source = {sim, unit, n, steps, ok ? rows[D_POINTS] : 0};
+    return ok && snapshot_file_append(file, layout, n, values_of, &source) &&
+           snapshot_file_set_steps(file, steps + 1);
 }
 
 /* --- files --- */
@@ -166,30 +169,8 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
 }
 
 /* HDF5 is seldom built thread-safe: simulations in several threads of a program exclude each other.
- */
+ * H5E_BEGIN_TRY turns off HDF5's own messages, which may be the user's, for its block. */
 static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
-
-/* Turns off HDF5's own error messages. The setting is global and may be the user's, so it is
- * restored. */
-struct quiet {
-    H5E_auto2_t report;
-    void *context;
-};
-
-static struct quiet quiet_begin(void)
-{
-    struct quiet q = {NULL, NULL};
-    pthread_mutex_lock(&hdf5_mutex);
-    H5Eget_auto2(H5E_DEFAULT, &q.report, &q.context);
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    return q;
-}
-
-static void quiet_end(struct quiet q)
-{
-    H5Eset_auto2(H5E_DEFAULT, q.report, q.context);
-    pthread_mutex_unlock(&hdf5_mutex);
-}
 
 static bool sync_file(const char *path)
 {
@@ -218,11 +199,17 @@ static enum err swap_with_spare(const struct snapshots *w, struct diag *d)
 /* Fills the spare and swaps it with the named file. */
 static enum err update(struct snapshots *w, int64_t steps, struct simulation *sim, struct diag *d)
 {
-    const struct quiet q = quiet_begin();
+    bool filled;
+    int why;
+    pthread_mutex_lock(&hdf5_mutex);
     errno = 0;
-    const bool filled = fill_spare(w, steps, sim);
-    const int why = errno;
-    quiet_end(q);
+    H5E_BEGIN_TRY
+    {
+        filled = fill_spare(w, steps, sim);
+        why = errno;
+    }
+    H5E_END_TRY
+    pthread_mutex_unlock(&hdf5_mutex);
     if (!filled) {
         unlink(w->spare);
         return diag_fail(d, ERR_IO,
@@ -273,10 +260,16 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
         return ERR_OK;
     }
     int64_t all, keep;
-    const struct quiet q = quiet_begin();
-    const bool counted = count_snapshots(w, time, &all, &keep, last);
-    const int why = errno;
-    quiet_end(q);
+    bool counted;
+    int why;
+    pthread_mutex_lock(&hdf5_mutex);
+    H5E_BEGIN_TRY
+    {
+        counted = count_snapshots(w, time, &all, &keep, last);
+        why = errno;
+    }
+    H5E_END_TRY
+    pthread_mutex_unlock(&hdf5_mutex);
     if (!counted && why == ENOMEM)
         return diag_fail(d, ERR_MEMORY, "%s: no memory to count its snapshots", w->path);
     if (!counted)

@@ -30,19 +30,16 @@ bool snapshot_file_real(enum data what);
 int64_t snapshot_file_steps(hid_t file);
 bool snapshot_file_set_steps(hid_t file, int64_t n);
 
-/* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
-bool snapshot_file_append(hid_t root, enum data what, void *value);
-
-/* A callback that writes the n values of a snapshot in one column: double or int64_t
+/* A callback that writes the n values of a snapshot in one column of a dataset: double or int64_t
  * (snapshot_file_real). */
 typedef void snapshot_values(const void *context, enum data what, int column, int64_t n,
                              void *values);
 
-/* Appends a snapshot of n points to all datasets of points. */
-bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
-                                 snapshot_values *values_of, const void *context);
+/* Appends a snapshot of n points to all datasets. */
+bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout, int64_t n,
+                          snapshot_values *values_of, const void *context);
 
-/* Reads the first n rows of a dataset of one column. */
+/* Reads the first n rows of a dataset. */
 bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
 
 /* Rows of every dataset in the first `steps` snapshots of a file; false: it has fewer. */
