@@ -27,8 +27,8 @@ void closing_say(const struct sphfsi_options *o, const struct simulation *sim,
                   "missing; a [wall] that holds them or a larger [domain] keeps them",
                   (long long)lost, (long long)(lost + left));
     }
-    for (int k = 0; r->score && k < r->references->n; k++) {
-        reference_line(&r->references->item[k], &r->score[k], text, sizeof text);
+    for (int k = 0; r->references->scored && k < r->references->n; k++) {
+        reference_line(&r->references->item[k], text, sizeof text);
         session_say(o, "%s", text);
     }
 }

@@ -31,7 +31,6 @@ struct run {
     struct probes probes;
     struct row_files rows;
     struct references references;
-    struct score *score; /* of each reference */
     struct snapshots snapshots;
     struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
@@ -66,16 +65,13 @@ static void set_intervals(struct run *r, double time)
 static void score_references(struct run *r)
 {
     struct diag why = session_diag(r->options);
-    r->record.references = &r->references;
-    r->record.score = NULL;
-    if (r->references.n == 0) return;
-    r->record.score = r->score;
-    for (int k = 0; k < r->probes.n_files; k++) {
-        if (!references_score(&r->references, k, r->rows.file[k].series.path, r->score, &why))
-            continue;
-        diag_warn(&why, "the references were not compared: %s", why.text);
-        r->record.score = NULL;
+    r->references.scored = r->references.n > 0;
+    for (int k = 0; k < r->references.n && r->references.scored; k++) {
+        struct reference *const reference = &r->references.item[k];
+        const char *const path = r->rows.file[reference->file].series.path;
+        r->references.scored = reference_score(reference, path, &why) == ERR_OK;
     }
+    if (why.code) diag_warn(&why, "the references were not compared: %s", why.text);
 }
 
 static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
@@ -443,23 +439,13 @@ static void end_run(struct run *r)
     run_dir_close(&r->folder);
 }
 
-static enum err open_references(struct run *r)
-{
-    const int n = r->probes.n_files;
-    const char **const header =
-        arena_alloc(&r->arena, (size_t)n, sizeof *header, "headers", r->diag);
-    if (!header) return ERR_MEMORY;
-    for (int k = 0; k < n; k++) header[k] = r->probes.file[k].header;
-    TRY(references_open(&r->references, &r->session.scene, n, header, &r->arena, r->diag));
-    r->score = arena_alloc(&r->arena, (size_t)r->references.n, sizeof *r->score, "scores", r->diag);
-    return r->score ? ERR_OK : ERR_MEMORY;
-}
-
 static enum err run_session(struct run *r, const char *path, enum run_dir_use use)
 {
     TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
     TRY(rows_create(&r->rows, &r->probes, r->s, true, &r->arena, r->diag));
-    TRY(open_references(r));
+    TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
+                        &r->arena, r->diag));
+    r->record.references = &r->references;
     TRY(run_dir_open(&r->folder, path, use, r->diag));
     TRY(begin_run(r));
     return simulate(r);

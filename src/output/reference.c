@@ -46,56 +46,33 @@ static enum err read_file(struct reference *r, const struct scene *scene, struct
     return e;
 }
 
-/* --- columns --- */
-
-enum { COLUMN_NAMES = 64 };
-
-/* Searches one file for the column; collects its names for the message. */
-static bool has_column(struct reference *r, int file, const char *header, struct nearest *near,
-                       char names[][2 * SCENE_NAME], int *n_names)
+/* Searches the headers of all files for the column of a reference. */
+static enum err find_column(struct reference *r, const struct scene *scene, int n,
+                            const struct probe_file *files, struct diag *d)
 {
     const char *const wanted = r->from->probe, *name;
+    char place[LOCATION_TEXT], list[301] = "";
     size_t length;
-    for (int k = 1; (name = csv_field(header, k, &length)) != NULL; k++) {
-        if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) {
-            r->file = file;
-            r->column = k;
-            return true;
-        }
-        if (*n_names >= COLUMN_NAMES) continue;
-        char *const kept = names[(*n_names)++];
-        snprintf(kept, sizeof names[0], "%.*s", (int)length, name);
-        nearest_offer(near, wanted, kept);
+    for (r->file = 0; r->file < n; r->file++) {
+        const char *const header = files[r->file].header;
+        for (r->column = 1; (name = csv_field(header, r->column, &length)); r->column++)
+            if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) return ERR_OK;
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s", strchr(header, ','));
     }
-    return false;
-}
-
-static enum err find_column(struct reference *r, const struct scene *scene, int n,
-                            const char *const *header, struct diag *d)
-{
-    struct nearest near = {0};
-    char place[LOCATION_TEXT], names[COLUMN_NAMES][2 * SCENE_NAME], list[301] = "";
-    int n_names = 0;
-    for (int k = 0; k < n; k++)
-        if (has_column(r, k, header[k], &near, names, &n_names)) return ERR_OK;
-    for (int k = 0; k < n_names; k++)
-        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? "," : "", names[k]);
     scene_location(scene, r->from->common.line, place);
-    return diag_fail(d, ERR_INPUT,
-                     "%s: [reference %s] probe = %.80s: no such column; there are %s%s%s", place,
-                     r->from->common.name, r->from->probe, list,
-                     near.name ? "; the nearest is " : "", near.name ? near.name : "");
+    return diag_fail(d, ERR_INPUT, "%s: [reference %s] probe = %.80s: no such column; there are %s",
+                     place, r->from->common.name, wanted, list + 1);
 }
 
 enum err references_open(struct references *r, const struct scene *scene, int n,
-                         const char *const *header, struct arena *a, struct diag *d)
+                         const struct probe_file *files, struct arena *a, struct diag *d)
 {
-    r->n = scene->n_reference;
+    *r = (struct references){.n = scene->n_reference};
     r->item = arena_alloc(a, (size_t)r->n, sizeof *r->item, "references", d);
     if (!r->item) return ERR_MEMORY;
     for (int k = 0; k < r->n; k++) {
         r->item[k] = (struct reference){.from = &scene->reference[k]};
-        TRY(find_column(&r->item[k], scene, n, header, d));
+        TRY(find_column(&r->item[k], scene, n, files, d));
         if (*scene->reference[k].file) TRY(read_file(&r->item[k], scene, a, d));
     }
     return ERR_OK;
@@ -170,11 +147,11 @@ static void reference_curve(const struct reference *r, const struct curve *curve
     }
 }
 
-static void compare(const struct reference *r, const struct curve *curve, struct curve *expected,
-                    struct score *c)
+static void compare(struct reference *r, const struct curve *curve, struct curve *expected)
 {
     const double from = r->n > 1 ? max2(r->from->from, r->t[0]) : r->from->from;
     const double until = r->n > 1 ? min2(r->from->until, r->t[r->n - 1]) : r->from->until;
+    struct score *const c = &r->score;
     *c = (struct score){0};
     reference_curve(r, curve, from, until, expected);
     find_peak(curve, from, until, &c->peak, &c->peak_time);
@@ -191,71 +168,63 @@ static void compare(const struct reference *r, const struct curve *curve, struct
     c->rms = sqrt(c->rms);
 }
 
-enum err references_score(const struct references *r, int file, const char *probes_csv,
-                          struct score *score, struct diag *d)
+enum err reference_score(struct reference *r, const char *probes_csv, struct diag *d)
 {
     char *csv;
-    size_t size;
-    bool any = false;
-    for (int k = 0; k < r->n; k++) any |= r->item[k].file == file;
-    if (!any) return ERR_OK;
+    size_t size, rows = (size_t)r->n + 1;
     TRY(file_read(probes_csv, &csv, &size, d));
-    size_t lines = 1, rows;
-    for (const char *at = csv; *at; at = csv_next_line(at)) lines++;
-    rows = lines;
-    for (int k = 0; k < r->n; k++) rows = rows > (size_t)r->item[k].n ? rows : (size_t)r->item[k].n;
+    for (const char *at = csv; *at; at = csv_next_line(at)) rows++;
     double *const numbers = malloc(4 * rows * sizeof *numbers);
-    if (!numbers) {
-        free(csv);
-        return diag_fail(d, ERR_MEMORY, "%s: no memory to compare it with its references",
-                         probes_csv);
-    }
-    struct curve curve = {0, numbers, numbers + rows};
-    struct curve expected = {0, numbers + 2 * rows, numbers + 3 * rows};
-    for (int k = 0; k < r->n; k++) {
-        if (r->item[k].file != file) continue;
-        read_curve(&curve, csv, r->item[k].column);
-        compare(&r->item[k], &curve, &expected, &score[k]);
+    if (numbers) {
+        struct curve curve = {0, numbers, numbers + rows};
+        struct curve expected = {0, numbers + 2 * rows, numbers + 3 * rows};
+        read_curve(&curve, csv, r->column);
+        compare(r, &curve, &expected);
     }
     free(numbers);
     free(csv);
-    return ERR_OK;
+    return numbers ? ERR_OK
+                   : diag_fail(d, ERR_MEMORY, "%s: no memory to compare it with its references",
+                               probes_csv);
 }
 
 /* --- results --- */
 
-static double known(const struct score *c, double value)
-{
-    return c->points > 0 ? value : (double)NAN;
-}
-
-void references_write(struct json *j, const struct references *r, const struct score *score)
+void references_write(struct json *j, const struct references *r)
 {
     json_open(j, "references", '{');
     for (int k = 0; k < r->n; k++) {
         const struct scene_reference *const from = r->item[k].from;
-        const struct score *const c = &score[k];
+        const struct score *const c = &r->item[k].score;
         json_open(j, from->common.name, '{');
         json_text(j, "probe", from->probe);
         json_text(j, "label", from->label);
+        const struct {
+            const char *key;
+            double value;
+        } result[] = {
+            {"rms", c->rms},
+            {"rms_relative", c->scale > 0 ? c->rms / c->scale : (double)NAN},
+            {"largest", c->largest},
+            {"mean", c->mean},
+            {"peak", c->peak},
+            {"peak_time", c->peak_time},
+            {"peak_reference", c->peak_reference},
+            {"peak_time_reference", c->peak_time_reference},
+            {"peak_error", c->peak - c->peak_reference},
+            {"peak_time_error", c->peak_time - c->peak_time_reference},
+        };
         json_integer(j, "points", c->points);
-        json_number(j, "rms", known(c, c->rms));
-        json_number(j, "rms_relative", known(c, c->scale > 0 ? c->rms / c->scale : (double)NAN));
-        json_number(j, "largest", known(c, c->largest));
-        json_number(j, "mean", known(c, c->mean));
-        json_number(j, "peak", known(c, c->peak));
-        json_number(j, "peak_time", known(c, c->peak_time));
-        json_number(j, "peak_reference", known(c, c->peak_reference));
-        json_number(j, "peak_time_reference", known(c, c->peak_time_reference));
-        json_number(j, "peak_error", known(c, c->peak - c->peak_reference));
-        json_number(j, "peak_time_error", known(c, c->peak_time - c->peak_time_reference));
+        for (size_t i = 0; i < COUNT_OF(result); i++)
+            json_number(j, result[i].key, c->points > 0 ? result[i].value : (double)NAN);
         json_close(j, '}');
     }
     json_close(j, '}');
 }
 
-void reference_line(const struct reference *r, const struct score *c, char *text, size_t size)
+void reference_line(const struct reference *r, char *text, size_t size)
 {
+    const struct score *const c = &r->score;
     const char *const name = r->from->label[0] ? r->from->label : r->from->common.name;
     const double percent = c->scale > 0 ? 100 / c->scale : (double)NAN;
     if (c->points == 0)

@@ -4,23 +4,10 @@
 #define SPHFSI_OUTPUT_REFERENCE_H
 
 #include "output/json.h"
-#include "case/scene.h"
-
-/* One [reference] section. */
-struct reference {
-    const struct scene_reference *from;
-    int file, column;  /* of probes.csv, or of another file of probes */
-    int n;             /* rows of the file, in the order of time; 1: constant; 0: a formula */
-    double *t, *value; /* [n] */
-};
-
-struct references {
-    int n;
-    struct reference *item;
-};
+#include "output/probes.h"
 
 /* Deviation of a probe from a reference, in units of the column. A peak is the first local extremum
- * within 2 % of the largest magnitude; NAN: none. */
+ * within 0.5 % of the largest magnitude; NAN: none. */
 struct score {
     int points;                /* compared; 0: the times of run and reference do not overlap */
     double rms, largest, mean; /* of probe - reference; largest: of its magnitude */
@@ -30,22 +17,38 @@ struct score {
     double scale; /* largest magnitude of the reference */
 };
 
+/* One [reference] section. */
+struct reference {
+    const struct scene_reference *from;
+    int file, column;  /* of probes.csv, or of another file of probes */
+    int n;             /* rows of the file, in the order of time; 1: constant; 0: a formula */
+    double *t, *value; /* [n] */
+    struct score score;
+};
+
+struct references {
+    int n;
+    struct reference *item;
+    bool scored;
+};
+
 /* Reads the files of the scene's references, and finds the column of each in the headers of the n
  * files of probes. ERR_INPUT: a file is missing or malformed, or no such column exists. The arena
  * owns the memory. */
 enum err references_open(struct references *r, const struct scene *scene, int n,
-                         const char *const *header, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+                         const struct probe_file *files, struct arena *a, struct diag *d)
+    SPHFSI_CHECKED;
 
-/* Compares one file of probes with the references to its columns. A reference with several rows is
+/* Compares the file of probes that has its column with a reference. One with several rows is
  * compared at its times, the probe being interpolated linearly; a constant or a formula at the
  * times of the probe. */
-enum err references_score(const struct references *r, int file, const char *probes_csv,
-                          struct score *score, struct diag *d) SPHFSI_CHECKED;
+enum err reference_score(struct reference *r, const char *probes_csv, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Writes the scores as an object, by name. */
-void references_write(struct json *j, const struct references *r, const struct score *score);
+void references_write(struct json *j, const struct references *r);
 
 /* Writes one line for the user. */
-void reference_line(const struct reference *r, const struct score *score, char *text, size_t size);
+void reference_line(const struct reference *r, char *text, size_t size);
 
 #endif

@@ -322,7 +322,7 @@ enum err report_summary(const char *folder, struct simulation *sim, const struct
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(sim));
     json_text(&j, "state_hash", hash);
-    if (r->score) references_write(&j, r->references, r->score);
+    if (r->references->scored) references_write(&j, r->references);
     report_derived(&j, sim->scene);
     report_parameters(&j, sim->scene);
     json_close(&j, '}');

@@ -21,7 +21,6 @@ struct record {
     int64_t start_particle_steps;
     struct ledger first, last; /* at time zero and now */
     const struct references *references;
-    const struct score *score; /* of each reference; NULL: not compared */
 };
 
 /* Writes summary.json to the folder of the run, atomically. */

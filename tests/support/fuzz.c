@@ -147,16 +147,16 @@ int fuzz_reference(const uint8_t *data, size_t size)
         write_rows("probes.csv", zero ? zero + 1 : data, zero ? size - first - 1 : size);
     static struct scene scene;
     struct references r = {0};
-    struct score score;
     struct diag d = {.code = ERR_OK};
     if (scene.top.dp == 0 && scene_load_text(&scene, text, "/x.cfg", 0, NULL, &d)) abort();
     struct arena a = {0};
-    enum err e = references_open(&r, &scene, 1, (const char *const[]){header}, &a, &d);
+    const struct probe_file file = {.header = header};
+    enum err e = references_open(&r, &scene, 1, &file, &a, &d);
     judge(e, &d);
     if (!e) {
-        e = references_score(&r, 0, probes, &score, &d);
+        e = reference_score(r.item, probes, &d);
         judge(e, &d);
-        if (!e && score.points < 0) abort();
+        if (!e && r.item->score.points < 0) abort();
     }
     arena_free(&a);
     return 0;
