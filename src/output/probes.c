@@ -51,51 +51,36 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
          "line. Where it is dry, the pressure is 0"},
 };
 
-/* Moments of the weights about a probe. */
-struct moment {
-    double m00, m10, m01, m20, m11, m02;
-};
-
 /* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;
  * this one is smooth and vanishes at the reach. */
 static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
 
-/* Particles of the body within `reach` of the probe; `particle` may be NULL to count only. */
+/* Particles of the body within `reach` of the probe, and the distance of the nearest of all;
+ * `particle` may be NULL to count only. */
 static int find_near(const struct particles *particles, int body, const double at[2], double reach,
-                     int32_t *particle)
+                     int32_t *particle, double *nearest)
 {
     int n = 0;
+    double least = HUGE_VAL;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->body[i] != body) continue;
-        if (square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]) >= square(reach))
-            continue;
+        const double r2 = square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]);
+        least = min2(least, r2);
+        if (r2 >= square(reach)) continue;
         if (particle) particle[n] = (int32_t)i;
         n++;
     }
+    *nearest = sqrt(least);
     return n;
 }
 
-static double nearest_distance(const struct particles *particles, int body, const double at[2])
+/* Place of the k-th particle from the probe in units of the reach, and its weight. */
+static double offset(const struct probe *pr, const struct particles *particles, int k, double reach,
+                     double *x, double *y)
 {
-    double best = (double)INFINITY;
-    for (int64_t i = 0; i < particles->n; i++)
-        if (particles->body[i] == body)
-            best = min2(best, square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]));
-    return sqrt(best);
-}
-
-static struct moment moments(const struct probe *pr, const struct particles *particles,
-                             double reach)
-{
-    struct moment m = {0};
-    for (int k = 0; k < pr->n; k++) {
-        const double x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
-        const double y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
-        const double w = weight_at(x * x + y * y);
-        m.m00 += w, m.m10 += w * x, m.m01 += w * y;
-        m.m20 += w * x * x, m.m11 += w * x * y, m.m02 += w * y * y;
-    }
-    return m;
+    *x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
+    *y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
+    return weight_at(*x * *x + *y * *y);
 }
 
 /* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of
@@ -103,17 +88,20 @@ static struct moment moments(const struct probe *pr, const struct particles *par
  * mean. */
 static void weigh(struct probe *pr, const struct particles *particles, double reach)
 {
-    const struct moment m = moments(pr, particles, reach);
-    const double c00 = m.m20 * m.m02 - m.m11 * m.m11;
-    const double c10 = m.m11 * m.m01 - m.m10 * m.m02;
-    const double c01 = m.m10 * m.m11 - m.m20 * m.m01;
-    const double det = m.m00 * c00 + m.m10 * c10 + m.m01 * c01;
-    const bool collinear = !(det > 1e-9 * m.m00 * m.m00 * m.m00);
+    double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, x, y;
     for (int k = 0; k < pr->n; k++) {
-        const double x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
-        const double y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
-        const double w = weight_at(x * x + y * y);
-        pr->weight[k] = collinear ? w / m.m00 : w * (c00 + c10 * x + c01 * y) / det;
+        const double w = offset(pr, particles, k, reach, &x, &y);
+        m00 += w, m10 += w * x, m01 += w * y;
+        m20 += w * x * x, m11 += w * x * y, m02 += w * y * y;
+    }
+    const double c00 = m20 * m02 - m11 * m11;
+    const double c10 = m11 * m01 - m10 * m02;
+    const double c01 = m10 * m11 - m20 * m01;
+    const double det = m00 * c00 + m10 * c10 + m01 * c01;
+    const bool collinear = !(det > 1e-9 * m00 * m00 * m00);
+    for (int k = 0; k < pr->n; k++) {
+        const double w = offset(pr, particles, k, reach, &x, &y);
+        pr->weight[k] = collinear ? w / m00 : w * (c00 + c10 * x + c01 * y) / det;
     }
 }
 
@@ -125,7 +113,8 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     const struct particles *particles = &sim->kind[KIND_SOLID];
     const char *const name = sim->scene->solid[body].common.name;
     const double h = scene_solid_h(sim->scene, body), reach = 2 * h;
-    const double distance = nearest_distance(particles, body, pr->point);
+    double distance;
+    pr->n = find_near(particles, body, pr->point, reach, NULL, &distance);
     char place[LOCATION_TEXT];
     scene_location(sim->scene, sp->common.line, place);
     if (!(distance < h))
@@ -133,11 +122,10 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
                          "%s: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
                          "[solid %s]; move it to h = %.3g m or less",
                          place, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
-    pr->n = find_near(particles, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);
     if (!pr->particle || !pr->weight) return ERR_MEMORY;
-    find_near(particles, body, pr->point, reach, pr->particle);
+    find_near(particles, body, pr->point, reach, pr->particle, &distance);
     weigh(pr, particles, reach);
     return ERR_OK;
 }
@@ -170,15 +158,11 @@ static enum err find_bodies(struct probe *pr, const struct scene *scene, const c
                             struct arena *a, struct diag *d)
 {
     char name[SCENE_TEXT];
-    scene_listed(list, 0, name);
-    const struct probe_body first = find_body(scene, name);
-    pr->kind = first.kind;
-    pr->body = first.body;
-    while (scene_listed(list, 1 + pr->n_more, name)) pr->n_more++;
-    pr->more = arena_alloc(a, (size_t)pr->n_more, sizeof *pr->more, "probe", d);
-    if (!pr->more) return ERR_MEMORY;
-    for (int k = 0; k < pr->n_more && scene_listed(list, 1 + k, name); k++)
-        pr->more[k] = find_body(scene, name);
+    while (scene_listed(list, pr->n_bodies, name)) pr->n_bodies++;
+    pr->bodies = arena_alloc(a, (size_t)pr->n_bodies, sizeof *pr->bodies, "probe", d);
+    if (!pr->bodies) return ERR_MEMORY;
+    for (int k = 0; k < pr->n_bodies && scene_listed(list, k, name); k++)
+        pr->bodies[k] = find_body(scene, name);
     return ERR_OK;
 }
 
@@ -201,13 +185,13 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
     *pr = (struct probe){.quantity = sp->quantity,
                          .target = scene_probe_target(sp),
                          .direction = sp->direction,
-                         .columns = quantity_columns(sp->quantity)};
+                         .columns = quantity_columns(sp->quantity),
+                         .average = sp->average,
+                         .motion = -1,
+                         .kind = KIND_SOLID,
+                         .body = scene_find_solid(sim->scene, sp->body)};
     memcpy(pr->point, sp->point, sizeof pr->point);
     memcpy(pr->to, sp->to, sizeof pr->to);
-    pr->average = sp->average;
-    pr->motion = -1;
-    pr->kind = KIND_SOLID;
-    pr->body = scene_find_solid(sim->scene, sp->body);
     if (pr->target == TARGET_SOLID && pr->body < 0) {
         pr->kind = KIND_WALL;
         pr->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
@@ -335,28 +319,11 @@ static void add_forces(const struct probe *pr, const struct particles *particles
 
 static void force(const struct probe *pr, const struct simulation *sim, double out[3])
 {
-    const struct particles *particles = &sim->kind[pr->kind];
     out[0] = out[1] = out[2] = 0;
-    add_forces(pr, particles, pr->body, particles->fx, particles->fy, out);
-    for (int k = 0; k < pr->n_more; k++) {
-        particles = &sim->kind[pr->more[k].kind];
-        add_forces(pr, particles, pr->more[k].body, particles->fx, particles->fy, out);
+    for (int k = 0; k < pr->n_bodies; k++) {
+        const struct particles *const particles = &sim->kind[pr->bodies[k].kind];
+        add_forces(pr, particles, pr->bodies[k].body, particles->fx, particles->fy, out);
     }
-}
-
-static void acceleration(const struct probe *pr, struct simulation *sim, double out[2])
-{
-    const struct solid_forces_now now =
-        solid_forces_now(&sim->solid, &sim->kind[KIND_SOLID], sim->state.time);
-    weighted_sum(pr, now.ax, now.ay, out);
-}
-
-static void reaction(const struct probe *pr, struct simulation *sim, double out[3])
-{
-    struct particles *const particles = &sim->kind[KIND_SOLID];
-    const struct solid_forces_now now = solid_forces_now(&sim->solid, particles, sim->state.time);
-    out[0] = out[1] = out[2] = 0;
-    add_forces(pr, particles, pr->body, now.held_x, now.held_y, out);
 }
 
 /* T-75: the particles of a body have equal masses. Pose and its rate. */
@@ -449,39 +416,35 @@ static void surface_pressure(const struct probe *pr, const struct simulation *si
     fluid_pressure_on(sim, from, to, out);
 }
 
-static void fluid_velocity(const struct probe *pr, const struct simulation *sim, double out[2])
-{
-    double x[2];
-    place(pr, sim, x);
-    const struct sample at = fluid_sample(sim, x[0], x[1]);
-    out[0] = at.vx;
-    out[1] = at.vy;
-}
-
-static void velocity(const struct probe *pr, const struct simulation *sim, double out[2])
-{
-    if (pr->target == TARGET_SOLID_POINT)
-        weighted_sum(pr, sim->kind[KIND_SOLID].vx, sim->kind[KIND_SOLID].vy, out);
-    else
-        fluid_velocity(pr, sim, out);
-}
-
-static void displacement(const struct probe *pr, const struct particles *solid, double out[2],
-                         double rate[2])
-{
-    weighted_sum(pr, solid->ux, solid->uy, out);
-    weighted_sum(pr, solid->vx, solid->vy, rate);
-}
-
 /* Values, and their rates where these are known. */
 static void values(const struct probe *pr, struct simulation *sim, double *row, double *rate)
 {
-    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct solid_forces_now now;
     double at[2] = {0};
     if (pr->target == TARGET_FLUID_POINT) place(pr, sim, at);
     switch ((enum probe_quantity)pr->quantity) {
-    case PROBE_DISPLACEMENT: displacement(pr, solid, row, rate); break;
-    case PROBE_VELOCITY: velocity(pr, sim, row); break;
+    case PROBE_DISPLACEMENT:
+        weighted_sum(pr, solid->ux, solid->uy, row);
+        weighted_sum(pr, solid->vx, solid->vy, rate);
+        break;
+    case PROBE_VELOCITY:
+        if (pr->target == TARGET_SOLID_POINT) {
+            weighted_sum(pr, solid->vx, solid->vy, row);
+        } else {
+            const struct sample here = fluid_sample(sim, at[0], at[1]);
+            row[0] = here.vx, row[1] = here.vy;
+        }
+        break;
+    case PROBE_ACCELERATION:
+        now = solid_forces_now(&sim->solid, solid, sim->state.time);
+        weighted_sum(pr, now.ax, now.ay, row);
+        break;
+    case PROBE_REACTION:
+        now = solid_forces_now(&sim->solid, solid, sim->state.time);
+        row[0] = row[1] = row[2] = 0;
+        add_forces(pr, solid, pr->body, now.held_x, now.held_y, row);
+        break;
     case PROBE_PRESSURE: *row = fluid_pressure_at(sim, at[0], at[1]); break;
     case PROBE_STRESS: stress(pr, sim, row); break;
     case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
@@ -490,9 +453,7 @@ static void values(const struct probe *pr, struct simulation *sim, double *row, 
     case PROBE_ENERGY: energy(pr, sim, row); break;
     case PROBE_FLUX: *row = fluid_flux(sim, pr->point, pr->to); break;
     case PROBE_STRAIN: strain(pr, sim, row); break;
-    case PROBE_ACCELERATION: acceleration(pr, sim, row); break;
     case PROBE_POSE: (pr->kind == KIND_WALL ? rigid_pose : pose)(pr, sim, row, rate); break;
-    case PROBE_REACTION: reaction(pr, sim, row); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(pr, sim, row); break;
     case PROBE_QUANTITIES: break;
     }

@@ -32,10 +32,10 @@ struct probe {
     enum probe_target target;
     int columns, file, column; /* `column`: its first in the file */
     int direction;             /* enum probe_direction */
-    enum kind kind;            /* of the body */
-    int body;                  /* index of its section, the first if there are several; -1: none */
-    int n_more;                /* further bodies, of a force */
-    struct probe_body *more;
+    enum kind kind;            /* of the body: KIND_WALL of a rigid one */
+    int body;                  /* its section among the solids, or rigid bodies; -1: none */
+    int n_bodies;              /* of a force */
+    struct probe_body *bodies;
     int motion;              /* that carries the point of a probe on a wall; -1: none */
     double point[2];         /* m, in the initial configuration */
     double to[2];            /* m */

@@ -373,10 +373,11 @@ static void force_on_three_bodies(void)
               "[probe B]\nquantity = force\nbody = gate, one, two\npoint = 0.1, 0\n",
               NULL);
     const struct probe *const all = &probes.probe[probes.n - 1];
-    TEST_ASSERT_EQUAL_INT(2, all->n_more);
+    TEST_ASSERT_EQUAL_INT(3, all->n_bodies);
     for (int k = 0; k < 2; k++) {
-        TEST_ASSERT_EQUAL_INT(KIND_WALL, all->more[k].kind);
-        TEST_ASSERT_EQUAL_STRING(k ? "two" : "one", rig.scene.wall[all->more[k].body].common.name);
+        TEST_ASSERT_EQUAL_INT(KIND_WALL, all->bodies[1 + k].kind);
+        TEST_ASSERT_EQUAL_STRING(k ? "two" : "one",
+                                 rig.scene.wall[all->bodies[1 + k].body].common.name);
     }
 }
 
