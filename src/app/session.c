@@ -4,7 +4,7 @@
 #include "case/params.h"
 #include "check/check.h"
 #include "geometry/load.h"
-#include "output/due.h"
+#include "output/rows.h"
 #include "time/timestep.h"
 
 #include <math.h>

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/rows.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "time/energy.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 static const char ledger_header[] =
 #define LEDGER(name, unit, meaning) "," #name "_" unit
@@ -12,25 +14,35 @@ static const char ledger_header[] =
 #undef LEDGER
     ;
 
-/* --- states --- */
+/* --- times of outputs --- */
 
-static void read_ledger(struct simulation *sim, double *row)
+double due_round(double time)
 {
-    const struct ledger ledger = simulation_ledger(sim);
-    const double all[] = {
-#define LEDGER(name, unit, meaning) ledger.name,
-        LEDGER_COLUMNS(LEDGER)
-#undef LEDGER
-    };
-    memcpy(row, all, sizeof all);
+    char text[32];
+    snprintf(text, sizeof text, "%.12g", time);
+    return strtod(text, NULL);
 }
+
+double due_time(const struct due *u)
+{
+    return u->interval > 0 ? due_round((double)u->k * u->interval) : (double)INFINITY;
+}
+
+void due_pass(struct due *u, double time)
+{
+    const int64_t near = u->interval > 0 ? (int64_t)(time / u->interval) : 0;
+    if (near > u->k) u->k = near;
+    while (due_time(u) <= time) u->k++;
+}
+
+/* --- states --- */
 
 static void read_state(const struct row_files *r, struct rows *f, struct simulation *sim,
                        bool whole)
 {
     f->whole = whole;
     if (f->file < 0)
-        read_ledger(sim, f->now);
+        *(struct ledger *)(void *)f->now = simulation_ledger(sim);
     else
         probes_sample(r->probes, sim, f->file, !whole, f->now, f->now_rate);
 }
@@ -242,10 +254,7 @@ enum err rows_resume(struct row_files *r, const char *folder, double time, struc
         due_pass(&f->due, f->before[0] < 0 ? time : max2(last, f->before[0]));
         f->next = due_time(&f->due);
     }
-    int k = 0;
-#define LEDGER(name, unit, meaning) first->name = row[k++];
-    LEDGER_COLUMNS(LEDGER)
-#undef LEDGER
+    memcpy(first, row, sizeof *first);
     return ERR_OK;
 }
 

@@ -4,9 +4,25 @@
 #ifndef SPHFSI_OUTPUT_ROWS_H
 #define SPHFSI_OUTPUT_ROWS_H
 
-#include "output/due.h"
 #include "output/probes.h"
 #include "output/series.h"
+
+/* --- times of outputs: the multiples of an interval --- */
+
+/* Rounds a time to 12 digits, so that the times k * interval of several outputs are equal where
+ * they should be and do not differ by round-off. */
+double due_round(double time);
+
+struct due {
+    double interval; /* s; 0: never */
+    int64_t k;       /* of the next time */
+};
+
+double due_time(const struct due *u);
+/* Moves on to the first time after `time`. */
+void due_pass(struct due *u, double time);
+
+/* --- rows --- */
 
 /* The rows of a file. Before the last state and at it: the columns, of which the first is the time,
  * s (-1: not read), and their rates (NAN: not known). */
