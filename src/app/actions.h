@@ -12,16 +12,14 @@
 /* A run from its case to its files: outputs, restart, requests, failures. */
 enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
 
-/* --- closing.c --- */
+/* --- case_change.c --- */
 
-/* Prints at the end of a run: cost, losses, energy, differences from references. */
-void closing_say(const struct sphfsi_options *o, const struct simulation *sim,
-                 const struct record *r);
-
-/* Prints how a stopped run continues: after a guard from the checkpoint with steps half as long,
- * or, where these would stop it again, what it takes once the case is changed; else a restart. */
-void closing_say_next(const struct sphfsi_options *o, const struct simulation *sim,
-                      const char *checkpoint, bool guard);
+/* Compares two effective cases line by line: the checkpoint's, `old`, and the present one. A
+ * restart may change end_time and output. A fork may also change physics, but not what the state
+ * depends on: particles, masses, sound speed, kernel, integrator. ERR_INPUT names the first line
+ * that must not differ. */
+enum err case_change_check(const char *old, const char *now, bool fork, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* --- explain.c --- */
 
@@ -65,8 +63,6 @@ void manual_example(const struct param *param, char *text, size_t size);
 /* A commented case as a template, or NULL. manual_template_name: the k-th name, NULL at the end. */
 const char *manual_template(const char *name);
 const char *manual_template_name(int k);
-
-/* --- citations.c --- */
 
 /* Prints the publications of the methods that a scene uses. */
 void manual_cite(const struct scene *scene, effect_set effects, const struct sphfsi_options *o);

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a simulation that the calling program steps. */
-#include "app/call.h"
+#include "app/session.h"
 #include "output/rows.h"
 #include "time/relax.h"
-#include "app/session.h"
 #include "check/check.h"
 #include "output/point_data.h"
 #include "time/guards.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a whole case. */
-#include "app/call.h"
 #include "app/actions.h"
 #include "base/files.h"
 #include "case/params.h"

@@ -1,113 +1,88 @@
-/* SPDX-License-Identifier: MIT */
-#include "app/case_change.h"
+/* SPDX-License-Identifier: MIT
+ * Which changes of a case a restart or a fork accepts. */
+#include "app/actions.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { SECTION_TEXT = 128 };
-
-/* A position in the text of an effective case: the current line and its section. */
-struct place {
-    const char *next, *line;
+/* A line of an effective case, and the section that it is in. */
+struct line {
+    const char *text, *next;
     int length;
-    char section[SECTION_TEXT];
-    bool (*matters)(const struct place *p);
+    char section[128];
 };
 
-static bool in_section(const struct place *p, const char *word)
+static bool is_word(const char *text, const char *word, const char *ends)
 {
     const size_t n = strlen(word);
-    return p->section[0] == '[' && strncmp(p->section + 1, word, n) == 0 &&
-           (p->section[n + 1] == ']' || p->section[n + 1] == ' ');
+    return strncmp(text, word, n) == 0 && text[n] && strchr(ends, text[n]);
 }
 
-static bool has_key(const struct place *p, const char *key)
+static bool is_one_of(const char *text, const char *const *words, const char *ends)
 {
-    const size_t n = strlen(key);
-    return strncmp(p->line, key, n) == 0 && p->line[n] == ' ';
+    for (; *words; words++)
+        if (is_word(text, *words, ends)) return true;
+    return false;
 }
 
 /* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. */
-static bool matters_to_restart(const struct place *p)
+static bool matters_to_restart(const struct line *line)
 {
-    if (p->length == 0 || p->line[0] == '#') return false;
-    if (!p->section[0]) return !has_key(p, "end_time");
-    return !in_section(p, "output") || has_key(p, "snapshot_fields") ||
-           has_key(p, "snapshot_precision");
+    static const char *const datasets[] = {"snapshot_fields", "snapshot_precision", NULL};
+    if (!line->section[0]) return !is_word(line->text, "end_time", " ");
+    return !is_word(line->section, "[output", "] ") || is_one_of(line->text, datasets, " ");
 }
 
 /* Keys that the state depends on: positions and masses of particles, the kernel, the equation of
  * state, and the fields of the integrator. */
-static bool matters_to_fork(const struct place *p)
+static bool matters_to_fork(const struct line *line)
 {
     static const char *const kept[] = {
         "dp",        "integrator",   "h_over_dp",     "lattice_origin",  "lattice_angle",
         "shape",     "minus",        "clamp",         "density",         "sound_speed",
-        "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge"};
-    static const char *const free_sections[] = {"output", "probe", "reference", "motion"};
-    if (p->length == 0 || p->line[0] == '#') return false;
-    for (size_t k = 0; k < COUNT_OF(free_sections); k++)
-        if (in_section(p, free_sections[k])) return false;
-    if (p->line[0] == '[') return true;
-    for (size_t k = 0; k < COUNT_OF(kept); k++)
-        if (has_key(p, kept[k])) return true;
-    return false;
+        "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge",
+        NULL};
+    static const char *const free_sections[] = {"[output", "[probe", "[reference", "[motion", NULL};
+    if (is_one_of(line->section, free_sections, "] ")) return false;
+    return line->text[0] == '[' || is_one_of(line->text, kept, " ");
 }
 
 /* Moves to the next line that matters; at the end the line is empty. */
-static void next_line(struct place *p)
+static void next_line(struct line *line, bool fork)
 {
+    bool matters;
     do {
-        p->line = p->next;
-        p->length = (int)strcspn(p->line, "\n");
-        p->next += p->length + (p->line[p->length] == '\n');
-        if (p->line[0] == '[') snprintf(p->section, sizeof p->section, "%.*s", p->length, p->line);
-    } while (!p->matters(p) && *p->next);
-    if (!p->matters(p)) p->length = 0;
+        line->text = line->next;
+        line->length = (int)strcspn(line->text, "\n");
+        line->next += line->length + (line->text[line->length] == '\n');
+        if (line->text[0] == '[')
+            snprintf(line->section, sizeof line->section, "%.*s", line->length, line->text);
+        matters = line->length > 0 && line->text[0] != '#' &&
+                  (fork ? matters_to_fork(line) : matters_to_restart(line));
+    } while (!matters && *line->next);
+    if (!matters) line->length = 0;
 }
 
-static int shown(const struct place *p) { return p->length < 200 ? p->length : 200; }
-
-static enum err differs(const struct place *a, const struct place *b, const char *what,
-                        const char *may, struct diag *d)
+enum err case_change_check(const char *old, const char *now, bool fork, struct diag *d)
 {
-    if (has_key(a, "dp") && has_key(b, "dp") && !a->section[0])
+    const char *const what = fork ? "fork" : "restart";
+    struct line a = {.next = old}, b = {.next = now};
+    do {
+        next_line(&a, fork);
+        next_line(&b, fork);
+    } while (a.length > 0 && a.length == b.length && memcmp(a.text, b.text, (size_t)a.length) == 0);
+    if (a.length == 0 && b.length == 0) return ERR_OK;
+    const int shown_a = a.length < 200 ? a.length : 200, shown_b = b.length < 200 ? b.length : 200;
+    if (!a.section[0] && is_word(a.text, "dp", " ") && is_word(b.text, "dp", " "))
         return diag_fail(d, ERR_INPUT,
                          "%s: the checkpoint has '%.*s', but this case '%.*s': the spacing of "
                          "particles cannot change during a run; start a new run with the other dp",
-                         what, shown(a), a->line, shown(b), b->line);
-    return diag_fail(d, ERR_INPUT,
-                     "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
-                     what, a->section[0] ? a->section : "at the top", shown(a), a->line, shown(b),
-                     b->line, may);
-}
-
-static enum err compare(struct place a, struct place b, const char *what, const char *may,
-                        struct diag *d)
-{
-    do {
-        next_line(&a);
-        next_line(&b);
-        if (a.length != b.length || memcmp(a.line, b.line, (size_t)a.length) != 0)
-            return differs(&a, &b, what, may, d);
-    } while (a.length > 0);
-    return ERR_OK;
-}
-
-enum err change_for_restart(const char *old, const char *now, struct diag *d)
-{
-    return compare((struct place){.next = old, .matters = matters_to_restart},
-                   (struct place){.next = now, .matters = matters_to_restart}, "restart",
-                   "only end_time, [output] and the number of threads may change; --fork starts a "
-                   "new run with other physics",
-                   d);
-}
-
-enum err change_for_fork(const char *old, const char *now, struct diag *d)
-{
-    return compare((struct place){.next = old, .matters = matters_to_fork},
-                   (struct place){.next = now, .matters = matters_to_fork}, "fork",
-                   "shapes, densities, sound speed, kernel and integrator must stay; materials, "
-                   "motions, gravity and other numerics may change",
-                   d);
+                         what, shown_a, a.text, shown_b, b.text);
+    return diag_fail(
+        d, ERR_INPUT, "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
+        what, a.section[0] ? a.section : "at the top", shown_a, a.text, shown_b, b.text,
+        fork ? "shapes, densities, sound speed, kernel and integrator must stay; materials, "
+               "motions, gravity and other numerics may change"
+             : "only end_time, [output] and the number of threads may change; --fork starts a "
+               "new run with other physics");
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/actions.h"
 
-#include "app/case_change.h"
 #include "base/run_dir.h"
 #include "check/check.h"
 #include "output/checkpoint.h"
@@ -246,6 +245,64 @@ static enum err advance(struct run *r)
     return ERR_OK;
 }
 
+/* --- end --- */
+
+/* What the user would otherwise have to look up: whether anything got lost. */
+static void say_end(const struct sphfsi_options *o, const struct simulation *sim,
+                    const struct record *r)
+{
+    const int64_t lost = sim->state.lost, left = sim->kind[KIND_FLUID].n;
+    char text[1024];
+    if (sim->state.particle_steps > r->start_particle_steps)
+        session_say(o, "%.3g million particle steps a second", 1e-6 * report_rate(sim, r));
+    if (sim->effects & FX_ENERGY_ACCOUNT)
+        session_say(o, "energy gained: at most %.3g J/m, %.2g %% of the available energy",
+                    sim->state.gain, 100 * sim->state.gain_share);
+    if (sim->effects & FX_FLUID)
+        session_say(o,
+                    "fluid particles lost: %lld; largest number inside walls and solids at the "
+                    "same time: %lld",
+                    (long long)lost, (long long)sim->state.entered);
+    if (lost > 0) {
+        struct diag d = session_diag(o);
+        diag_warn(&d,
+                  "%lld of %lld fluid particles have left the domain: their mass and pressure are "
+                  "missing; a [wall] that holds them or a larger [domain] keeps them",
+                  (long long)lost, (long long)(lost + left));
+    }
+    for (int k = 0; r->references->scored && k < r->references->n; k++) {
+        reference_line(&r->references->item[k], text, sizeof text);
+        session_say(o, "%s", text);
+    }
+}
+
+/* How a stopped run continues: after a guard from the checkpoint with steps half as long, or, where
+ * these would stop it again, what it takes once the case is changed; else a restart. */
+static void say_next(const struct sphfsi_options *o, const struct simulation *sim,
+                     const char *checkpoint, bool guard)
+{
+    const struct scene *const scene = sim->scene;
+    const bool fast = sim->effects & FX_FLUID && scene->given_speed > SPEED_WARNING * scene->c0;
+    double half;
+    const char *const key = timestep_shorter(sim, &half);
+    if (!guard)
+        session_result(o, "to go on: the same command with --restart%s",
+                       o->fork ? " instead of --fork" : "");
+    else if (fast || (sim->state.steps <= 1 && scene->numerics.fixed_step == 0))
+        /* A checkpoint keeps its speed of sound and its state. */
+        session_result(o, "change the case, then start again: the same command with another --out");
+    else if (sim->guard.case_at_fault)
+        session_result(o,
+                       "change the case, then go on: the same command with --fork %s and another "
+                       "--out",
+                       checkpoint);
+    else
+        session_result(o,
+                       "to go on: the same command with --fork %s --set numerics.%s=%.4g and "
+                       "another --out",
+                       checkpoint, key, half);
+}
+
 /* After a failure: saves what can be saved. The message remains that of the failure. */
 static void save_last_state(struct run *r, enum err why)
 {
@@ -266,7 +323,7 @@ static void save_last_state(struct run *r, enum err why)
         session_say(r->options, "last valid state, for a restart: %s; state at the stop: %s",
                     r->checkpoint, r->snapshots.path);
     if (r->checkpoint[0] && (why == ERR_GUARD || why == ERR_INTERRUPT))
-        closing_say_next(r->options, r->s, r->checkpoint, why == ERR_GUARD);
+        say_next(r->options, r->s, r->checkpoint, why == ERR_GUARD);
 }
 
 /* --- start --- */
@@ -361,8 +418,7 @@ static enum err load_checkpoint(struct run *r)
     const struct image_info info = checkpoint_info(&r->image);
     const bool fork = r->options->fork != NULL;
     const char *what = fork ? "fork" : "restart";
-    TRY(fork ? change_for_fork(info.case_text, r->case_text, r->diag)
-             : change_for_restart(info.case_text, r->case_text, r->diag));
+    TRY(case_change_check(info.case_text, r->case_text, fork, r->diag));
     if (strcmp(info.version, SPHFSI_VERSION) != 0)
         diag_warn(r->diag,
                   "%s was written by version %s, but this is %s: results may differ "
@@ -423,7 +479,7 @@ static enum err simulate(struct run *r)
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
-    closing_say(r->options, r->s, &r->record);
+    say_end(r->options, r->s, &r->record);
     if (r->session.scene.n_probe > 0)
         session_say(r->options, "draw it with tools/plot_probes.py %s", r->folder.path);
     return ERR_OK;
