@@ -98,6 +98,15 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
     return array;
 }
 
+void *arena_grow(struct arena *a, void *items, size_t n, size_t size, const char *what,
+                 struct diag *d)
+{
+    if (n & (n - 1)) return items;
+    void *const more = arena_alloc(a, 2 * n + 1, size, what, d);
+    if (more && n) memcpy(more, items, n * size);
+    return more;
+}
+
 void arena_free(struct arena *a)
 {
     while (a->blocks) {

@@ -23,6 +23,10 @@ struct arena {
  * ARENA_MARGIN bytes. */
 void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
     SPHFSI_CHECKED;
+/* The memory of a list of n items with a place for one more: a larger copy if it is full, as it is
+ * at powers of two. The list begins as NULL. */
+void *arena_grow(struct arena *a, void *items, size_t n, size_t size, const char *what,
+                 struct diag *d) SPHFSI_CHECKED;
 void arena_free(struct arena *a);
 
 /* For tests: makes the n-th allocation from now fail (0: the next); negative: none. */

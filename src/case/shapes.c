@@ -179,16 +179,6 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
     return shape->kind == SHAPE_POLYGON ? check_polygon(r, e, shape) : ERR_OK;
 }
 
-/* A list with a place for one more item; NULL: no memory. */
-static void *with_place(struct reader *r, void *items, int n, size_t size)
-{
-    if (n & (n - 1)) return items; /* full at powers of two: double the memory */
-    void *const more =
-        arena_alloc(&r->scene->arena, 2 * (size_t)n + 1, size, "regions of a body", r->diag);
-    if (more && n) memcpy(more, items, (size_t)n * size);
-    return more;
-}
-
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
 {
     const size_t length = strcspn(e->value, " \t:");
@@ -206,7 +196,8 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     struct shape shape = {.kind = kind == arc ? SHAPE_POLYLINE : (enum shape_kind)kind,
                           .line = e->line};
     TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), kind == arc, &shape));
-    list->item = with_place(r, list->item, list->n, sizeof shape);
+    list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof shape,
+                            "regions of a body", r->diag);
     if (!list->item) return ERR_MEMORY;
     list->item[list->n++] = shape;
     return ERR_OK;
@@ -227,7 +218,8 @@ enum err case_hinge(struct reader *r, const struct entry *e, struct hinge_list *
         text.length--;
     }
     TRY(read_point(r, e, text, 2, hinge.at));
-    list->item = with_place(r, list->item, list->n, sizeof hinge);
+    list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof hinge,
+                            "hinges of a body", r->diag);
     if (!list->item) return ERR_MEMORY;
     list->item[list->n++] = hinge;
     return ERR_OK;

@@ -134,7 +134,7 @@ static enum err check_periodic(const struct scene *scene, struct diag *d)
 
 /* --- probes --- */
 
-static enum err check_body_probe(const struct sampler *sampler, const struct scene_probe *probe)
+static enum err check_body_probe(struct sampler *sampler, const struct scene_probe *probe)
 {
     const struct scene *scene = sampler->scene;
     const struct scene_points *p = &scene->points[KIND_SOLID];
@@ -147,12 +147,13 @@ static enum err check_body_probe(const struct sampler *sampler, const struct sce
     /* A corner of a body is sqrt(1/2) dp from its particle's centre. */
     const double dp = scene_solid_dp(scene, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;
-    return fail_at(sampler->diag, scene, probe->common.line,
-                   "[probe %s] point (%g, %g) lies about %.3g m outside of [solid %s]",
-                   probe->common.name, probe->point[0], probe->point[1], outside, probe->body);
+    return geometry_refuse(sampler, probe->common.line,
+                           "[probe %s] point (%g, %g) lies about %.3g m outside of [solid %s]",
+                           probe->common.name, probe->point[0], probe->point[1], outside,
+                           probe->body);
 }
 
-static enum err check_place(const struct sampler *sampler, const struct scene_probe *probe,
+static enum err check_place(struct sampler *sampler, const struct scene_probe *probe,
                             const char *key, const double at[2])
 {
     const struct scene *scene = sampler->scene;
@@ -160,10 +161,11 @@ static enum err check_place(const struct sampler *sampler, const struct scene_pr
     for (int c = 0; c < 2; c++)
         inside &= at[c] >= scene->domain_lower[c] && at[c] <= scene->domain_upper[c];
     if (inside) return ERR_OK;
-    return fail_at(sampler->diag, scene, probe->common.line,
-                   "[probe %s] %s (%g, %g) lies outside of the domain, (%g, %g) to (%g, %g) m",
-                   probe->common.name, key, at[0], at[1], scene->domain_lower[0],
-                   scene->domain_lower[1], scene->domain_upper[0], scene->domain_upper[1]);
+    return geometry_refuse(
+        sampler, probe->common.line,
+        "[probe %s] %s (%g, %g) lies outside of the domain, (%g, %g) to (%g, %g) m",
+        probe->common.name, key, at[0], at[1], scene->domain_lower[0], scene->domain_lower[1],
+        scene->domain_upper[0], scene->domain_upper[1]);
 }
 
 static enum err check_probes(struct sampler *sampler)
@@ -173,18 +175,17 @@ static enum err check_probes(struct sampler *sampler)
         const struct scene_probe *probe = &scene->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (target == TARGET_SOLID_POINT)
-            TRY(geometry_go_on(sampler, check_body_probe(sampler, probe)));
+        if (target == TARGET_SOLID_POINT) TRY(check_body_probe(sampler, probe));
         if (target == TARGET_FLUID_POINT || line)
-            TRY(geometry_go_on(sampler, check_place(sampler, probe, "point", probe->point)));
-        if (line) TRY(geometry_go_on(sampler, check_place(sampler, probe, "to", probe->to)));
+            TRY(check_place(sampler, probe, "point", probe->point));
+        if (line) TRY(check_place(sampler, probe, "to", probe->to));
     }
     return ERR_OK;
 }
 
 /* --- initial values --- */
 
-static enum err check_field(const struct sampler *sampler, const struct scene_expr *field, int kind,
+static enum err check_field(struct sampler *sampler, const struct scene_expr *field, int kind,
                             int body, const struct scene_section_common *common, const char *key)
 {
     const struct scene_points *p = &sampler->scene->points[kind];
@@ -192,9 +193,9 @@ static enum err check_field(const struct sampler *sampler, const struct scene_ex
         for (int64_t k = 0; k < p->n; k++) {
             if (p->body[k] != body || isfinite(scene_expr_at(field->e[c], p->x[k], p->y[k])))
                 continue;
-            return fail_at(sampler->diag, sampler->scene, common->line,
-                           "[%s %s] %s is not finite at (%g, %g) m; change the expression",
-                           kind_names[kind], common->name, key, p->x[k], p->y[k]);
+            return geometry_refuse(sampler, common->line,
+                                   "[%s %s] %s is not finite at (%g, %g) m; change the expression",
+                                   kind_names[kind], common->name, key, p->x[k], p->y[k]);
         }
     }
     return ERR_OK;
@@ -205,14 +206,12 @@ static enum err check_fields(struct sampler *sampler)
     const struct scene *scene = sampler->scene;
     for (int k = 0; k < scene->n_fluid; k++) {
         const struct scene_fluid *f = &scene->fluid[k];
-        TRY(geometry_go_on(sampler, check_field(sampler, &f->velocity, KIND_FLUID, k, &f->common,
-                                                "velocity")));
-        TRY(geometry_go_on(sampler, check_field(sampler, &f->pressure, KIND_FLUID, k, &f->common,
-                                                "pressure")));
+        TRY(check_field(sampler, &f->velocity, KIND_FLUID, k, &f->common, "velocity"));
+        TRY(check_field(sampler, &f->pressure, KIND_FLUID, k, &f->common, "pressure"));
     }
     for (int k = 0; k < scene->n_solid; k++)
-        TRY(geometry_go_on(sampler, check_field(sampler, &scene->solid[k].velocity, KIND_SOLID, k,
-                                                &scene->solid[k].common, "velocity")));
+        TRY(check_field(sampler, &scene->solid[k].velocity, KIND_SOLID, k, &scene->solid[k].common,
+                        "velocity"));
     return ERR_OK;
 }
 

@@ -15,7 +15,7 @@
 static const double same_direction = 1e-6, on_lattice = 1e-6;
 
 /* Sampling lines at right angles to an axis, per spacing, which find the edges along it. */
-enum { LINES_PER_DP = 4, MAX_LINES = 20000, MAX_EDGES = 24 };
+enum { LINES_PER_DP = 4, MAX_LINES = 20000, MAX_EDGES = 24, MAX_CROSSINGS = 1 << 30 };
 
 /* --- direction --- */
 
@@ -183,10 +183,15 @@ static bool goes_on(const struct crossing *before, int n, const struct crossing 
     return false;
 }
 
-/* Adds the crossings of one region along the axis at `angle`; returns only their number if `to` is
- * NULL. */
+/* A list of them. */
+struct crossings {
+    int n;
+    struct crossing *item;
+};
+
+/* Adds the crossings of one region along the axis at `angle`. */
 static enum err region_crossings(struct sampler *sampler, const struct region *region, double angle,
-                                 double dp, bool whole, struct crossing **to, int *n)
+                                 double dp, bool whole, struct crossings *to)
 {
     struct outlines body, minus, clamp = {0};
     TRY(turned_outlines(&body, &region->add, angle, sampler));
@@ -206,47 +211,38 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
     const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
     const double step = (high - low) / lines;
-    double *const buffer = arena_alloc(&sampler->temp, 3 * (size_t)capacity, sizeof *buffer,
-                                       "sampling", sampler->diag);
-    struct crossing *const two_lines = arena_alloc(&sampler->temp, 4 * (size_t)capacity,
-                                                   sizeof *two_lines, "sampling", sampler->diag);
+    double *const buffer = geometry_alloc(sampler, 3 * (size_t)capacity, sizeof *buffer);
+    struct crossing *const two_lines =
+        geometry_alloc(sampler, 4 * (size_t)capacity, sizeof *two_lines);
     if (!buffer || !two_lines) return ERR_MEMORY;
-    int64_t total = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        int before = 0;
-        for (int k = 0; k < lines; k++) {
-            struct crossing *const line = two_lines + (k % 2 ? 2 * capacity : 0),
-                                   *const last = two_lines + (k % 2 ? 0 : 2 * capacity);
-            const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL,
-                                        low + (k + 0.5) * step, dp, buffer, capacity, line);
-            if (pass == 0) total += found;
-            for (int j = 0; pass == 1 && j < found; j++)
-                if (goes_on(last, before, &line[j], dp))
-                    (*to)[(*n)++] = (struct crossing){line[j].at, step, line[j].clamp};
-            before = found;
+    int before = 0;
+    for (int k = 0; k < lines; k++) {
+        struct crossing *const line = two_lines + (k % 2 ? 2 * capacity : 0),
+                               *const last = two_lines + (k % 2 ? 0 : 2 * capacity);
+        const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL, low + (k + 0.5) * step,
+                                    dp, buffer, capacity, line);
+        for (int j = 0; j < found; j++) {
+            if (!goes_on(last, before, &line[j], dp) || to->n == MAX_CROSSINGS) continue;
+            to->item = arena_grow(&sampler->temp, to->item, (size_t)to->n, sizeof *to->item,
+                                  "sampling", sampler->diag);
+            if (!to->item) return ERR_MEMORY;
+            to->item[to->n++] = (struct crossing){line[j].at, step, line[j].clamp};
         }
-        if (pass == 1) break;
-        if (*n + total > INT32_MAX / 2) return ERR_OK;
-        struct crossing *const more = arena_alloc(&sampler->temp, (size_t)*n + (size_t)total + 1,
-                                                  sizeof *more, "sampling", sampler->diag);
-        if (!more) return ERR_MEMORY;
-        if (*n) memcpy(more, *to, (size_t)*n * sizeof *more);
-        *to = more;
+        before = found;
     }
     return ERR_OK;
 }
 
 /* The edges of a group across one axis: of its free part, or of the whole if no part is free. */
 static enum err find_edges(struct sampler *sampler, const struct lattice_group *group, int axis,
-                           struct crossing **edge, int *n)
+                           struct crossings *edges)
 {
     const double angle = group->angle + (axis ? 0.5 * PI : 0);
-    *n = 0;
-    *edge = NULL;
-    for (int whole = 0; whole < 2 && *n == 0; whole++) {
+    *edges = (struct crossings){0};
+    for (int whole = 0; whole < 2 && edges->n == 0; whole++) {
         for (int k = 0; k < group->n; k++)
-            TRY(region_crossings(sampler, group->region[k], angle, group->dp, whole, edge, n));
-        *n = merge_edges(*edge, *n, group->dp);
+            TRY(region_crossings(sampler, group->region[k], angle, group->dp, whole, edges));
+        edges->n = merge_edges(edges->item, edges->n, group->dp);
     }
     return ERR_OK;
 }
@@ -254,30 +250,30 @@ static enum err find_edges(struct sampler *sampler, const struct lattice_group *
 /* --- spacing and origin --- */
 
 /* Mean square of the edges' distances from the lattice lines, in spacings, weighted by length. */
-static double misfit(const struct crossing *edge, int n, double origin, double spacing)
+static double misfit(const struct crossings *edges, double origin, double spacing)
 {
     double sum = 0, weight = 0;
-    for (int k = 0; k < n; k++) {
-        const double cells = (edge[k].at - origin) / spacing;
-        sum += edge[k].weight * square(cells - round(cells));
-        weight += edge[k].weight;
+    for (int k = 0; k < edges->n; k++) {
+        const double cells = (edges->item[k].at - origin) / spacing;
+        sum += edges->item[k].weight * square(cells - round(cells));
+        weight += edges->item[k].weight;
     }
     return weight > 0 ? sum / weight : 0;
 }
 
 /* The line through (count, position) of the edges, by least squares; `origin` and `spacing`
  * determine the lattice line nearest to each. With `fixed` the spacing is constant. */
-static void regress(const struct crossing *edge, int n, bool fixed, double *origin, double *spacing)
+static void regress(const struct crossings *edges, bool fixed, double *origin, double *spacing)
 {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (int k = 0; k < n; k++) {
-        const double count = round((edge[k].at - *origin) / *spacing);
-        const double place = edge[k].at - *origin;
-        w += edge[k].weight;
-        x += edge[k].weight * count;
-        y += edge[k].weight * place;
-        xx += edge[k].weight * count * count;
-        xy += edge[k].weight * count * place;
+    for (int k = 0; k < edges->n; k++) {
+        const double count = round((edges->item[k].at - *origin) / *spacing);
+        const double place = edges->item[k].at - *origin;
+        w += edges->item[k].weight;
+        x += edges->item[k].weight * count;
+        y += edges->item[k].weight * place;
+        xx += edges->item[k].weight * count * count;
+        xy += edges->item[k].weight * count * place;
     }
     const double spread = w * xx - x * x;
     const double found = fixed || spread <= 0 ? *spacing : (w * xy - x * y) / spread;
@@ -287,19 +283,19 @@ static void regress(const struct crossing *edge, int n, bool fixed, double *orig
 
 /* The origin and spacing with the best fit to the edges. Candidates: each edge with dp, and every
  * pair of edges. Among equal fits, the spacing nearest to dp. */
-static void fit_axis(const struct crossing *edge, int n, double dp, bool fixed, double *origin,
+static void fit_axis(const struct crossings *edges, double dp, bool fixed, double *origin,
                      double *spacing)
 {
-    double best = misfit(edge, n, *origin, *spacing);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < 2 * n; j++) {
-            const double apart = fabs(edge[j / 2].at - edge[i].at) / dp;
+    double best = misfit(edges, *origin, *spacing);
+    for (int i = 0; i < edges->n; i++) {
+        for (int j = 0; j < 2 * edges->n; j++) {
+            const double apart = fabs(edges->item[j / 2].at - edges->item[i].at) / dp;
             const double count = j % 2 ? floor(apart) : ceil(apart);
             const bool alone = j / 2 == i;
             if (!alone && (fixed || count < 2)) continue;
-            double o = edge[i].at, d = alone ? dp : apart / count * dp;
-            regress(edge, n, alone, &o, &d);
-            const double off = misfit(edge, n, o, d);
+            double o = edges->item[i].at, d = alone ? dp : apart / count * dp;
+            regress(edges, alone, &o, &d);
+            const double off = misfit(edges, o, d);
             const bool better = off < best - 1e-12;
             if (!better && (off > best + 1e-12 || fabs(d - dp) >= fabs(*spacing - dp))) continue;
             best = min2(off, best);
@@ -338,16 +334,15 @@ static enum err fit_solids(struct sampler *sampler, const struct lattice_group *
         const double cells = (corner[c] - common->origin[c]) / group->dp;
         const bool same = group->angle == common->angle && fabs(cells - round(cells)) <= on_lattice;
         l.origin[c] = same ? common->origin[c] : corner[c];
-        struct crossing *edge;
-        int n;
-        TRY(find_edges(sampler, group, c, &edge, &n));
+        struct crossings edges;
+        TRY(find_edges(sampler, group, c, &edges));
         double off = 0;
-        for (int k = 0; k < n; k++) {
-            const double place = (edge[k].at - l.origin[c]) / group->dp;
+        for (int k = 0; k < edges.n; k++) {
+            const double place = (edges.item[k].at - l.origin[c]) / group->dp;
             off = max2(off, fabs(place - round(place)));
         }
         if (off > on_lattice) {
-            fit_axis(edge, n, group->dp, false, &l.origin[c], &l.spacing[c]);
+            fit_axis(&edges, group->dp, false, &l.origin[c], &l.spacing[c]);
             l.fitted = true;
         } else
             shifted |= !same;
@@ -367,8 +362,7 @@ static enum err group_direction(struct sampler *sampler, struct lattice_group *g
     for (int k = 0; k < group->n; k++)
         for (int j = 0; j < group->region[k]->list->n; j++)
             most += (size_t)group->region[k]->list->item[j].n;
-    struct direction *all =
-        arena_alloc(&sampler->temp, most, sizeof *all, "sampling", sampler->diag);
+    struct direction *all = geometry_alloc(sampler, most, sizeof *all);
     if (!all) return ERR_MEMORY;
     int n = 0;
     for (int k = 0; k < group->n; k++) n += add_directions(group->region[k]->list, all + n);
@@ -404,10 +398,9 @@ static enum err common_lattice(struct sampler *sampler, struct region **list)
     lattice_place(l, at[0], at[1], l->origin);
     if (group.angle != 0 && !scene_given(scene, SECTION_numerics, 0, "lattice_origin")) {
         for (int axis = 0; axis < 2; axis++) {
-            struct crossing *edge;
-            int n;
-            TRY(find_edges(sampler, &group, axis, &edge, &n));
-            fit_axis(edge, n, group.dp, true, &l->origin[axis], &l->spacing[axis]);
+            struct crossings edges;
+            TRY(find_edges(sampler, &group, axis, &edges));
+            fit_axis(&edges, group.dp, true, &l->origin[axis], &l->spacing[axis]);
         }
     }
     for (int k = 0; k < group.n; k++) list[k]->lattice = *l;
@@ -446,9 +439,8 @@ enum err geometry_choose_lattices(struct sampler *sampler)
 {
     struct scene *scene = sampler->scene;
     const size_t n = (size_t)scene->n_solid;
-    struct region **list = arena_alloc(&sampler->temp, (size_t)sampler->n_regions, sizeof *list,
-                                       "sampling", sampler->diag);
-    int *bond = arena_alloc(&sampler->temp, n, sizeof *bond, "sampling", sampler->diag);
+    struct region **list = geometry_alloc(sampler, (size_t)sampler->n_regions, sizeof *list);
+    int *bond = geometry_alloc(sampler, n, sizeof *bond);
     struct scene_lattice *const to =
         arena_alloc(&scene->arena, n, sizeof *scene->solid_lattice, "lattice", sampler->diag);
     if (!list || !bond || !to) return ERR_MEMORY;

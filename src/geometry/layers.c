@@ -35,8 +35,7 @@ static bool along_lattice(const struct shape *shape, const struct region *region
 
 enum err layers_find(struct sampler *sampler, struct region *region)
 {
-    region->layered = arena_alloc(&sampler->temp, (size_t)region->add.n, sizeof *region->layered,
-                                  "walls", sampler->diag);
+    region->layered = geometry_alloc(sampler, (size_t)region->add.n, sizeof *region->layered);
     if (!region->layered) return ERR_MEMORY;
     if (region->kind != KIND_WALL) return ERR_OK;
     const struct shape_list *const minus = &sampler->scene->wall[region->body].minus;
@@ -61,22 +60,12 @@ struct loop {
 
 static int edges_of(const struct loop *o) { return o->open ? o->n - 1 : o->n; }
 
-static double twice_area(const struct loop *o)
-{
-    double sum = 0;
-    for (int k = 0; k < o->n; k++) {
-        const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n], *base = o->pt[0];
-        sum += (a[0] - base[0]) * (b[1] - base[1]) - (b[0] - base[0]) * (a[1] - base[1]);
-    }
-    return sum;
-}
-
 static enum err loop_of_circle(const struct outline *o, double dp, struct loop *to,
                                struct sampler *sampler)
 {
     const double wanted = 2 * PI * o->radius / dp * PARTS;
     to->n = wanted < 32 ? 32 : wanted > 1e6 ? 1000000 : (int)wanted;
-    to->pt = arena_alloc(&sampler->temp, (size_t)to->n, sizeof *to->pt, "walls", sampler->diag);
+    to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
     if (!to->pt) return ERR_MEMORY;
     for (int k = 0; k < to->n; k++) {
         to->pt[k][0] = o->centre[0] + o->radius * elementary_cos(2 * PI * k / to->n);
@@ -104,7 +93,7 @@ static enum err make_loop(const struct outlines *o, int first, int end, bool pol
     if (piece->n == 0)
         TRY(loop_of_circle(piece, dp, to, sampler));
     else {
-        to->pt = arena_alloc(&sampler->temp, (size_t)to->n, sizeof *to->pt, "walls", sampler->diag);
+        to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
         if (!to->pt) return ERR_MEMORY;
         for (int k = 0; k < to->n; k++)
             memcpy(to->pt[k],
@@ -113,8 +102,8 @@ static enum err make_loop(const struct outlines *o, int first, int end, bool pol
                                    : piece[k - 1].pt[1],
                    sizeof *to->pt);
     }
-    const struct loop quad = {.n = piece->n, .pt = piece->pt};
-    if ((twice_area(polyline ? &quad : to) > 0) != wall_inside) turn_round(to);
+    const double area = polyline ? polygon_area(piece->n, piece->pt) : polygon_area(to->n, to->pt);
+    if ((area > 0) != wall_inside) turn_round(to);
     return ERR_OK;
 }
 
@@ -185,7 +174,7 @@ static enum err add_faces(struct layers *l, struct face_set *set, const struct l
 struct trace {
     const struct face_set *set;
     double depth;
-    int64_t n, capacity;
+    int64_t n;
     double (*pt)[2];
 };
 
@@ -194,15 +183,8 @@ static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
     if (point_grid_any(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
         geometry_piece_at(l->region, at[0], at[1]) < 0 || on_the_lattice(l, at[0], at[1]))
         return ERR_OK;
-    if (t->n == t->capacity) {
-        const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
-        double(*pt)[2] =
-            arena_alloc(&l->g->temp, (size_t)capacity, sizeof *pt, "walls", l->g->diag);
-        if (!pt) return ERR_MEMORY;
-        if (t->n) memcpy(pt, t->pt, (size_t)t->n * sizeof *pt);
-        t->pt = pt;
-        t->capacity = capacity;
-    }
+    t->pt = arena_grow(&l->g->temp, t->pt, (size_t)t->n, sizeof *t->pt, "walls", l->g->diag);
+    if (!t->pt) return ERR_MEMORY;
     memcpy(t->pt[t->n++], at, 2 * sizeof *at);
     return ERR_OK;
 }
@@ -333,8 +315,7 @@ enum err layers_create(struct layers *l, struct sampler *sampler, const struct r
 {
     const double dp = region->lattice.dp;
     *l = (struct layers){.g = sampler, .region = region, .dp = dp, .points = {.side = dp}};
-    l->set = arena_alloc(&sampler->temp, (size_t)region->add.n + 1, sizeof *l->set, "walls",
-                         sampler->diag);
+    l->set = geometry_alloc(sampler, (size_t)region->add.n + 1, sizeof *l->set);
     if (!l->set) return ERR_MEMORY;
     l->set[l->n_sets++] =
         (struct face_set){.spacing = dp, .depth = dp * (1 + ceil(2 * sampler->scene->h / dp))};

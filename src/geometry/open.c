@@ -2,11 +2,13 @@
  * Buffers of [inflow] and [outflow] sections: rows of particles behind the line, a spacing
  * apart. */
 #include "geometry/sampling.h"
+#include "base/point_grid.h"
 
 #include "case/case.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
@@ -17,40 +19,6 @@ static enum err refuse(const struct sampler *sampler, const struct scene_open *o
     return fail_at(sampler->diag, sampler->scene, o->common->line,
                    "[%s %s] %s at (%.6g, %.6g) m: %s", o->word, o->common->name, what, x[0], x[1],
                    mend);
-}
-
-/* Fluid around a boundary's buffer. */
-struct around {
-    const struct scene_points *points;
-    int64_t n;
-    int64_t *at;
-};
-
-static enum err find_around(struct sampler *sampler, const struct scene_open *o, struct around *a)
-{
-    const struct scene_points *const p = &sampler->scene->points[KIND_FLUID];
-    const double margin = 2 * sampler->scene->top.dp;
-    *a = (struct around){.points = p};
-    a->at =
-        arena_alloc(&sampler->temp, (size_t)p->n, sizeof *a->at, "open boundaries", sampler->diag);
-    if (!a->at) return ERR_MEMORY;
-    for (int64_t k = 0; k < p->n; k++) {
-        double in, along;
-        scene_open_place(o, (const double[]){p->x[k], p->y[k]}, &in, &along);
-        if (fabs(in) < o->depth + margin && along > -margin && along < o->length + margin)
-            a->at[a->n++] = k;
-    }
-    return ERR_OK;
-}
-
-/* Whether fluid is nearer to x than a distance. */
-static bool is_near(const struct around *a, const double x[2], double within)
-{
-    for (int64_t k = 0; k < a->n; k++)
-        if (square(a->points->x[a->at[k]] - x[0]) + square(a->points->y[a->at[k]] - x[1]) <
-            square(within))
-            return true;
-    return false;
 }
 
 /* Whether a point lies in a boundary's buffer, and further from its edges than round-off. */
@@ -88,23 +56,26 @@ static bool lattice_point(const struct scene *scene, const struct scene_open *o,
 }
 
 /* Fluid behind the line at the start, and a line without fluid at it. */
-static enum err check_fluid(const struct sampler *sampler, const struct scene_open *o,
-                            const struct around *fluid)
+static enum err check_fluid(struct sampler *sampler, const struct scene_open *o)
 {
+    const struct scene_points *const p = &sampler->scene->points[KIND_FLUID];
     const struct lattice l = lattice_of(sampler->scene, o);
-    for (int64_t k = 0; k < fluid->n; k++) {
-        const int64_t i = fluid->at[k];
-        const double x[2] = {fluid->points->x[i], fluid->points->y[i]};
-        if (fluid->points->open[i] == 0 && in_buffer(sampler->scene, o, x))
+    const double near = NEXT_TO * sampler->scene->top.dp;
+    struct point_grid fluid;
+    TRY(point_grid_create(&fluid, near, p->n, p->x, p->y, &sampler->temp, sampler->diag));
+    for (int64_t k = 0; k < p->n; k++) {
+        const double x[2] = {p->x[k], p->y[k]};
+        if (p->open[k] == 0 && in_buffer(sampler->scene, o, x))
             return refuse(sampler, o, "has fluid behind its line", x,
                           "end the fluid's shape at the line, or change `side`");
+        point_grid_insert(&fluid, k);
     }
     int wet = 0, places = 0;
     double x[2] = {o->from[0], o->from[1]};
     for (int i = 0; i < l.across; i++) {
         if (!lattice_point(sampler->scene, o, &l, i, -1, x)) continue;
         places++;
-        wet += is_near(fluid, x, NEXT_TO * sampler->scene->top.dp);
+        wet += point_grid_any(&fluid, x[0], x[1], near);
     }
     if (places > 0 && 2 * wet >= places) return ERR_OK;
     return refuse(sampler, o, "has no fluid along its line", x,
@@ -140,9 +111,7 @@ static enum err append(struct sampler *sampler, int number, const struct scene_o
     struct scene_points *const p = &scene->points[KIND_FLUID];
     const struct lattice l = lattice_of(scene, o);
     const int64_t before = p->n;
-    struct around fluid;
-    TRY(find_around(sampler, o, &fluid));
-    TRY(check_fluid(sampler, o, &fluid));
+    TRY(check_fluid(sampler, o));
     for (int j = 0; j < l.rows; j++)
         for (int i = 0; i < l.across; i++) {
             double x[2];
@@ -158,16 +127,6 @@ static enum err append(struct sampler *sampler, int number, const struct scene_o
                          : refuse(sampler, o, "is above its level", o->from, "raise `level`");
 }
 
-/* Enlarges a field of the fluid's points. */
-#define GROW(field)                                                                            \
-    do {                                                                                       \
-        __typeof__(*p->field) *const to = arena_alloc(&scene->arena, (size_t)(p->n + more),    \
-                                                      sizeof *to, "particles", sampler->diag); \
-        if (!to) return ERR_MEMORY;                                                            \
-        for (int64_t k = 0; k < p->n; k++) to[k] = p->field ? p->field[k] : 0;                 \
-        p->field = to;                                                                         \
-    } while (0)
-
 enum err geometry_open(struct sampler *sampler)
 {
     struct scene *const scene = sampler->scene;
@@ -182,10 +141,13 @@ enum err geometry_open(struct sampler *sampler)
                           "use a larger dp or a shorter line");
         more += (int64_t)l.across * l.rows;
     }
-    GROW(x);
-    GROW(y);
-    GROW(body);
-    GROW(open);
+    const struct scene_points from = *p;
+    const size_t n = (size_t)from.n;
+    TRY(geometry_points(sampler, KIND_FLUID, from.n + more, true, p));
+    memcpy(p->x, from.x, n * sizeof *p->x);
+    memcpy(p->y, from.y, n * sizeof *p->y);
+    memcpy(p->body, from.body, n * sizeof *p->body);
+    p->n = from.n;
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open o = scene_open_at(scene, k);
         TRY(geometry_go_on(sampler, append(sampler, k, &o)));

@@ -11,6 +11,16 @@
 /* A joint longer than this many thicknesses is too sharp and refused. */
 static const double max_mitre = 4;
 
+double polygon_area(int n, double (*const pt)[2])
+{
+    double twice = 0;
+    for (int k = 0; k < n; k++) {
+        const double *a = pt[k], *b = pt[(k + 1) % n], *base = pt[0];
+        twice += (a[0] - base[0]) * (b[1] - base[1]) - (b[0] - base[0]) * (a[1] - base[1]);
+    }
+    return 0.5 * twice;
+}
+
 static void set_bounds(struct outline *o)
 {
     for (int c = 0; c < 2; c++) {
@@ -176,13 +186,6 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
         }
     }
     return ERR_OK;
-}
-
-int outlines_capacity(const struct outlines *o)
-{
-    int capacity = 2;
-    for (int k = 0; k < o->n; k++) capacity = o->item[k].n > capacity ? o->item[k].n : capacity;
-    return capacity;
 }
 
 static int ascending(const void *a, const void *b)

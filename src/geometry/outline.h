@@ -20,6 +20,9 @@ struct outlines {
     int *shape; /* index of the shape that a piece belongs to */
 };
 
+/* The area of a polygon, positive if its points turn counter-clockwise. */
+double polygon_area(int n, double (*const pt)[2]);
+
 /* Cuts the shapes into pieces: a polyline into one quadrilateral for each segment, with mitred
  * joints, so that neighbours share an edge. */
 enum err outlines_of(struct outlines *o, const struct scene *scene, const struct shape_list *list,
@@ -29,8 +32,6 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
  * returns the count of numbers. `from` has memory for max(n, 2). Neighbours with a common edge
  * neither overlap nor leave a gap: both sides intersect an edge with the same arithmetic. */
 int outline_crossings(const struct outline *o, double y, double *from);
-/* Memory that outline_crossings needs for any piece. */
-int outlines_capacity(const struct outlines *o);
 
 /* Rotates pieces into the axes of a lattice at `angle`; the shapes themselves do not change. */
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)

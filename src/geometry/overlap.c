@@ -139,23 +139,31 @@ static bool is_crowded(const struct point_grid *t, const struct sampler *sampler
     return false;
 }
 
+enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, bool open,
+                         struct scene_points *to)
+{
+    static const char what[] = "particles";
+    struct arena *const a = &sampler->scene->arena;
+    const size_t count = (size_t)n;
+    const bool clamps = kind == KIND_SOLID;
+    *to = (struct scene_points){0};
+    to->x = arena_alloc(a, count, sizeof *to->x, what, sampler->diag);
+    to->y = arena_alloc(a, count, sizeof *to->y, what, sampler->diag);
+    to->body = arena_alloc(a, count, sizeof *to->body, what, sampler->diag);
+    if (clamps) to->clamped = arena_alloc(a, count, sizeof *to->clamped, what, sampler->diag);
+    if (open) to->open = arena_alloc(a, count, sizeof *to->open, what, sampler->diag);
+    const bool all = to->x && to->y && to->body && !to->clamped == !clamps && !to->open == !open;
+    return all ? ERR_OK : ERR_MEMORY;
+}
+
 static enum err store(struct sampler *sampler, const struct samples *samples, const uint8_t *kept,
                       enum kind kind)
 {
-    struct scene *scene = sampler->scene;
-    struct scene_points *to = &scene->points[kind];
-    size_t n = 0;
+    struct scene_points *const to = &sampler->scene->points[kind];
+    int64_t n = 0;
     for (int64_t k = 0; k < samples->n; k++)
         n += kept[k] && sampler->regions[samples->region[k]].kind == kind;
-    *to = (struct scene_points){0};
-    to->x = arena_alloc(&scene->arena, n, sizeof *to->x, "particles", sampler->diag);
-    to->y = arena_alloc(&scene->arena, n, sizeof *to->y, "particles", sampler->diag);
-    to->body = arena_alloc(&scene->arena, n, sizeof *to->body, "particles", sampler->diag);
-    if (!to->x || !to->y || !to->body) return ERR_MEMORY;
-    if (kind == KIND_SOLID) {
-        to->clamped = arena_alloc(&scene->arena, n, 1, "particles", sampler->diag);
-        if (!to->clamped) return ERR_MEMORY;
-    }
+    TRY(geometry_points(sampler, kind, n, false, to));
     for (int64_t k = 0; k < samples->n; k++) {
         const struct region *region = &sampler->regions[samples->region[k]];
         if (!kept[k] || region->kind != kind) continue;
@@ -171,10 +179,8 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
 {
     struct point_grid t;
-    uint8_t *const covered =
-        arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
-    uint8_t *const kept =
-        arena_alloc(&sampler->temp, (size_t)samples->n, 1, "overlaps", sampler->diag);
+    uint8_t *const covered = geometry_alloc(sampler, (size_t)samples->n, 1);
+    uint8_t *const kept = geometry_alloc(sampler, (size_t)samples->n, 1);
     if (!covered || !kept) return ERR_MEMORY;
     TRY(find_overlaps(sampler, samples, covered));
     TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,

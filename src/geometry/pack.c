@@ -129,10 +129,9 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
     TRY(visit_outlines(c, sampler, &region->minus));
     const size_t n = (size_t)c->grid.n + 1;
     const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
-    double *const line =
-        arena_alloc(&sampler->temp, 2 * ends, sizeof *line, "packing", sampler->diag);
-    c->share = arena_alloc(&sampler->temp, n, sizeof *c->share, "packing", sampler->diag);
-    c->middle = arena_alloc(&sampler->temp, n, sizeof *c->middle, "packing", sampler->diag);
+    double *const line = geometry_alloc(sampler, 2 * ends, sizeof *line);
+    c->share = geometry_alloc(sampler, n, sizeof *c->share);
+    c->middle = geometry_alloc(sampler, n, sizeof *c->middle);
     if (!line || !c->share || !c->middle) return ERR_MEMORY;
     for (int64_t k = 0; k < c->grid.n; k++)
         c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]}, c->middle[k],
@@ -263,12 +262,10 @@ static enum err gather(struct packing *packing)
     const struct scene *const scene = sampler->scene;
     size_t n = (size_t)packing->air.n;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)scene->points[kind].n;
-    packing->x = arena_alloc(&packing->g->temp, n, sizeof *packing->x, "packing", sampler->diag);
-    packing->y = arena_alloc(&packing->g->temp, n, sizeof *packing->y, "packing", sampler->diag);
-    packing->volume =
-        arena_alloc(&packing->g->temp, n, sizeof *packing->volume, "packing", sampler->diag);
-    packing->particle =
-        arena_alloc(&packing->g->temp, n, sizeof *packing->particle, "packing", sampler->diag);
+    packing->x = geometry_alloc(packing->g, n, sizeof *packing->x);
+    packing->y = geometry_alloc(packing->g, n, sizeof *packing->y);
+    packing->volume = geometry_alloc(packing->g, n, sizeof *packing->volume);
+    packing->particle = geometry_alloc(packing->g, n, sizeof *packing->particle);
     if (!packing->x || !packing->y || !packing->volume || !packing->particle) return ERR_MEMORY;
     for (int fixed = 0; fixed < 2; fixed++) {
         for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
@@ -320,8 +317,7 @@ static enum err settle(struct packing *packing)
     struct point_grid t;
     TRY(point_grid_create(&t, KERNEL_REACH * h, packing->n, packing->x, packing->y,
                           &packing->g->temp, sampler->diag));
-    double(*move)[2] = arena_alloc(&packing->g->temp, (size_t)packing->n_free + 1, sizeof *move,
-                                   "packing", sampler->diag);
+    double(*move)[2] = geometry_alloc(packing->g, (size_t)packing->n_free + 1, sizeof *move);
     if (!move) return ERR_MEMORY;
     double largest = HUGE_VAL;
     for (int step = 0; step < most_shifts && largest > still * dp; step++) {
@@ -346,8 +342,7 @@ enum err geometry_pack(struct sampler *sampler)
     struct scene *const scene = sampler->scene;
     struct scene_points *const points = &scene->points[KIND_FLUID];
     if (scene->top.scheme != SCHEME_STANDARD || points->n == 0) return ERR_OK;
-    struct cut_cells *const cut =
-        arena_alloc(&sampler->temp, (size_t)scene->n_fluid, sizeof *cut, "packing", sampler->diag);
+    struct cut_cells *const cut = geometry_alloc(sampler, (size_t)scene->n_fluid, sizeof *cut);
     if (!cut) return ERR_MEMORY;
     int64_t most = 0;
     int n_cut = 0;
@@ -361,12 +356,8 @@ enum err geometry_pack(struct sampler *sampler)
     struct packing packing = {.g = sampler,
                               .cells.side = KERNEL_REACH * scene->h / scene->top.dp,
                               .air.side = 1};
-    struct scene_points to = {0};
-    const size_t n = (size_t)(points->n + most);
-    to.x = arena_alloc(&scene->arena, n, sizeof *to.x, "particles", sampler->diag);
-    to.y = arena_alloc(&scene->arena, n, sizeof *to.y, "particles", sampler->diag);
-    to.body = arena_alloc(&scene->arena, n, sizeof *to.body, "particles", sampler->diag);
-    if (!to.x || !to.y || !to.body) return ERR_MEMORY;
+    struct scene_points to;
+    TRY(geometry_points(sampler, KIND_FLUID, points->n + most, false, &to));
     for (int k = 0; k < n_cut; k++) TRY(refill(&packing, &cut[k], &to));
     *points = to;
     TRY(add_air(&packing));

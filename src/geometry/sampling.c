@@ -18,13 +18,7 @@ static const double max_lattice = 1e9, max_cells = 1e10;
 
 static double piece_area(const struct outline *o)
 {
-    if (!o->n) return PI * square(o->radius);
-    double twice = 0;
-    for (int k = 0; k < o->n; k++) {
-        const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n], *base = o->pt[0];
-        twice += (a[0] - base[0]) * (b[1] - base[1]) - (b[0] - base[0]) * (a[1] - base[1]);
-    }
-    return 0.5 * fabs(twice);
+    return o->n ? fabs(polygon_area(o->n, o->pt)) : PI * square(o->radius);
 }
 
 /* Refuses scenes that do not fit into memory before allocating anything of that size. */
@@ -89,8 +83,7 @@ static enum err list_regions(struct sampler *sampler)
 {
     const struct scene *scene = sampler->scene;
     const int n = scene->n_solid + scene->n_wall + scene->n_fluid;
-    sampler->regions =
-        arena_alloc(&sampler->temp, (size_t)n, sizeof *sampler->regions, "regions", sampler->diag);
+    sampler->regions = geometry_alloc(sampler, (size_t)n, sizeof *sampler->regions);
     if (!sampler->regions) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++)
         add_region(sampler, KIND_SOLID, k, &scene->solid[k].common, &scene->solid[k].shape,
@@ -192,13 +185,11 @@ static enum err prepare_rows(struct sampler *sampler)
             region->count[c] = index_from(region, c, region->box.high[c]) + 1 - region->first[c];
         }
         widest = region->count[0] > widest ? region->count[0] : widest;
-        const int add = outlines_capacity(&region->add), minus = outlines_capacity(&region->minus);
-        most = add > most ? add : most;
-        most = minus > most ? minus : most;
+        const int ends = outlines_ends(&region->add) + outlines_ends(&region->minus);
+        most = ends > most ? ends : most;
     }
-    sampler->mask = arena_alloc(&sampler->temp, (size_t)widest, 1, "sampling", sampler->diag);
-    sampler->scratch =
-        arena_alloc(&sampler->temp, (size_t)most + 4, sizeof(double), "sampling", sampler->diag);
+    sampler->mask = geometry_alloc(sampler, (size_t)widest, 1);
+    sampler->scratch = geometry_alloc(sampler, (size_t)most + 4, sizeof(double));
     return sampler->mask && sampler->scratch ? ERR_OK : ERR_MEMORY;
 }
 
@@ -231,8 +222,7 @@ static enum err lay_layers(struct sampler *sampler, struct region *region)
 /* Shapes without particles are told together, before anything needs their particles. */
 static enum err count_points(struct sampler *sampler, struct region *region)
 {
-    int64_t *per_shape = arena_alloc(&sampler->temp, (size_t)region->list->n, sizeof *per_shape,
-                                     "sampling", sampler->diag);
+    int64_t *per_shape = geometry_alloc(sampler, (size_t)region->list->n, sizeof *per_shape);
     if (!per_shape) return ERR_MEMORY;
     for (int64_t j = 0; j < region->count[1]; j++) {
         mark_row(sampler, region, region->first[1] + j, true, per_shape);
@@ -243,16 +233,14 @@ static enum err count_points(struct sampler *sampler, struct region *region)
     for (int k = 0; k < region->list->n; k++) {
         if (per_shape[k]) continue;
         empty = true;
-        TRY(geometry_go_on(
-            sampler, fail_at(sampler->diag, sampler->scene, region->list->item[k].line,
-                             "shape %d of [%s %s] contains no particle, because it is narrower "
-                             "than dp = %g m or lies between lattice points; enlarge or move it",
-                             k + 1, region->word, region->name, region->lattice.dp)));
+        TRY(geometry_refuse(sampler, region->list->item[k].line,
+                            "shape %d of [%s %s] contains no particle, because it is narrower "
+                            "than dp = %g m or lies between lattice points; enlarge or move it",
+                            k + 1, region->word, region->name, region->lattice.dp));
     }
     if (region->n || empty) return ERR_OK;
-    return geometry_go_on(sampler, fail_at(sampler->diag, sampler->scene, region->line,
-                                           "nothing is left of [%s %s] after its `minus`",
-                                           region->word, region->name));
+    return geometry_refuse(sampler, region->line, "nothing is left of [%s %s] after its `minus`",
+                           region->word, region->name);
 }
 
 /* Stores a point given in the axes of its lattice. */
@@ -272,8 +260,7 @@ static enum err append_points(struct sampler *sampler, const struct region *regi
 {
     int64_t *next = NULL;
     if (upright) { /* position of each column: a counting sort over the rows */
-        next = arena_alloc(&sampler->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling",
-                           sampler->diag);
+        next = geometry_alloc(sampler, (size_t)region->count[0] + 1, sizeof *next);
         if (!next) return ERR_MEMORY;
         for (int64_t j = 0; j < region->count[1]; j++) {
             mark_row(sampler, region, region->first[1] + j, false, NULL);
@@ -311,13 +298,10 @@ enum err geometry_sample(struct sampler *sampler, struct samples *samples)
         total += sampler->regions[k].n;
     }
     TRY(geometry_problems(sampler));
-    samples->x =
-        arena_alloc(&sampler->temp, (size_t)total, sizeof *samples->x, "sampling", sampler->diag);
-    samples->y =
-        arena_alloc(&sampler->temp, (size_t)total, sizeof *samples->y, "sampling", sampler->diag);
-    samples->region = arena_alloc(&sampler->temp, (size_t)total, sizeof *samples->region,
-                                  "sampling", sampler->diag);
-    samples->clamped = arena_alloc(&sampler->temp, (size_t)total, 1, "sampling", sampler->diag);
+    samples->x = geometry_alloc(sampler, (size_t)total, sizeof *samples->x);
+    samples->y = geometry_alloc(sampler, (size_t)total, sizeof *samples->y);
+    samples->region = geometry_alloc(sampler, (size_t)total, sizeof *samples->region);
+    samples->clamped = geometry_alloc(sampler, (size_t)total, 1);
     if (!samples->x || !samples->y || !samples->region || !samples->clamped) return ERR_MEMORY;
     for (int k = 0; k < sampler->n_regions; k++) {
         struct region *region = &sampler->regions[k];
@@ -356,4 +340,25 @@ enum err scene_sample(struct scene *scene, struct diag *d)
     if (!err) err = geometry_problems(&sampler);
     arena_free(&sampler.temp);
     return err;
+}
+
+static enum err sampled(struct scene *scene, struct diag *d)
+{
+    const enum err err = scene_sample(scene, d);
+    if (err) scene_free(scene);
+    return err;
+}
+
+enum err scene_load(struct scene *scene, const char *path, int n_sets, const char *const *sets,
+                    struct diag *d)
+{
+    TRY(scene_read(scene, path, n_sets, sets, d));
+    return sampled(scene, d);
+}
+
+enum err scene_load_text(struct scene *scene, const char *text, const char *path, int n_sets,
+                         const char *const *sets, struct diag *d)
+{
+    TRY(scene_parse(scene, text, path, n_sets, sets, d));
+    return sampled(scene, d);
 }

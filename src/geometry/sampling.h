@@ -53,6 +53,12 @@ struct samples {
     uint8_t *clamped;
 };
 
+/* Zeroed memory that lasts until the scene is sampled; NULL: there is none. */
+SPHFSI_INLINE void *geometry_alloc(struct sampler *sampler, size_t n, size_t size)
+{
+    return arena_alloc(&sampler->temp, n, size, "sampling", sampler->diag);
+}
+
 /* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next
  * section; the error itself after CASE_MAX_PROBLEMS of them and of the case's values.
  * geometry_problems then ends what needs sound input. */
@@ -62,6 +68,10 @@ SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
     return e == ERR_INPUT && sampler->diag && diag_count(sampler->diag) < CASE_MAX_PROBLEMS ? ERR_OK
                                                                                             : e;
 }
+
+/* A problem of a line of the case, so treated. */
+#define geometry_refuse(sampler, line, ...) \
+    geometry_go_on(sampler, fail_at((sampler)->diag, (sampler)->scene, line, __VA_ARGS__))
 
 SPHFSI_INLINE enum err geometry_problems(const struct sampler *sampler)
 {
@@ -93,6 +103,10 @@ double geometry_rows_across(const struct region *region);
 /* The regions of a scene that has been sampled, for questions about places. */
 enum err geometry_draw(struct sampler *sampler) SPHFSI_CHECKED;
 
+/* Memory for n points of a kind; `open`: also for their open boundary. */
+enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, bool open,
+                         struct scene_points *to) SPHFSI_CHECKED;
+
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples) SPHFSI_CHECKED;
 
@@ -120,7 +134,7 @@ enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct re
 /* Effective domain; probes inside their bodies; initial values finite. */
 enum err geometry_extent(struct sampler *sampler) SPHFSI_CHECKED;
 
-/* Bodies that are bonded touch (geometry/joined.c). */
+/* Bodies that are bonded touch (geometry/bodies.c). */
 enum err geometry_check_joined(struct sampler *sampler) SPHFSI_CHECKED;
 
 #endif

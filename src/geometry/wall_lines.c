@@ -44,17 +44,6 @@ static bool is_wet(const struct sampler *sampler, const struct shape *line, doub
     return false;
 }
 
-/* Whether a closed line turns counter-clockwise. */
-static bool turns_left(const struct shape *line)
-{
-    double twice = 0;
-    for (int k = 0; k + 1 < line->n; k++) {
-        const double *const o = line->pt[0], *const a = line->pt[k], *const b = line->pt[k + 1];
-        twice += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
-    }
-    return twice > 0;
-}
-
 /* Whether a piece of fluid begins inside a closed line, wherever it is. */
 static enum err find_inside(struct sampler *sampler, const struct shape *line, bool *found)
 {
@@ -83,6 +72,7 @@ static enum err thicken_line(struct sampler *sampler, const struct region *wall,
     const double dp = scene->top.dp, *const first = line->pt[0],
                  *const last = line->pt[line->n - 1];
     const double thick = dp * ceil(KERNEL_REACH * scene->h / dp - 1e-9);
+    const bool left_turning = polygon_area(line->n, line->pt) > 0; /* of a closed line */
     const bool closed = line->n > 3 && first[0] == last[0] && first[1] == last[1];
     double left[2], right[2];
     const bool wet_left = is_wet(sampler, line, 1, left),
@@ -97,10 +87,10 @@ static enum err thicken_line(struct sampler *sampler, const struct region *wall,
             wall->name, left[0], left[1], right[0], right[1], KERNEL_REACH * scene->h);
     if (closed && !wet_left && !wet_right) {
         TRY(find_inside(sampler, line, &fluid_left));
-        fluid_left = fluid_left == turns_left(line);
+        fluid_left = fluid_left == left_turning;
     }
     line->size = fluid_left ? -thick : thick;
-    if (!closed || fluid_left == turns_left(line)) return ERR_OK;
+    if (!closed || fluid_left == left_turning) return ERR_OK;
     line->kind = SHAPE_POLYGON;
     line->size = 0;
     line->n--;
