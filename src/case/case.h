@@ -67,6 +67,8 @@ struct reader {
     struct entry *entries;
     struct case_section *sections; /* the first one is the top of the file */
     struct constant *constants;    /* and the numbers at the top, which can be used as names */
+    const struct entry *entry;     /* being read; problems name it */
+    const void *section;           /* being checked, likewise */
     int depth;                     /* of constants that depend on constants */
     bool cause_named;              /* the message names the invalid constant */
     bool in_unknown_section;       /* after a section header that is invalid */
@@ -78,7 +80,8 @@ struct reader {
 /* --- case/messages.c: problems are stored, so that all of them are reported --- */
 
 /* Where a problem is: a line, an entry, or a section, there the line of `key` if it is not NULL.
- * The message begins with FILE:LINE or --set, then [section] or, with `value`, key = value. */
+ * The macros name what the reader is at. The message begins with FILE:LINE or --set, then [section]
+ * or, with `value`, key = value. */
 struct problem_place {
     int line;
     const struct entry *entry;
@@ -89,13 +92,13 @@ struct problem_place {
 enum err problem(struct reader *r, struct problem_place at, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
 #define bad_line(r, n, ...) problem(r, (struct problem_place){.line = (n)}, __VA_ARGS__)
-#define bad_entry(r, e, ...) problem(r, (struct problem_place){.entry = (e)}, __VA_ARGS__)
-#define bad_value(r, e, ...) \
-    problem(r, (struct problem_place){.entry = (e), .value = (e)->value}, __VA_ARGS__)
-#define bad_section(r, s, k, ...) \
-    problem(r, (struct problem_place){.section = (s), .key = (k)}, __VA_ARGS__)
-#define bad_key(r, s, k, v, ...) \
-    problem(r, (struct problem_place){.section = (s), .key = (k), .value = (v)}, __VA_ARGS__)
+#define bad_entry(r, ...) problem(r, (struct problem_place){.entry = (r)->entry}, __VA_ARGS__)
+#define bad_value(r, ...) \
+    problem(r, (struct problem_place){.entry = (r)->entry, .value = (r)->entry->value}, __VA_ARGS__)
+#define bad_section(r, ...) problem(r, (struct problem_place){.section = (r)->section}, __VA_ARGS__)
+#define bad_key(r, k, v, ...)                                                             \
+    problem(r, (struct problem_place){.section = (r)->section, .key = (k), .value = (v)}, \
+            __VA_ARGS__)
 
 /* Replaces the error of a stored problem by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
@@ -114,21 +117,17 @@ enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
 /* Stores why an expression has no value, unless that follows from a problem already stored. */
-enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why);
-/* A number of the dimension `unit` from a piece of an entry's value. */
-enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
-                     double *value) SPHFSI_CHECKED;
-enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
-                        const char *unit) SPHFSI_CHECKED;
+enum err case_bad_expression(struct reader *r, const char *why);
+/* A number of the dimension `unit` from a piece of the entry's value. */
+enum err case_number(struct reader *r, struct slice text, const char *unit, double *value)
+    SPHFSI_CHECKED;
+enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit) SPHFSI_CHECKED;
 
 /* case/values.c: an entry's text to its value in a section; case/shapes.c: adds a shape or a hinge;
  * words by enum shape_kind. */
-enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
-                    void *section) SPHFSI_CHECKED;
-enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
-    SPHFSI_CHECKED;
-enum err case_hinge(struct reader *r, const struct entry *e, struct hinge_list *list)
-    SPHFSI_CHECKED;
+enum err case_value(struct reader *r, const struct param *param, void *section) SPHFSI_CHECKED;
+enum err case_shape(struct reader *r, struct shape_list *list) SPHFSI_CHECKED;
+enum err case_hinge(struct reader *r, struct hinge_list *list) SPHFSI_CHECKED;
 extern const char *const shape_words[];
 
 /* case/presets.c: what `scheme` and `accuracy` choose stands in for the defaults, so that a key of
@@ -141,34 +140,20 @@ enum err case_place_rigid(struct reader *r) SPHFSI_CHECKED;
 int case_given_count(const struct scene *scene, enum section_id id);
 
 /* case/check.c: names of other sections; then conditions on a valid scene, on each section by a
- * function of its own, and on effects (case/check_effects.c). */
+ * function of its own, on open boundaries (case/open.c) and on effects (case/effects.c). */
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
-enum err case_check_motion(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
-enum err case_check_probe(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 
-/* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place
- * of the key, or with the table's name and line. The caller closes `csv`, also after a failure. */
+/* case/motion.c: opens the text table `name` given by a key of a line. Messages begin with the
+ * place of the key, or with the table's name and line. The caller closes `csv`, also after a
+ * failure. */
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d) SPHFSI_CHECKED;
-/* Columns for a number of rows. */
-enum err table_allocate(struct scene *scene, struct scene_table *table, int rows, struct diag *d)
-    SPHFSI_CHECKED;
-/* `what` it is of, with its columns; of a motion: its first row is zero. */
-struct table_kind {
-    const char *what, *columns;
-    bool from_rest;
-};
-enum err table_load(struct scene *scene, struct scene_table *table, const struct table_kind *kind,
-                    const char *name, int line, const char *key, struct diag *d) SPHFSI_CHECKED;
-/* The row at or before a time, but not before the first nor the last one. */
-int table_row(const struct scene_table *table, double t);
-
-/* case/motion.c, case/gravity.c: their tables. */
+/* The tables of motions and of gravity. */
 enum err motion_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 enum err gravity_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 

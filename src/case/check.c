@@ -10,8 +10,8 @@
 
 /* --- names of other sections --- */
 
-static enum err check_name(struct reader *r, const struct param *param, const void *section,
-                           const char *name, enum section_id also)
+static enum err check_name(struct reader *r, const struct param *param, const char *name,
+                           enum section_id also)
 {
     struct nearest near = {0};
     const enum section_id kinds[] = {param->kind, also};
@@ -22,7 +22,7 @@ static enum err check_name(struct reader *r, const struct param *param, const vo
             nearest_offer(&near, name, other->name);
         }
     const bool two = also != param->kind;
-    return bad_key(r, section, param->key, name, "there is no [%s%s%s] of that name%s",
+    return bad_key(r, param->key, name, "there is no [%s%s%s] of that name%s",
                    section_table[param->kind].word, two ? "] or [" : "",
                    two ? section_table[also].word : "", nearest_hint(&near));
 }
@@ -36,24 +36,25 @@ static enum err check_names(struct reader *r, const struct param *param, const v
     const struct hinge_list *const hinges = (const void *)text;
     char name[SCENE_TEXT];
     for (int k = 0; param->type == PARAM_HINGES && k < hinges->n; k++)
-        if (*hinges->item[k].other)
-            TRY(check_name(r, param, section, hinges->item[k].other, param->also));
+        if (*hinges->item[k].other) TRY(check_name(r, param, hinges->item[k].other, param->also));
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
-        return check_name(r, param, section, text,
+        return check_name(r, param, text,
                           !one                            ? param->also
                           : probe->quantity == PROBE_POSE ? SECTION_rigid
                                                           : param->kind);
     for (int k = 0; scene_listed(text, k, name); k++)
-        TRY(check_name(r, param, section, name, param->also));
+        TRY(check_name(r, param, name, param->also));
     return ERR_OK;
 }
 
 enum err case_check_names(struct reader *r)
 {
     for (const struct param *param = param_table; param < param_table + PARAM_COUNT; param++)
-        for (int k = 0; param->kind && k < section_count(r->scene, param->section); k++)
-            TRY(case_go_on(r, check_names(r, param, section_at(r->scene, param->section, k))));
+        for (int k = 0; param->kind && k < section_count(r->scene, param->section); k++) {
+            r->section = section_at(r->scene, param->section, k);
+            TRY(case_go_on(r, check_names(r, param, r->section)));
+        }
     return ERR_OK;
 }
 
@@ -66,13 +67,12 @@ static double sound_speed(const struct scene *scene, const struct scene_fluid *f
     return f->sound_speed > 0 ? f->sound_speed : scene->numerics.sound_factor * largest;
 }
 
-/* Two sections that must have the same value of a key; sound_speed: that of Eq. 3 if it is not
- * given. */
-static enum err same_value(struct reader *r, const void *mine, const void *its, const char *key,
-                           const char *all)
+/* This section and another that must have the same value of a key; sound_speed: that of Eq. 3 if it
+ * is not given. */
+static enum err same_value(struct reader *r, const void *its, const char *key, const char *all)
 {
     const struct scene_section_common *const common = its;
-    const void *const section[] = {mine, its};
+    const void *const section[] = {r->section, its};
     const struct param *const param = param_find((enum section_id)common->section, key);
     double value[2];
     char title[TITLE_TEXT], text[2][SCENE_NAME];
@@ -84,9 +84,8 @@ static enum err same_value(struct reader *r, const void *mine, const void *its, 
     }
     if (!(fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))) return ERR_OK;
     section_title(common, title);
-    return bad_section(r, mine, NULL,
-                       "and %s differ in `%s`: %s and %s; all %s must have the same value", title,
-                       key, text[0], text[1], all);
+    return bad_section(r, "and %s differ in `%s`: %s and %s; all %s must have the same value",
+                       title, key, text[0], text[1], all);
 }
 
 /* All fluid has the same numbers, but those of its place and of Eq. 3. */
@@ -97,15 +96,14 @@ static enum err check_fluid(struct reader *r, const void *section)
     struct scene *const scene = r->scene;
     const double c0 = sound_speed(scene, f);
     if (c0 == 0)
-        return bad_section(r, f, NULL,
-                           "needs `sound_speed`, or `max_speed` and `max_pressure` for Eq. 3");
+        return bad_section(r, "needs `sound_speed`, or `max_speed` and `max_pressure` for Eq. 3");
     if (c0 > 1e7)
-        return bad_section(r, f, NULL,
+        return bad_section(r,
                            "Eq. 3 gives a speed of sound of %g m/s, above the limit of 1e7; reduce "
                            "`max_speed` or `max_pressure`",
                            c0);
     if (f->pressure.e[0] && !isnan(f->surface))
-        return bad_section(r, f, NULL, "has both `surface` and `pressure`; leave one out");
+        return bad_section(r, "has both `surface` and `pressure`; leave one out");
     if (f == scene->fluid) {
         scene->c0 = c0;
         scene->rho0 = f->density;
@@ -116,7 +114,7 @@ static enum err check_fluid(struct reader *r, const void *section)
         char word[SCENE_NAME + 2];
         snprintf(word, sizeof word, " %s ", param->key);
         if (param->section == SECTION_fluid && number && !strstr(own, word))
-            TRY(case_go_on(r, same_value(r, f, scene->fluid, param->key, "fluid")));
+            TRY(case_go_on(r, same_value(r, scene->fluid, param->key, "fluid")));
     }
     return ERR_OK;
 }
@@ -130,19 +128,17 @@ static enum err check_solid(struct reader *r, const void *section)
     const struct scene *const scene = r->scene;
     const struct scene_solid *const a = section;
     if (*a->clamp_motion && a->clamp.n == 0)
-        return bad_section(r, a, NULL, "has a `clamp_motion` but no `clamp`");
+        return bad_section(r, "has a `clamp_motion` but no `clamp`");
     /* A cell holds a limited number of particles. */
     const double ratio = a->dp > 0 ? scene->top.dp / a->dp : 1;
     if (ratio < 1 - 1e-9 || (ratio > 3 + 1e-9 && scene->n_fluid > 0))
-        return bad_section(r, a, NULL,
-                           "dp = %g m must be between a third of the dp at the top, %g m, and that "
-                           "dp%s",
-                           a->dp, scene->top.dp,
-                           scene->n_fluid ? "" : "; without fluid it may be finer");
+        return bad_section(
+            r, "dp = %g m must be between a third of the dp at the top, %g m, and that dp%s", a->dp,
+            scene->top.dp, scene->n_fluid ? "" : "; without fluid it may be finer");
     for (int k = 0; k < a->hinge.n; k++) {
         const char *const to = a->hinge.item[k].other;
         if (strcmp(to, a->common.name) == 0)
-            return bad_section(r, a, NULL,
+            return bad_section(r,
                                "hinge = X, Y, %s: a body cannot be hinged to itself; name another "
                                "[solid] or a [wall]",
                                to);
@@ -152,10 +148,9 @@ static enum err check_solid(struct reader *r, const void *section)
     if (other < 0) return ERR_OK; /* case_check_names reports it */
     const struct scene_solid *const b = &scene->solid[other];
     if (a == b)
-        return bad_section(r, a, NULL,
-                           "joined = %s: a body cannot be joined to itself; name another",
+        return bad_section(r, "joined = %s: a body cannot be joined to itself; name another",
                            a->joined);
-    for (size_t k = 0; k < COUNT_OF(same); k++) TRY(same_value(r, a, b, same[k], "joined bodies"));
+    for (size_t k = 0; k < COUNT_OF(same); k++) TRY(same_value(r, b, same[k], "joined bodies"));
     return ERR_OK;
 }
 
@@ -167,18 +162,18 @@ static enum err check_contact(struct reader *r, const void *section)
     const double max_gap = 4;
     double dp = scene->top.dp;
     char name[2][SCENE_TEXT];
-    if (scene->n_solid == 0) return bad_section(r, c, NULL, "needs a [solid]");
+    if (scene->n_solid == 0) return bad_section(r, "needs a [solid]");
     for (int k = 0; k < scene->n_solid; k++) dp = min2(dp, scene_solid_dp(scene, k));
     if (c->gap > max_gap * dp * (1 + 1e-9))
-        return bad_section(r, c, NULL,
+        return bad_section(r,
                            "gap = %g m is more than %g particle spacings of %g m; use at most %g m",
                            c->gap, max_gap, dp, max_gap * dp);
     if (*c->between && !scene_pair(c->between, name))
-        return bad_key(r, c, "between", c->between, "two names are expected, separated by a comma");
+        return bad_key(r, "between", c->between, "two names are expected, separated by a comma");
     if (*c->between && scene_find_solid(scene, name[0]) < 0 &&
         scene_find_solid(scene, name[1]) < 0 && scene_find_wall(scene, name[0]) >= 0 &&
         scene_find_wall(scene, name[1]) >= 0)
-        return bad_key(r, c, "between", c->between,
+        return bad_key(r, "between", c->between,
                        "one of the two must be a [solid], because walls do not interact");
     return ERR_OK;
 }
@@ -187,8 +182,201 @@ static enum err check_load(struct reader *r, const void *section)
 {
     const struct scene_load *const l = section;
     if (!l->force.e[0] != !l->traction.e[0]) return ERR_OK;
-    return bad_section(r, l, NULL, "needs either `force` or `traction`, and has %s",
+    return bad_section(r, "needs either `force` or `traction`, and has %s",
                        l->force.e[0] ? "both" : "neither");
+}
+
+/* Times that expressions are looked at, from the start to the end. */
+enum { TIMES = 1000 };
+
+/* --- motions --- */
+
+static enum err check_kind(struct reader *r, const struct scene_motion *m)
+{
+    char kind[SCENE_NAME];
+    param_choice_name(param_find(SECTION_motion, "kind"), m->kind, kind);
+    for (const struct param *p = param_table; p < param_table + PARAM_COUNT; p++)
+        if (p->motion_kinds && !strstr(p->motion_kinds, kind) && !param_is_default(p, m))
+            return bad_key(r, p->key, NULL,
+                           "`%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
+                           p->key, p->motion_kinds, kind);
+    return ERR_OK;
+}
+
+/* What a motion of its kind cannot do without, or NULL. */
+static const char *lacking(const struct scene_motion *m)
+{
+    const bool turns = m->angle_amplitude != 0;
+    switch ((enum motion_kind)m->kind) {
+    case MOTION_SINE: return m->period == 0 ? "kind = sine needs `period`" : NULL;
+    case MOTION_ROTATION:
+        if (turns && m->period == 0) return "angle_amplitude needs `period`";
+        return turns || m->angle.n || *m->file
+                   ? NULL
+                   : "kind = rotation needs `angle`, `angle_amplitude` or `file`";
+    case MOTION_TABLE: return *m->file ? NULL : "kind = table needs `file`";
+    case MOTION_POLYNOMIAL:
+        return m->poly_x.n + m->poly_y.n ? NULL : "kind = polynomial needs `poly_x` or `poly_y`";
+    case MOTION_EXPRESSION:
+        return m->x.e[0] || m->y.e[0] || m->turn.e[0]
+                   ? NULL
+                   : "kind = expression needs `x`, `y` or `turn`, expressions in t";
+    case MOTION_VELOCITY: break;
+    }
+    return NULL;
+}
+
+/* Finite with its derivatives. */
+static enum err check_finite(struct reader *r, const struct expr *e, double length)
+{
+    for (int n = 0; n <= TIMES; n++) {
+        const struct expr_jet at = expr_jet_at(e, length * n / TIMES);
+        if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
+            return bad_section(r,
+                               "%.200s: displacement, velocity or acceleration is not finite %g s "
+                               "after `start`; change the expression",
+                               expr_source(e), length * n / TIMES);
+    }
+    return ERR_OK;
+}
+
+/* A jump would move a body without a velocity. */
+static enum err check_jumps(struct reader *r, const char *key, const struct expr *e, double length)
+{
+    if (expr_steps(e))
+        return bad_key(r, key, NULL,
+                       "%s = %.200s jumps in time, because it rounds a term with t, so the "
+                       "velocity is undefined; use a continuous expression",
+                       key, expr_source(e));
+    double size = 0, at;
+    for (int n = 0; n <= TIMES; n++)
+        size = max2(size, 1e-6 * fabs(expr_jet_at(e, length * n / TIMES).value));
+    for (int n = 0; n < TIMES; n++)
+        if (expr_jumps(e, length * n / TIMES, length * (n + 1) / TIMES, size, &at))
+            return bad_key(r, key, NULL,
+                           "%s = %.200s jumps or is not finite %g s after `start`, so the velocity "
+                           "is undefined; use a continuous expression",
+                           key, expr_source(e), at);
+    return ERR_OK;
+}
+
+static enum err check_motion(struct reader *r, const void *section)
+{
+    const struct scene_motion *const m = section;
+    const struct expr *const each[] = {m->x.e[0], m->y.e[0], m->turn.e[0], m->velocity_in_time.e[0],
+                                       m->velocity_in_time.e[1]};
+    static const char *const keys[] = {"x", "y", "turn"};
+    const double length = fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
+    if (!(m->start < m->stop))
+        return bad_section(r, "start = %g s must come before stop = %g s", m->start, m->stop);
+    TRY(check_kind(r, m));
+    if (lacking(m)) return bad_section(r, "%s", lacking(m));
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        if (each[k]) TRY(check_finite(r, each[k], length));
+        if (each[k] && k < COUNT_OF(keys)) TRY(check_jumps(r, keys[k], each[k], length));
+    }
+    return ERR_OK;
+}
+
+/* --- probes --- */
+
+/* Each body once: a force that counts twice is a mistake. A reaction is that of clamps
+ * and hinges. */
+static enum err check_body(struct reader *r, const struct scene_probe *p)
+{
+    char name[SCENE_TEXT], other[SCENE_TEXT];
+    if (!*p->body)
+        return bad_section(r, "needs `body`, the %s measured",
+                           p->quantity == PROBE_FORCE ? "solids or walls that are"
+                                                      : "solid that is");
+    for (int k = 0; scene_listed(p->body, k, name); k++)
+        for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
+            if (strcmp(name, other) == 0)
+                return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
+    const int body = scene_find_solid(r->scene, p->body);
+    if (p->quantity == PROBE_REACTION && body >= 0 &&
+        r->scene->solid[body].clamp.n + r->scene->solid[body].hinge.n == 0)
+        return bad_section(r,
+                           "measures the force of the clamps and hinges of [solid %s], which has "
+                           "none; give the solid a `clamp` or a `hinge`",
+                           p->body);
+    return ERR_OK;
+}
+
+static enum err check_on(struct reader *r, const struct scene_probe *p)
+{
+    const bool face = p->quantity == PROBE_SURFACE_PRESSURE;
+    if (!*p->on) return ERR_OK;
+    if (scene_probe_target(p) != TARGET_FLUID_POINT && !face)
+        return bad_section(r,
+                           "on = %.60s is only for pressure, level, velocity and surface pressure "
+                           "of the fluid; leave it out",
+                           p->on);
+    if (face && scene_find_solid(r->scene, p->on) >= 0)
+        return bad_section(r,
+                           "on = %.60s is a solid, which bends; a line moves with walls only. "
+                           "quantity = force measures the fluid's force on the solid",
+                           p->on);
+    return ERR_OK;
+}
+
+/* A row then needs no more than the steps since the row before. */
+static enum err check_average(struct reader *r, const struct scene_probe *p)
+{
+    const double given = r->scene->output.probe_interval;
+    const double common = given > 0 ? given : 1e-3 * r->scene->top.end_time;
+    const double interval = p->interval > 0 ? p->interval : common;
+    if (p->average <= interval * (1 + 1e-12)) return ERR_OK;
+    return bad_section(r,
+                       "average = %g s is longer than the interval of %g s between its rows; set "
+                       "`interval` to %g s or more",
+                       p->average, interval, p->average);
+}
+
+static enum err check_fluid_probe(struct reader *r, const struct scene_probe *p,
+                                  const char *quantity)
+{
+    const enum probe_target target = scene_probe_target(p);
+    if (*p->body && target != TARGET_BODY)
+        return bad_section(r, "measures %s of the fluid, at a fixed point; leave `body` out",
+                           quantity);
+    if (r->scene->n_fluid == 0)
+        return bad_section(r, "measures %s, but there is no fluid", quantity);
+    if (target == TARGET_FLUID_LINE && p->point[0] == p->to[0] && p->point[1] == p->to[1])
+        return bad_section(
+            r, "measures the %s the line from `point` to `to`; the two points must differ",
+            p->quantity == PROBE_FLUX ? "flux through" : "pressure on");
+    return ERR_OK;
+}
+
+/* Without it, a place would be the origin. For forces it is, since they need no place. */
+static enum err check_point(struct reader *r, const struct scene_probe *p, const char *key,
+                            const char *quantity)
+{
+    const enum probe_target target = scene_probe_target(p);
+    const bool line = target == TARGET_FLUID_LINE,
+               point = target == TARGET_FLUID_POINT || target == TARGET_SOLID_POINT;
+    if (!line && (!point || strcmp(key, "to") == 0)) return ERR_OK;
+    if (scene_given(r->scene, SECTION_probe, p->common.index, key)) return ERR_OK;
+    return bad_section(r, "lacks `%s`: quantity = %s needs %s, in metres", key, quantity,
+                       line ? "both ends of its line, `point` and `to`" : "the place, two numbers");
+}
+
+static enum err check_probe(struct reader *r, const void *section)
+{
+    const struct scene_probe *const p = section;
+    char quantity[SCENE_NAME];
+    param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
+    TRY(case_go_on(r, check_point(r, p, "point", quantity)));
+    TRY(case_go_on(r, check_point(r, p, "to", quantity)));
+    TRY(check_on(r, p));
+    TRY(check_average(r, p));
+    switch (scene_probe_target(p)) {
+    case TARGET_BODY: TRY(check_body(r, p)); return check_fluid_probe(r, p, quantity);
+    case TARGET_SOLID:
+    case TARGET_SOLID_POINT: return check_body(r, p);
+    default: return check_fluid_probe(r, p, quantity);
+    }
 }
 
 /* --- unnamed sections and references --- */
@@ -196,7 +384,6 @@ static enum err check_load(struct reader *r, const void *section)
 /* An expression must have a value at the start and at a thousand times until the end. */
 static enum err check_top(struct reader *r, const void *section)
 {
-    enum { TIMES = 1000 };
     const struct scene_top *const top = section;
     for (int c = 0; c < 2; c++)
         for (int n = 0; top->gravity_in_time.e[c] && n <= TIMES; n++) {
@@ -227,10 +414,10 @@ static enum err check_solid_steps(struct reader *r)
                         "%s gives the solid steps of its own, but multirate = off; use auto", with);
     for (int k = 0; k < scene->n_solid; k++)
         if (scene->solid[k].hinge.n)
-            return bad_line(r, scene->solid[k].hinge.item[0].line,
-                            "[solid %s] has a `hinge`, which %s does not hold; use "
-                            "solid_steps = explicit",
-                            scene->solid[k].common.name, with);
+            return bad_line(
+                r, scene->solid[k].hinge.item[0].line,
+                "[solid %s] has a `hinge`, which %s does not hold; use solid_steps = explicit",
+                scene->solid[k].common.name, with);
         else if (scene->solid[k].hourglass > 0 &&
                  scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
             return bad_line(r, scene_line(scene, SECTION_solid, k, "hourglass_form"),
@@ -266,7 +453,7 @@ static enum err check_output(struct reader *r, const void *section)
         while (k < count && strcmp(names[k], word) != 0) nearest_offer(&near, word, names[k++]);
         if (k < count) continue;
         for (k = 0; k < count; k++) strcat(strcat(known, " "), names[k]);
-        return bad_section(r, section, NULL,
+        return bad_section(r,
                            "snapshot_fields: there is no field `%.63s`%s Allowed: all, or any of%s",
                            word, near.name ? nearest_hint(&near) : ".", known);
     }
@@ -280,9 +467,9 @@ static enum err check_relax(struct reader *r, const void *section)
     const bool sought = ((const struct scene_relax *)section)->tolerance > 0;
     for (int k = 0; sought && k < scene->n_motion; k++)
         if (scene->motion[k].start < 0)
-            return bad_section(r, &scene->motion[k], NULL,
-                               "start = %g s: with [relax] no motion may begin before t = 0",
-                               scene->motion[k].start);
+            return problem(r, (struct problem_place){.section = &scene->motion[k]},
+                           "start = %g s: with [relax] no motion may begin before t = 0",
+                           scene->motion[k].start);
     return ERR_OK;
 }
 
@@ -292,21 +479,20 @@ static enum err check_reference(struct reader *r, const void *section)
     const struct scene_reference *const ref = section;
     const bool formula = ref->formula.e[0] != NULL;
     if (!*ref->file == !formula)
-        return bad_section(r, ref, NULL, "needs either `file` or `formula`, and has %s",
+        return bad_section(r, "needs either `file` or `formula`, and has %s",
                            formula ? "both" : "neither");
     if (!(ref->from < ref->until))
-        return bad_section(r, ref, NULL, "from = %g s must come before until = %g s", ref->from,
-                           ref->until);
+        return bad_section(r, "from = %g s must come before until = %g s", ref->from, ref->until);
     for (int p = 0; p < r->scene->n_probe; p++) {
         const char *const name = r->scene->probe[p].common.name;
         const size_t length = strlen(name);
         if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
     }
     if (!*ref->probe) return ERR_OK; /* reported as missing */
-    return bad_section(r, ref, "probe",
-                       "probe = %.80s: no probe has such a column; a column is "
-                       "PROBE_QUANTITY_UNIT, such as M1_dx_m",
-                       ref->probe);
+    return bad_key(r, "probe", NULL,
+                   "probe = %.80s: no probe has such a column; a column is PROBE_QUANTITY_UNIT, "
+                   "such as M1_dx_m",
+                   ref->probe);
 }
 
 enum err case_check(struct reader *r)
@@ -318,9 +504,9 @@ enum err case_check(struct reader *r)
         {SECTION_top, check_top},          {SECTION_numerics, check_numerics},
         {SECTION_output, check_output},    {SECTION_relax, check_relax},
         {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
-        {SECTION_rigid, case_check_rigid}, {SECTION_motion, case_check_motion},
+        {SECTION_rigid, case_check_rigid}, {SECTION_motion, check_motion},
         {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
-        {SECTION_probe, case_check_probe}, {SECTION_contact, check_contact},
+        {SECTION_probe, check_probe}, {SECTION_contact, check_contact},
         {SECTION_load, check_load},        {SECTION_reference, check_reference},
     };
     if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)
@@ -328,7 +514,9 @@ enum err case_check(struct reader *r)
                         "nothing to simulate: the case needs a [fluid NAME], a [solid NAME] or a "
                         "[rigid NAME] section");
     for (size_t n = 0; n < COUNT_OF(checks); n++)
-        for (int k = 0; k < section_count(r->scene, checks[n].section); k++)
-            TRY(case_go_on(r, checks[n].check(r, section_at(r->scene, checks[n].section, k))));
+        for (int k = 0; k < section_count(r->scene, checks[n].section); k++) {
+            r->section = section_at(r->scene, checks[n].section, k);
+            TRY(case_go_on(r, checks[n].check(r, r->section)));
+        }
     return case_check_effects(r);
 }

@@ -212,27 +212,28 @@ static const char *name_of(const struct case_section *s)
 
 /* A key of --set that no section meant by the prefix has: what it may be, or where it belongs.
  * `id`: of one of these sections. */
-static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix, int id)
+static enum err unknown_in_set(struct reader *r, const char *prefix, int id)
 {
+    const struct entry *const e = r->entry;
     char hint[PARAM_HINT];
     struct nearest near = {0};
     for (int k = 0; k < r->n_sections && !*prefix; k++)
         if (takes_key(r, k, e->key))
-            return bad_entry(r, e, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
+            return bad_entry(r, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
                              name_of(&r->sections[k]), e->key);
     for (int k = 0; k < r->n_entries; k++)
         if (r->sections[r->entries[k].section].id == SECTION_constants &&
             (!*prefix || id == SECTION_constants))
             nearest_offer(&near, e->key, r->entries[k].key);
     param_hint((enum section_id)id, e->key, &near, hint);
-    return bad_entry(r, e, "unknown %s `%.60s`%s", *prefix || *hint ? "key" : "key or constant",
+    return bad_entry(r, "unknown %s `%.60s`%s", *prefix || *hint ? "key" : "key or constant",
                      e->key, hint);
 }
 
 /* Of the sections that the prefix of --set means, the only one that has the key. */
-static enum err find_target(struct reader *r, const struct entry *e, const char *prefix,
-                            int *target)
+static enum err find_target(struct reader *r, const char *prefix, int *target)
 {
+    const struct entry *const e = r->entry;
     struct nearest near = {0};
     int meant = -1;
     TRY(add_missing(r, prefix));
@@ -245,7 +246,7 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
         if (!takes_key(r, k, e->key)) continue;
         const struct case_section *const first = *target < 0 ? NULL : &r->sections[*target];
         if (first)
-            return bad_entry(r, e,
+            return bad_entry(r,
                              "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
                              section_table[first->id].word, first->name, section_table[s->id].word,
                              s->name, e->key, section_table[*first->name ? first->id : s->id].word,
@@ -253,8 +254,8 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
         *target = k;
     }
     if (*target >= 0) return ERR_OK;
-    if (meant >= 0) return unknown_in_set(r, e, prefix, meant);
-    return bad_entry(r, e,
+    if (meant >= 0) return unknown_in_set(r, prefix, meant);
+    return bad_entry(r,
                      near.name ? "there is no section `%.60s`%s"
                                : "the case has no section `%.60s`%s",
                      prefix, nearest_hint(&near));
@@ -276,14 +277,15 @@ static void put_entry(struct reader *r, struct entry e)
 static enum err apply_set(struct reader *r, const char *set)
 {
     struct entry e = {.set = set, .key = ""};
+    r->entry = &e;
     const size_t bytes = strlen(set) + 1;
     char *copy = arena_alloc(&r->temp, bytes, 1, "--set", r->diag);
     if (!copy) return ERR_MEMORY;
     memcpy(copy, set, bytes);
     for (const char *c = copy; *c; c++)
-        if ((unsigned char)*c < ' ' && *c != '\t') return bad_entry(r, &e, "control byte %d", *c);
+        if ((unsigned char)*c < ' ' && *c != '\t') return bad_entry(r, "control byte %d", *c);
     char *value = strchr(copy, '=');
-    if (!value) return bad_entry(r, &e, "write key=value or section.key=value");
+    if (!value) return bad_entry(r, "write key=value or section.key=value");
     *value++ = '\0';
     char *key = trim(copy), *prefix = copy + strlen(copy);
     char *const dot = strrchr(key, '.');
@@ -293,12 +295,12 @@ static enum err apply_set(struct reader *r, const char *set)
         key = trim(dot + 1);
     }
     if (!is_identifier(key) || strlen(key) >= SCENE_NAME || (dot && !*prefix))
-        return bad_entry(r, &e, "write key=value or section.key=value");
+        return bad_entry(r, "write key=value or section.key=value");
     e.key = key;
     const char *why;
     e.value = cut_value(value, &why);
-    if (why) return bad_entry(r, &e, "`%s` %s", key, why);
-    TRY(find_target(r, &e, prefix, &e.section));
+    if (why) return bad_entry(r, "`%s` %s", key, why);
+    TRY(find_target(r, prefix, &e.section));
     put_entry(r, e);
     return ERR_OK;
 }

@@ -1,12 +1,140 @@
 /* SPDX-License-Identifier: MIT
- * Prescribed motion: a velocity, a polynomial of time, a table, a sine, a rotation, or expressions
- * in time. */
+ * What a case prescribes as a function of time: tables of a time and two values, gravity (T-70),
+ * and motion: a velocity, a polynomial, a table, a sine, a rotation, or expressions in time. */
 #include "case/case.h"
+#include "base/csv.h"
 #include "base/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- tables --- */
+
+enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
+                    const char *key, struct diag *d)
+{
+    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
+    struct diag why = {.code = ERR_OK};
+    scene_location(scene, line, place);
+    if (!scene_file(scene, name, path, sizeof path))
+        return diag_add(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
+    csv->path = name;
+    csv->diag = &why;
+    const enum err e = csv_open(csv, path);
+    csv->diag = d;
+    if (e && csv->text) return diag_add(d, e, "%s", why.text);
+    if (e)
+        return diag_add(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: %s: %.400s", place, key, why.text);
+    return ERR_OK;
+}
+
+/* Columns for a number of rows. */
+static enum err table_allocate(struct scene *scene, struct scene_table *table, int rows,
+                               struct diag *d)
+{
+    double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
+    for (size_t k = 0; k < COUNT_OF(columns); k++) {
+        *columns[k] = arena_alloc(&scene->arena, (size_t)rows, sizeof(double), "table", d);
+        if (!*columns[k]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+/* `what` it is of, with its columns; of a motion: its first row is zero. */
+struct table_kind {
+    const char *what, *columns;
+    bool from_rest;
+};
+
+static enum err read_table(struct scene *scene, struct scene_table *table,
+                           const struct table_kind *kind, struct csv *csv)
+{
+    double row[3];
+    int more;
+    TRY(table_allocate(scene, table, csv->lines, csv->diag));
+    for (; (more = csv_row(csv, row)) > 0; table->n++) {
+        const int k = table->n;
+        if (k > 0 && row[0] <= table->t[k - 1])
+            return diag_add(csv->diag, ERR_INPUT,
+                            "%s:%d: times must increase, but %g s follows %g s", csv->path,
+                            csv->line, row[0], table->t[k - 1]);
+        if (k == 0 && kind->from_rest && (row[0] < 0 || row[1] != 0 || row[2] != 0))
+            return diag_add(csv->diag, ERR_INPUT,
+                            "%s:%d: the first row must have a time of 0 or later and no "
+                            "displacement, usually `0, 0, 0`",
+                            csv->path, csv->line);
+        table->t[k] = row[0];
+        table->x[k] = row[1];
+        table->y[k] = row[2];
+    }
+    if (more == 0 && table->n < 2)
+        return diag_add(csv->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d",
+                        csv->path, kind->what, table->n == 1 ? "is" : "are", table->n);
+    return more < 0 ? ERR_INPUT : ERR_OK;
+}
+
+static enum err table_load(struct scene *scene, struct scene_table *table,
+                           const struct table_kind *kind, const char *name, int line,
+                           const char *key, struct diag *d)
+{
+    struct csv csv = {.columns = kind->columns, .n = 3, .limit = 1e9};
+    enum err e = table_open(scene, &csv, name, line, key, d);
+    if (!e) e = read_table(scene, table, kind, &csv);
+    csv_close(&csv);
+    return e;
+}
+
+/* The row at or before a time, but not before the first nor the last one. */
+static int table_row(const struct scene_table *table, double t)
+{
+    int low = 0, high = table->n - 1;
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        if (table->t[middle] <= t)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* --- gravity --- */
+
+bool scene_gravity_varies(const struct scene *scene)
+{
+    const struct scene_expr *const e = &scene->top.gravity_in_time;
+    return e->e[0] || e->e[1] || scene->gravity_data.n > 0;
+}
+
+void scene_gravity_at(const struct scene *scene, double t, double g[2])
+{
+    const struct scene_table *const table = &scene->gravity_data;
+    t = max2(t, 0); /* while rest is sought (T-78) */
+    for (int c = 0; c < 2; c++) {
+        const struct expr *const e = scene->top.gravity_in_time.e[c];
+        g[c] = e ? scene_expr_at(e, t, 0) : scene->top.gravity[c];
+    }
+    if (table->n == 0) return;
+    const int k = table_row(table, t);
+    const double fraction = (t - table->t[k]) / (table->t[k + 1] - table->t[k]);
+    const double u =
+        min2(max2(fraction, 0), 1); /* constant before its first and after its last row */
+    g[0] += table->x[k] + u * (table->x[k + 1] - table->x[k]);
+    g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
+}
+
+enum err gravity_load(struct scene *scene, struct diag *d)
+{
+    static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
+                                           false};
+    if (!*scene->top.gravity_file) return ERR_OK;
+    const int line = scene_line(scene, SECTION_top, 0, "gravity_file");
+    return table_load(scene, &scene->gravity_data, &kind, scene->top.gravity_file, line,
+                      "gravity_file", d);
+}
+
+/* --- tables of motions --- */
 
 /* Slopes of the monotone cubic (Fritsch and Carlson 1980, with the harmonic mean of Brodlie): no
  * overshoot between rows. Zero at both ends, where the motion starts and ends at rest. */

@@ -16,19 +16,20 @@ static struct constant *find_constant(struct reader *r, const char *name)
     return NULL;
 }
 
-static enum err collect_constant(struct reader *r, const struct entry *e)
+static enum err collect_constant(struct reader *r)
 {
+    const struct entry *const e = r->entry;
     const char *const meaning =
         param_find(SECTION_top, e->key) ? "a key at the top of the file" : expr_reserved(e->key);
     const struct constant *const before = find_constant(r, e->key);
     if (meaning)
-        return bad_entry(r, e, "a constant cannot be named `%s`: that is %s; rename it", e->key,
+        return bad_entry(r, "a constant cannot be named `%s`: that is %s; rename it", e->key,
                          meaning);
     if (before)
-        return bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out", e->key,
+        return bad_entry(r, "`%s` is given twice, first in line %d; leave one out", e->key,
                          before->entry->line);
     if (r->n_constants == CASE_MAX_CONSTANTS)
-        return bad_entry(r, e, "more than %d constants are given; write some as numbers",
+        return bad_entry(r, "more than %d constants are given; write some as numbers",
                          CASE_MAX_CONSTANTS);
     r->constants[r->n_constants++] = (struct constant){.entry = e};
     return ERR_OK;
@@ -40,9 +41,11 @@ enum err case_collect_constants(struct reader *r)
     r->constants = arena_alloc(&r->temp, CASE_MAX_CONSTANTS + (size_t)PARAM_COUNT,
                                sizeof *r->constants, "constants", r->diag);
     if (!r->constants) return ERR_MEMORY;
-    for (int k = 0; k < r->n_entries; k++)
-        if (r->sections[r->entries[k].section].id == SECTION_constants)
-            TRY(case_go_on(r, collect_constant(r, &r->entries[k])));
+    for (int k = 0; k < r->n_entries; k++) {
+        r->entry = &r->entries[k];
+        if (r->sections[r->entry->section].id == SECTION_constants)
+            TRY(case_go_on(r, collect_constant(r)));
+    }
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = &r->entries[k];
         const struct param *const param = param_find(SECTION_top, e->key);
@@ -144,12 +147,12 @@ static const char *unit_left_out(struct reader *r, char text[300])
 }
 
 /* A consequence of a problem already reported is not reported again. */
-enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why)
+enum err case_bad_expression(struct reader *r, const char *why)
 {
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
     char unit[300];
-    const bool slashes = strstr(e->value, "//") && !strstr(why, "comment");
-    return bad_value(r, e, "%s%s%s", why, unit_left_out(r, unit),
+    const bool slashes = strstr(r->entry->value, "//") && !strstr(why, "comment");
+    return bad_value(r, "%s%s%s", why, unit_left_out(r, unit),
                      slashes ? "; `//` begins no comment here, # does" : "");
 }
 
@@ -163,8 +166,9 @@ enum err case_all_constants(struct reader *r)
         struct constant *const c = &r->constants[k];
         char why[EXPR_WHY];
         r->cause_named = false;
+        r->entry = c->entry;
         if (!evaluate_constant(r, c, why))
-            TRY(case_go_on(r, case_bad_expression(r, c->entry, why)));
+            TRY(case_go_on(r, case_bad_expression(r, why)));
         else if (r->sections[c->entry->section].id == SECTION_constants) {
             struct scene_constant *const to = &scene->constant[scene->n_constants++];
             snprintf(to->name, sizeof to->name, "%s", c->entry->key);
@@ -177,26 +181,24 @@ enum err case_all_constants(struct reader *r)
 
 /* --- numbers with units --- */
 
-enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
-                        const char *unit)
+enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit)
 {
     const struct dim expected = unit_dim(unit);
     char have[DIM_TEXT], want[DIM_TEXT], left_out[300];
     if (dim_fits(dim, unit)) return ERR_OK;
     dim_text(dim, have);
     dim_text(&expected, want);
-    return bad_value(r, e, "%s where %s is expected%s", have, want, unit_left_out(r, left_out));
+    return bad_value(r, "%s where %s is expected%s", have, want, unit_left_out(r, left_out));
 }
 
-enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
-                     double *value)
+enum err case_number(struct reader *r, struct slice text, const char *unit, double *value)
 {
     const struct expr_names names = {r, case_name, EXPR_FIXED};
     struct quantity q = {0};
     char why[EXPR_WHY];
     r->cause_named = false;
-    if (!expr_value(text, &names, &q, why)) return case_bad_expression(r, e, why);
-    TRY(case_check_dim(r, e, &q.dim, unit));
+    if (!expr_value(text, &names, &q, why)) return case_bad_expression(r, why);
+    TRY(case_check_dim(r, &q.dim, unit));
     *value = q.value;
     return ERR_OK;
 }

@@ -75,27 +75,21 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
     const double *const g = r->scene->top.gravity;
-    if (o->length == 0)
-        return bad_section(r, o->common, NULL,
-                           "`from` and `to`, the ends of its line, must differ");
+    if (o->length == 0) return bad_section(r, "`from` and `to`, the ends of its line, must differ");
     if (given > 1)
-        return bad_section(r, o->common, NULL,
-                           "has more than one of `speed`, `velocity` and `pressure`; keep one");
+        return bad_section(r, "has more than one of `speed`, `velocity` and `pressure`; keep one");
     if (given == 0 && isnan(o->level))
-        return bad_section(r, o->common, NULL, "needs `speed`, `velocity`, `pressure` or `level`");
+        return bad_section(r, "needs `speed`, `velocity`, `pressure` or `level`");
     if (o->pressure && !isnan(o->level))
-        return bad_section(r, o->common, NULL,
-                           "has both `pressure` and `level`, but `level` already sets the "
-                           "pressure; remove one of them");
+        return bad_section(r, "has both `pressure` and `level`, but `level` already sets the "
+                              "pressure; remove one of them");
     if (!isnan(o->level) && !(g[1] < 0 && g[0] == 0))
-        return bad_section(r, o->common, NULL,
-                           "level = %g m needs gravity that points down, but gravity is %g, %g "
-                           "m/s^2",
-                           o->level, g[0], g[1]);
+        return bad_section(
+            r, "level = %g m needs gravity that points down, but gravity is %g, %g m/s^2", o->level,
+            g[0], g[1]);
     if (o->kind == OPEN_VELOCITY && o->absorb > 0)
-        return bad_section(r, o->common, NULL,
-                           "`absorb` needs `pressure` or `level` without a velocity; a given "
-                           "velocity holds exactly, so leave `absorb` out");
+        return bad_section(r, "`absorb` needs `pressure` or `level` without a velocity; a given "
+                              "velocity holds exactly, so leave `absorb` out");
     return ERR_OK;
 }
 
@@ -128,22 +122,21 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
     const struct scene_open_range range = scene_open_range(r->scene, o);
     if (range.infinite)
-        return bad_section(r, o->common, NULL,
-                           "%s is not finite at (%g, %g) m and t = %g s; change the expression",
+        return bad_section(r, "%s is not finite at (%g, %g) m and t = %g s; change the expression",
                            o->pressure ? "pressure"
                            : o->speed  ? "speed"
                                        : "velocity",
                            range.x[0], range.x[1], range.time);
     if (o->kind == OPEN_PRESSURE) return ERR_OK;
     if (range.largest > 0 && max2(range.forth, range.back) < 1e-9 * range.largest)
-        return bad_section(r, o->common, NULL,
+        return bad_section(r,
                            "its velocity is along the line everywhere and at all times, so no "
                            "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
                            o->inward[0], o->inward[1]);
     if (range.forth <= 0 && range.back > 0)
-        return bad_section(r, o->common, NULL,
-                           "its velocity points %s the fluid everywhere and at all times, by up "
-                           "to %g m/s: change its sign or `side`, or call it [%s]",
+        return bad_section(r,
+                           "its velocity points %s the fluid everywhere and at all times, by up to "
+                           "%g m/s: change its sign or `side`, or call it [%s]",
                            o->inflow ? "out of" : "into", range.back,
                            o->inflow ? "outflow" : "inflow");
     return ERR_OK;

@@ -59,12 +59,11 @@ static enum err allocate_sections(struct reader *r)
 
 /* `like = NAME`: the values of an earlier section of the kind become the defaults. Its regions do
  * not, since two bodies cannot be in the same place. */
-static enum err inherit(struct reader *r, const struct entry *e, const struct param *like,
-                        struct scene_section_common *to)
+static enum err inherit(struct reader *r, const struct param *like, struct scene_section_common *to)
 {
     char *const target = (void *)to;
     char name[SCENE_TEXT] = "";
-    TRY(case_value(r, e, like, target));
+    TRY(case_value(r, like, target));
     snprintf(name, sizeof name, "%s", target + like->offset);
     struct nearest near = {0};
     for (int k = 0; k < to->index; k++) {
@@ -79,7 +78,7 @@ static enum err inherit(struct reader *r, const struct entry *e, const struct pa
         return ERR_OK;
     }
     if (r->incomplete) return ERR_INPUT; /* it may be defined in an invalid line */
-    return bad_value(r, e, "there is no earlier [%s] of that name%s",
+    return bad_value(r, "there is no earlier [%s] of that name%s",
                      section_table[like->section].word, nearest_hint(&near));
 }
 
@@ -92,45 +91,45 @@ static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
 
 /* --- keys --- */
 
-static enum err unknown_key(struct reader *r, const struct entry *e, int id)
+static enum err unknown_key(struct reader *r, int id)
 {
     char hint[PARAM_HINT], title[TITLE_TEXT];
     struct nearest near = {0};
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
     r->incomplete = true;
-    return bad_entry(r, e, "unknown key `%s` %s%s", e->key,
+    return bad_entry(r, "unknown key `%s` %s%s", r->entry->key,
                      id == SECTION_top ? "at the top of the file" : title,
-                     param_hint((enum section_id)id, e->key, &near, hint));
+                     param_hint((enum section_id)id, r->entry->key, &near, hint));
 }
 
 static enum err read_section(struct reader *r, int section)
 {
     const enum section_id id = (enum section_id)r->sections[section].id;
-    const struct entry *given[PARAM_COUNT] = {NULL}, *const as = case_entry(r, section, "like");
+    const struct entry *given[PARAM_COUNT] = {NULL};
     const struct param *const like = id < SECTION_COUNT ? param_find(id, "like") : NULL;
     if (r->sections[section].id == SECTION_constants) return ERR_OK;
     void *const target = section_of(r, &r->sections[section]);
-    if (like && as) TRY(case_go_on(r, inherit(r, as, like, target)));
+    r->entry = case_entry(r, section, "like");
+    if (like && r->entry) TRY(case_go_on(r, inherit(r, like, target)));
     if (id == SECTION_fluid) drop_rivals(r, section, target);
     for (int k = 0; k < r->n_entries; k++) {
-        const struct entry *const e = &r->entries[k];
+        const struct entry *const e = r->entry = &r->entries[k];
         if (e->section != section) continue;
         const struct param *const param = param_find(id, e->key);
         if (!param) {
-            TRY(case_go_on(r, unknown_key(r, e, (int)id)));
+            TRY(case_go_on(r, unknown_key(r, (int)id)));
             continue;
         }
         const struct entry **const before = &given[param - param_table];
         if (*before && !param_repeats(param)) {
-            TRY(case_go_on(r,
-                           bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
-                                     e->key, (*before)->line)));
+            TRY(case_go_on(r, bad_entry(r, "`%s` is given twice, first in line %d; leave one out",
+                                        e->key, (*before)->line)));
             continue;
         }
         *before = e;
         r->scene->given[r->scene->n_given++] =
             (struct scene_given){(int)id, r->sections[section].index, param->key, e->line};
-        if (param != like) TRY(case_go_on(r, case_value(r, e, param, target)));
+        if (param != like) TRY(case_go_on(r, case_value(r, param, target)));
     }
     return ERR_OK;
 }

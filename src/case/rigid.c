@@ -22,7 +22,7 @@ static enum err check_own_name(struct reader *r, const struct scene_rigid *rigid
             const struct scene_section_common *const other = section_at(r->scene, kinds[n], k);
             char title[TITLE_TEXT];
             if (strcmp(other->name, rigid->common.name) == 0)
-                return bad_section(r, rigid, NULL, "has the name of %s; rename one of them",
+                return bad_section(r, "has the name of %s; rename one of them",
                                    section_title(other, title));
         }
     return ERR_OK;
@@ -45,6 +45,7 @@ enum err case_place_rigid(struct reader *r)
         const struct scene_rigid *const from = &scene->rigid[k];
         struct scene_wall *const wall = &scene->wall[scene_rigid_wall(scene, k)];
         struct scene_motion *const motion = &scene->motion[scene_rigid_motion(scene, k)];
+        r->section = from;
         TRY(case_go_on(r, check_own_name(r, from)));
         wall->common = motion->common = from->common;
         wall->shape = from->shape;
@@ -59,7 +60,7 @@ enum err case_check_rigid(struct reader *r, const void *section)
 {
     const struct scene_rigid *const rigid = section;
     if (isnan(rigid->density) == isnan(rigid->mass))
-        return bad_section(r, rigid, NULL,
+        return bad_section(r,
                            isnan(rigid->mass) ? "needs `density` or `mass`"
                                               : "has both `density` and `mass`; leave one out");
     return ERR_OK;

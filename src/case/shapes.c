@@ -16,53 +16,49 @@
 #include <stdio.h>
 #include <string.h>
 
-static enum err read_point(struct reader *r, const struct entry *e, struct slice text, int n,
-                           double *value)
+static enum err read_point(struct reader *r, struct slice text, int n, double *value)
 {
     struct slice piece;
     const int given = slice_count(text, ',');
     if (given != n)
-        return bad_value(r, e, "%d numbers with commas between them are expected; `%.*s` has %d%s",
-                         n, (int)(text.length < 40 ? text.length : 40), text.at, given,
-                         given > n ? comma_hint(e->value) : "");
+        return bad_value(r, "%d numbers with commas between them are expected; `%.*s` has %d%s", n,
+                         (int)(text.length < 40 ? text.length : 40), text.at, given,
+                         given > n ? comma_hint(r->entry->value) : "");
     for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
-        TRY(case_number(r, e, piece, "m", &value[k]));
-        if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: at most 1e9 m is allowed");
+        TRY(case_number(r, piece, "m", &value[k]));
+        if (fabs(value[k]) > 1e9) return bad_value(r, "out of range: at most 1e9 m is allowed");
     }
     return ERR_OK;
 }
 
-static enum err read_box(struct reader *r, const struct entry *e, struct slice text,
-                         struct shape *shape)
+static enum err read_box(struct reader *r, struct slice text, struct shape *shape)
 {
     const double *const v = shape->pt[0];
-    TRY(read_point(r, e, text, 4, shape->pt[0]));
+    TRY(read_point(r, text, 4, shape->pt[0]));
     if (v[0] < v[2] && v[1] < v[3]) return ERR_OK;
-    return bad_value(r, e,
+    return bad_value(r,
                      "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g to %g m",
                      v[0], v[2], v[1], v[3]);
 }
 
-static enum err read_circle(struct reader *r, const struct entry *e, struct slice text,
-                            struct shape *shape)
+static enum err read_circle(struct reader *r, struct slice text, struct shape *shape)
 {
     double v[3] = {0};
-    TRY(read_point(r, e, text, 3, v));
-    if (!(v[2] > 0)) return bad_value(r, e, "the radius of a circle must be above 0 m");
+    TRY(read_point(r, text, 3, v));
+    if (!(v[2] > 0)) return bad_value(r, "the radius of a circle must be above 0 m");
     memcpy(shape->pt[0], v, sizeof shape->pt[0]);
     shape->size = v[2];
     return ERR_OK;
 }
 
-static enum err read_points(struct reader *r, const struct entry *e, struct slice text,
-                            struct shape *shape)
+static enum err read_points(struct reader *r, struct slice text, struct shape *shape)
 {
     struct slice piece;
     for (int k = 0; k < shape->n && slice_next(&text, ';', &piece); k++) {
         const double *const p = shape->pt[k], *const before = shape->pt[k > 0 ? k - 1 : 0];
-        TRY(read_point(r, e, piece, 2, shape->pt[k]));
+        TRY(read_point(r, piece, 2, shape->pt[k]));
         if (k > 0 && p[0] == before[0] && p[1] == before[1])
-            return bad_value(r, e, "points %d and %d are the same", k, k + 1);
+            return bad_value(r, "points %d and %d are the same", k, k + 1);
     }
     return ERR_OK;
 }
@@ -77,7 +73,7 @@ static bool edges_cross(const double a[2], const double b[2], const double c[2],
     return cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0;
 }
 
-static enum err check_polygon(struct reader *r, const struct entry *e, const struct shape *shape)
+static enum err check_polygon(struct reader *r, const struct shape *shape)
 {
     const int n = shape->n;
     double area = 0, size = 0;
@@ -87,53 +83,50 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
         size = max2(size, elementary_hypot(b[0] - a[0], b[1] - a[1]));
     }
     if (fabs(area) <= 1e-12 * size * size)
-        return bad_value(r, e, "the polygon has no area; check its points");
+        return bad_value(r, "the polygon has no area; check its points");
     for (int i = 0; i < n; i++)
         for (int j = i + 2; j < n; j++)
             if (edges_cross(shape->pt[i], shape->pt[i + 1], shape->pt[j], shape->pt[(j + 1) % n]))
-                return bad_value(r, e, "edges %d and %d of the polygon cross", i + 1, j + 1);
+                return bad_value(r, "edges %d and %d of the polygon cross", i + 1, j + 1);
     return ERR_OK;
 }
 
 /* "thickness T:", or ":" alone, before the points of a line. */
-static enum err read_thickness(struct reader *r, const struct entry *e, struct slice *text,
-                               struct shape *shape)
+static enum err read_thickness(struct reader *r, struct slice *text, struct shape *shape)
 {
     static const char word[] = "thickness";
     const size_t length = sizeof word - 1;
     struct slice number;
     const bool given = text->length >= length && memcmp(text->at, word, length) == 0,
-               wall = r->sections[e->section].id == SECTION_wall && strcmp(e->key, "shape") == 0;
+               wall = r->sections[r->entry->section].id == SECTION_wall &&
+                      strcmp(r->entry->key, "shape") == 0;
     shape->bare = text->at[0] == ':' && wall;
     if ((!given && !shape->bare) || !slice_next(text, ':', &number) || !text->at)
-        return bad_value(r, e,
-                         "write `polyline thickness T: X, Y; X, Y; ...`; `thickness T` may be left "
-                         "out in a `shape` of a [wall]");
+        return bad_value(r, "write `polyline thickness T: X, Y; X, Y; ...`; `thickness T` may be "
+                            "left out in a `shape` of a [wall]");
     if (shape->bare) return ERR_OK;
-    TRY(case_number(r, e, slice_after(number, length), "m", &shape->size));
+    TRY(case_number(r, slice_after(number, length), "m", &shape->size));
     if (shape->size == 0 || fabs(shape->size) > 1e9)
-        return bad_value(r, e, "the thickness must not be 0 and at most 1e9 m");
+        return bad_value(r, "the thickness must not be 0 and at most 1e9 m");
     return ERR_OK;
 }
 
 /* Points at most a degree apart. A full circle ends exactly where it begins. */
-static enum err read_arc(struct reader *r, const struct entry *e, struct slice text,
-                         struct shape *shape)
+static enum err read_arc(struct reader *r, struct slice text, struct shape *shape)
 {
     static const char *const units[] = {"m", "m", "m", "rad", "rad"};
     const double degree = PI / 180;
     double v[COUNT_OF(units)] = {0};
     struct slice piece;
     if (slice_count(text, ',') != (int)COUNT_OF(units))
-        return bad_value(r, e, "write `arc: X, Y, R, A, B`: centre, radius and two angles");
+        return bad_value(r, "write `arc: X, Y, R, A, B`: centre, radius and two angles");
     for (size_t k = 0; k < COUNT_OF(units) && slice_next(&text, ',', &piece); k++)
-        TRY(case_number(r, e, piece, units[k], &v[k]));
+        TRY(case_number(r, piece, units[k], &v[k]));
     const double turn = v[4] - v[3], parts = ceil(fabs(turn) / degree - 1e-9);
     if (!(v[2] > 0 && v[2] <= 1e9) || !(fabs(v[0]) <= 1e9 && fabs(v[1]) <= 1e9) || !(parts > 0) ||
         parts > 360)
-        return bad_value(r, e,
-                         "the radius must be above 0, and the angles differ by at most 360 "
-                         "degrees");
+        return bad_value(
+            r, "the radius must be above 0, and the angles differ by at most 360 degrees");
     shape->n = (int)parts + 1;
     shape->pt =
         arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
@@ -154,48 +147,47 @@ const char *const shape_words[] = {[SHAPE_BOX] = "box",
                                    [SHAPE_CIRCLE] = "circle",
                                    [SHAPE_CIRCLE + 1] = "arc"};
 
-static enum err read_shape(struct reader *r, const struct entry *e, struct slice text, bool arc,
-                           struct shape *shape)
+static enum err read_shape(struct reader *r, struct slice text, bool arc, struct shape *shape)
 {
     static const int needed[] = {
         [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
     const int min_points = needed[shape->kind];
     const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
-    if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, shape));
-    if (arc) return read_arc(r, e, text, shape);
+    if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, &text, shape));
+    if (arc) return read_arc(r, text, shape);
     shape->n = listed ? slice_count(text, ';') : min_points;
     if (shape->n < min_points)
-        return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
+        return bad_value(r, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
                          min_points, shape->n == 1 ? "is" : "are", shape->n);
     if (shape->n > CASE_MAX_POINTS)
-        return bad_value(r, e, "more than %d points are given; use fewer points or several shapes",
+        return bad_value(r, "more than %d points are given; use fewer points or several shapes",
                          CASE_MAX_POINTS);
     shape->pt =
         arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
     if (!shape->pt) return ERR_MEMORY;
-    if (shape->kind == SHAPE_BOX) return read_box(r, e, text, shape);
-    if (shape->kind == SHAPE_CIRCLE) return read_circle(r, e, text, shape);
-    TRY(read_points(r, e, text, shape));
-    return shape->kind == SHAPE_POLYGON ? check_polygon(r, e, shape) : ERR_OK;
+    if (shape->kind == SHAPE_BOX) return read_box(r, text, shape);
+    if (shape->kind == SHAPE_CIRCLE) return read_circle(r, text, shape);
+    TRY(read_points(r, text, shape));
+    return shape->kind == SHAPE_POLYGON ? check_polygon(r, shape) : ERR_OK;
 }
 
-enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+enum err case_shape(struct reader *r, struct shape_list *list)
 {
-    const size_t length = strcspn(e->value, " \t:");
+    const size_t length = strcspn(r->entry->value, " \t:");
     const int arc = SHAPE_CIRCLE + 1;
     int kind = SHAPE_BOX;
     while (kind <= arc && (strlen(shape_words[kind]) != length ||
-                           memcmp(shape_words[kind], e->value, length) != 0))
+                           memcmp(shape_words[kind], r->entry->value, length) != 0))
         kind++;
     if (kind > arc)
-        return bad_value(r, e,
-                         "`%.*s` is not a shape; known: box X0, Y0, X1, Y1; circle X, Y, R; "
-                         "polygon X, Y; ...; polyline thickness T: X, Y; ...; arc thickness T: "
-                         "X, Y, R, A, B",
-                         (int)(length < 40 ? length : 40), e->value);
+        return bad_value(
+            r,
+            "`%.*s` is not a shape; known: box X0, Y0, X1, Y1; circle X, Y, R; polygon X, Y; ...; "
+            "polyline thickness T: X, Y; ...; arc thickness T: X, Y, R, A, B",
+            (int)(length < 40 ? length : 40), r->entry->value);
     struct shape shape = {.kind = kind == arc ? SHAPE_POLYLINE : (enum shape_kind)kind,
-                          .line = e->line};
-    TRY(read_shape(r, e, slice_trimmed(slice_of(e->value + length)), kind == arc, &shape));
+                          .line = r->entry->line};
+    TRY(read_shape(r, slice_trimmed(slice_of(r->entry->value + length)), kind == arc, &shape));
     list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof shape,
                             "regions of a body", r->diag);
     if (!list->item) return ERR_MEMORY;
@@ -203,21 +195,21 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     return ERR_OK;
 }
 
-enum err case_hinge(struct reader *r, const struct entry *e, struct hinge_list *list)
+enum err case_hinge(struct reader *r, struct hinge_list *list)
 {
-    struct hinge_point hinge = {.line = e->line};
-    struct slice text = slice_of(e->value), rest = text, piece = text;
+    struct hinge_point hinge = {.line = r->entry->line};
+    struct slice text = slice_of(r->entry->value), rest = text, piece = text;
     const int n = slice_count(text, ',');
     if (n != 2 && n != 3)
-        return bad_value(r, e, "`X, Y` or `X, Y, NAME` is expected; there %s %d%s",
-                         n == 1 ? "is" : "are", n, comma_hint(e->value));
+        return bad_value(r, "`X, Y` or `X, Y, NAME` is expected; there %s %d%s",
+                         n == 1 ? "is" : "are", n, comma_hint(r->entry->value));
     for (int k = 0; k < n; k++) slice_next(&rest, ',', &piece);
     if (n == 3) {
         snprintf(hinge.other, sizeof hinge.other, "%.*s", (int)piece.length, piece.at);
         while (text.at[text.length - 1] != ',') text.length--;
         text.length--;
     }
-    TRY(read_point(r, e, text, 2, hinge.at));
+    TRY(read_point(r, text, 2, hinge.at));
     list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof hinge,
                             "hinges of a body", r->diag);
     if (!list->item) return ERR_MEMORY;

@@ -6,8 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static enum err check_range(struct reader *r, const struct entry *e, const struct param *param,
-                            double value)
+static enum err check_range(struct reader *r, const struct param *param, double value)
 {
     const bool low = param->low.open ? value > param->low.value : value >= param->low.value;
     const bool high = param->high.open ? value < param->high.value : value <= param->high.value;
@@ -15,37 +14,34 @@ static enum err check_range(struct reader *r, const struct entry *e, const struc
     char unit[40] = "";
     if (param->unit && strcmp(param->unit, "1") != 0)
         snprintf(unit, sizeof unit, " %s", param->unit);
-    return bad_value(r, e, "out of range: it must be %s %g%s and %s %g%s",
+    return bad_value(r, "out of range: it must be %s %g%s and %s %g%s",
                      param->low.open ? "above" : "at least", param->low.value, unit,
                      param->high.open ? "below" : "at most", param->high.value, unit);
 }
 
-static enum err read_integer(struct reader *r, const struct entry *e, const struct param *param,
-                             int *value)
+static enum err read_integer(struct reader *r, const struct param *param, int *value)
 {
     double number = 0;
-    TRY(case_number(r, e, slice_of(e->value), "1", &number));
-    TRY(check_range(r, e, param, number));
-    if (number != floor(number)) return bad_value(r, e, "a whole number is expected");
+    TRY(case_number(r, slice_of(r->entry->value), "1", &number));
+    TRY(check_range(r, param, number));
+    if (number != floor(number)) return bad_value(r, "a whole number is expected");
     *value = (int)number;
     return ERR_OK;
 }
 
-static enum err read_choice(struct reader *r, const struct entry *e, const struct param *param,
-                            int *value)
+static enum err read_choice(struct reader *r, const struct param *param, int *value)
 {
     enum { MAX_CHOICES = 32 };
     char names[MAX_CHOICES][SCENE_NAME];
     struct nearest near = {0};
     for (int k = 0; k < MAX_CHOICES && param_choice_name(param, k, names[k]); k++) {
-        nearest_offer(&near, e->value, names[k]);
-        if (strcmp(names[k], e->value) != 0) continue;
+        nearest_offer(&near, r->entry->value, names[k]);
+        if (strcmp(names[k], r->entry->value) != 0) continue;
         *value = k;
         return ERR_OK;
     }
-    if (near.name)
-        return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, param->choices);
-    return bad_value(r, e, "unknown choice; known: %s", param->choices);
+    if (near.name) return bad_value(r, "did you mean `%s`? Known: %s", near.name, param->choices);
+    return bad_value(r, "unknown choice; known: %s", param->choices);
 }
 
 /* Texts are written to JSON, HDF5 and plots, which all need UTF-8. */
@@ -68,114 +64,110 @@ static bool is_utf8(struct slice text)
     return follow == 0;
 }
 
-static enum err read_text(struct reader *r, const struct entry *e, char value[SCENE_TEXT])
+static enum err read_text(struct reader *r, char value[SCENE_TEXT])
 {
-    struct slice text = slice_of(e->value);
+    struct slice text = slice_of(r->entry->value);
     if (text.length >= 2 && *text.at == '"') {
         text.at++;
         text.length -= 2;
     }
     if (text.length >= SCENE_TEXT)
-        return bad_value(r, e, "the text is longer than %d bytes; shorten it", SCENE_TEXT - 1);
+        return bad_value(r, "the text is longer than %d bytes; shorten it", SCENE_TEXT - 1);
     if (!is_utf8(text))
-        return bad_entry(r, e, "`%s` is not UTF-8 text; save the file as UTF-8", e->key);
+        return bad_entry(r, "`%s` is not UTF-8 text; save the file as UTF-8", r->entry->key);
     memset(value, 0, SCENE_TEXT);
     memcpy(value, text.at, text.length);
     return ERR_OK;
 }
 
 /* The number of pieces between commas is that of the components. */
-static enum err check_count(struct reader *r, const struct entry *e, const struct param *param)
+static enum err check_count(struct reader *r, const struct param *param)
 {
-    const int n = slice_count(slice_of(e->value), ',');
+    const int n = slice_count(slice_of(r->entry->value), ',');
     const char *const verb = n == 1 ? "is" : "are";
     if (n == param->count) return ERR_OK;
     if (param->type == PARAM_VECTOR)
-        return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s",
-                         param->key, verb, n, comma_hint(e->value));
-    return bad_value(r, e, "%s expected, with commas between them; there %s %d",
+        return bad_value(r, "two components are expected, `%s = X, Y`; there %s %d%s", param->key,
+                         verb, n, comma_hint(r->entry->value));
+    return bad_value(r, "%s expected, with commas between them; there %s %d",
                      param->count == 1 ? "one expression is" : "two expressions are", verb, n);
 }
 
-static enum err read_list(struct reader *r, const struct entry *e, const struct param *param,
-                          double *value)
+static enum err read_list(struct reader *r, const struct param *param, double *value)
 {
-    struct slice rest = slice_of(e->value), piece = rest;
+    struct slice rest = slice_of(r->entry->value), piece = rest;
     for (; slice_next(&rest, ',', &piece); value++) {
-        TRY(case_number(r, e, piece, param->unit, value));
+        TRY(case_number(r, piece, param->unit, value));
         if (!(fabs(*value) <= 1e15))
-            return bad_value(r, e, "out of range: the magnitude must be 1e15 or less");
+            return bad_value(r, "out of range: the magnitude must be 1e15 or less");
     }
     return ERR_OK;
 }
 
-static enum err read_numbers(struct reader *r, const struct entry *e, const struct param *param,
-                             struct number_list *list)
+static enum err read_numbers(struct reader *r, const struct param *param, struct number_list *list)
 {
-    list->n = slice_count(slice_of(e->value), ',');
+    list->n = slice_count(slice_of(r->entry->value), ',');
     if (list->n > CASE_MAX_POINTS)
-        return bad_value(r, e, "more than %d numbers are given", CASE_MAX_POINTS);
+        return bad_value(r, "more than %d numbers are given", CASE_MAX_POINTS);
     list->value =
         arena_alloc(&r->scene->arena, (size_t)list->n, sizeof *list->value, "numbers", r->diag);
-    return list->value ? read_list(r, e, param, list->value) : ERR_MEMORY;
+    return list->value ? read_list(r, param, list->value) : ERR_MEMORY;
 }
 
-static enum err read_expressions(struct reader *r, const struct entry *e, const struct param *param,
+static enum err read_expressions(struct reader *r, const struct param *param,
                                  struct scene_expr *field)
 {
     const struct expr_names names = {r, case_name, param->scope};
-    struct slice rest = slice_of(e->value), piece = rest;
-    TRY(check_count(r, e, param));
+    struct slice rest = slice_of(r->entry->value), piece = rest;
+    TRY(check_count(r, param));
     for (int k = 0; slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         struct dim dim = {0};
         r->cause_named = false;
         const enum err err =
             expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
-        if (err == ERR_INPUT) return case_bad_expression(r, e, why);
+        if (err == ERR_INPUT) return case_bad_expression(r, why);
         if (err) return err;
-        TRY(case_check_dim(r, e, &dim, param->unit));
+        TRY(case_check_dim(r, &dim, param->unit));
     }
     return ERR_OK;
 }
 
 /* Numbers, or expressions if they depend on t. */
-static enum err read_time_vector(struct reader *r, const struct entry *e, const struct param *param,
-                                 void *section)
+static enum err read_time_vector(struct reader *r, const struct param *param, void *section)
 {
     double *const value = (double *)(void *)((char *)section + param->offset);
     struct scene_expr *const in_time = (void *)((char *)section + param->expr_offset);
-    TRY(read_expressions(r, e, param, in_time));
+    TRY(read_expressions(r, param, in_time));
     for (int k = 0; k < 2; k++) {
         value[k] = scene_expr_at(in_time->e[k], 0, 0);
         if (!(fabs(value[k]) <= 1e15))
             return bad_value(
-                r, e, "component %d at t = 0 must be a finite number of magnitude 1e15 or less",
+                r, "component %d at t = 0 must be a finite number of magnitude 1e15 or less",
                 k + 1);
         if (expr_is_number(in_time->e[k])) in_time->e[k] = NULL;
     }
     return ERR_OK;
 }
 
-enum err case_value(struct reader *r, const struct entry *e, const struct param *param,
-                    void *section)
+enum err case_value(struct reader *r, const struct param *param, void *section)
 {
     void *const place = (char *)section + param->offset;
     switch (param->type) {
     case PARAM_REAL:
-        TRY(case_number(r, e, slice_of(e->value), param->unit, place));
-        return check_range(r, e, param, *(double *)place);
-    case PARAM_INTEGER: return read_integer(r, e, param, place);
-    case PARAM_CHOICE: return read_choice(r, e, param, place);
-    case PARAM_TEXT: return read_text(r, e, place);
+        TRY(case_number(r, slice_of(r->entry->value), param->unit, place));
+        return check_range(r, param, *(double *)place);
+    case PARAM_INTEGER: return read_integer(r, param, place);
+    case PARAM_CHOICE: return read_choice(r, param, place);
+    case PARAM_TEXT: return read_text(r, place);
     case PARAM_VECTOR:
-        if (param->expr_offset) return read_time_vector(r, e, param, section);
-        TRY(check_count(r, e, param));
-        return read_list(r, e, param, place);
-    case PARAM_EXPR: return read_expressions(r, e, param, place);
-    case PARAM_SHAPES: return case_shape(r, e, place);
-    case PARAM_HINGES: return case_hinge(r, e, place);
+        if (param->expr_offset) return read_time_vector(r, param, section);
+        TRY(check_count(r, param));
+        return read_list(r, param, place);
+    case PARAM_EXPR: return read_expressions(r, param, place);
+    case PARAM_SHAPES: return case_shape(r, place);
+    case PARAM_HINGES: return case_hinge(r, place);
     case PARAM_NUMBERS: break;
     }
-    return read_numbers(r, e, param, place);
+    return read_numbers(r, param, place);
 }

@@ -106,8 +106,8 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
         if (!held[c])
             TRY(geometry_refuse(
                 sampler, clamps->item[c].line,
-                "clamp %d of [solid %s] contains no particle; it must cover a part of "
-                "the body; `hinge = X, Y` holds any point of a body that may turn about it",
+                "clamp %d of [solid %s] contains no particle; it must cover a part of the body; "
+                "`hinge = X, Y` holds any point of a body that may turn about it",
                 c + 1, region->name));
     return ERR_OK;
 }
@@ -139,11 +139,10 @@ enum err geometry_check_joined(struct sampler *sampler)
         TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &sampler->temp, sampler->diag));
         for (int64_t n = 0; n < p->n; n++) point_grid_insert(&table, n);
         if (touches(scene, &table, k, other, reach)) continue;
-        TRY(geometry_refuse(
-            sampler, scene_line(scene, SECTION_solid, k, "joined"),
-            "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
-            "from it; move it, or leave `joined` out",
-            scene->solid[k].common.name, scene->solid[k].joined, reach));
+        TRY(geometry_refuse(sampler, scene_line(scene, SECTION_solid, k, "joined"),
+                            "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
+                            "away from it; move it, or leave `joined` out",
+                            scene->solid[k].common.name, scene->solid[k].joined, reach));
     }
     return ERR_OK;
 }

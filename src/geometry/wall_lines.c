@@ -79,12 +79,11 @@ static enum err thicken_line(struct sampler *sampler, const struct region *wall,
                wet_right = is_wet(sampler, line, -1, right);
     bool fluid_left = !wet_right;
     if (wet_left && wet_right)
-        return fail_at(
-            sampler->diag, scene, line->line,
-            "this line of [wall %s] has fluid on both sides, at (%.4g, %.4g) and (%.4g, %.4g) m. "
-            "Draw such a wall as a `box` or `polyline thickness T`, 2 h = %.4g m thick or more, "
-            "and subtract it from the fluid with `minus`",
-            wall->name, left[0], left[1], right[0], right[1], KERNEL_REACH * scene->h);
+        return fail_at(sampler->diag, scene, line->line,
+                       "this line of [wall %s] has fluid on both sides, at (%.4g, %.4g) and (%.4g, "
+                       "%.4g) m. Draw such a wall as a `box` or `polyline thickness T`, 2 h = %.4g "
+                       "m thick or more, and subtract it from the fluid with `minus`",
+                       wall->name, left[0], left[1], right[0], right[1], KERNEL_REACH * scene->h);
     if (closed && !wet_left && !wet_right) {
         TRY(find_inside(sampler, line, &fluid_left));
         fluid_left = fluid_left == left_turning;
