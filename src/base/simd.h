@@ -34,7 +34,8 @@
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
-typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* lanes of vdouble */
+typedef int32_t vint __attribute__((vector_size(SIMD_BYTES)));             /* lanes of vfloat */
+typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* of vdouble */
 
 /* Groups of four lanes. In a sweep each lane of a group is another neighbour j, and each group
  * another particle i. So sums over j do not depend on the width of a vector. A vector of two
@@ -141,14 +142,6 @@ SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
 {
     return (vdouble)X86(max_pd)((X86_DOUBLE)a, (X86_DOUBLE)b);
 }
-SPHFSI_INLINE vfloat vabs_float(vfloat a)
-{
-    return (vfloat)X86(andnot_ps)(X86(set1_ps)(-0.0f), (X86_FLOAT)a);
-}
-SPHFSI_INLINE vdouble vabs_double(vdouble a)
-{
-    return (vdouble)X86(andnot_pd)(X86(set1_pd)(-0.0), (X86_DOUBLE)a);
-}
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)X86(sqrt_ps)((X86_FLOAT)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)X86(sqrt_pd)((X86_DOUBLE)a); }
 #undef X86
@@ -163,33 +156,11 @@ SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 {
     return (vdouble)vfmaq_f64((float64x2_t)c, (float64x2_t)a, (float64x2_t)b);
 }
-SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
-{
-    return (vfloat)vbslq_f32(vcltq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a,
-                             (float32x4_t)b);
-}
-SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
-{
-    return (vfloat)vbslq_f32(vcgtq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a,
-                             (float32x4_t)b);
-}
-SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
-{
-    return (vdouble)vbslq_f64(vcltq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a,
-                              (float64x2_t)b);
-}
-SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
-{
-    return (vdouble)vbslq_f64(vcgtq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a,
-                              (float64x2_t)b);
-}
-SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)vabsq_f32((float32x4_t)a); }
-SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)vabsq_f64((float64x2_t)a); }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #elif defined SIMD_WASM
 /* relaxed_madd rounds once or twice, as the machine does: a program tests that before it relies
- * on it (web/exports.c). pmin(b, a) = a < b ? a : b. */
+ * on it (web/exports.c). */
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
     return (vfloat)wasm_f32x4_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);
@@ -198,73 +169,55 @@ SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 {
     return (vdouble)wasm_f64x2_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);
 }
-SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
-{
-    return (vfloat)wasm_f32x4_pmin((v128_t)b, (v128_t)a);
-}
-SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
-{
-    return (vdouble)wasm_f64x2_pmin((v128_t)b, (v128_t)a);
-}
-SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
-{
-    return (vfloat)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
-}
-SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
-{
-    return (vdouble)wasm_f64x2_pmax((v128_t)b, (v128_t)a);
-}
-SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)wasm_f32x4_abs((v128_t)a); }
-SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)wasm_f64x2_abs((v128_t)a); }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)wasm_f32x4_sqrt((v128_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)wasm_f64x2_sqrt((v128_t)a); }
 #else
-#define SIMD_LANEWISE(type, name, lanes, value)          \
-    type result = {0};                                   \
-    for (int l = 0; l < (lanes); l++) result[l] = value; \
-    return result
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
-    SIMD_LANEWISE(vfloat, fma, LANES_FLOAT, __builtin_fmaf(a[l], b[l], c[l]));
+    for (int l = 0; l < LANES_FLOAT; l++) a[l] = __builtin_fmaf(a[l], b[l], c[l]);
+    return a;
 }
 SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 {
-    SIMD_LANEWISE(vdouble, fma, LANES_DOUBLE, __builtin_fma(a[l], b[l], c[l]));
-}
-SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
-{
-    SIMD_LANEWISE(vfloat, min, LANES_FLOAT, a[l] < b[l] ? a[l] : b[l]);
-}
-SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
-{
-    SIMD_LANEWISE(vfloat, max, LANES_FLOAT, a[l] > b[l] ? a[l] : b[l]);
-}
-SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
-{
-    SIMD_LANEWISE(vdouble, min, LANES_DOUBLE, a[l] < b[l] ? a[l] : b[l]);
-}
-SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
-{
-    SIMD_LANEWISE(vdouble, max, LANES_DOUBLE, a[l] > b[l] ? a[l] : b[l]);
-}
-SPHFSI_INLINE vfloat vabs_float(vfloat a)
-{
-    SIMD_LANEWISE(vfloat, abs, LANES_FLOAT, __builtin_fabsf(a[l]));
-}
-SPHFSI_INLINE vdouble vabs_double(vdouble a)
-{
-    SIMD_LANEWISE(vdouble, abs, LANES_DOUBLE, __builtin_fabs(a[l]));
+    for (int l = 0; l < LANES_DOUBLE; l++) a[l] = __builtin_fma(a[l], b[l], c[l]);
+    return a;
 }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a)
 {
-    SIMD_LANEWISE(vfloat, sqrt, LANES_FLOAT, __builtin_sqrtf(a[l]));
+    for (int l = 0; l < LANES_FLOAT; l++) a[l] = __builtin_sqrtf(a[l]);
+    return a;
 }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 {
-    SIMD_LANEWISE(vdouble, sqrt, LANES_DOUBLE, __builtin_sqrt(a[l]));
+    for (int l = 0; l < LANES_DOUBLE; l++) a[l] = __builtin_sqrt(a[l]);
+    return a;
 }
-#undef SIMD_LANEWISE
 #endif
+
+#ifndef SIMD_AVX2 /* masks of lanes, which compilers know as a selection */
+SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
+{
+    const vint less = a < b;
+    return (vfloat)(((vint)a & less) | ((vint)b & ~less));
+}
+SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
+{
+    const vint more = a > b;
+    return (vfloat)(((vint)a & more) | ((vint)b & ~more));
+}
+SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
+{
+    const vlong less = a < b;
+    return (vdouble)(((vlong)a & less) | ((vlong)b & ~less));
+}
+SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
+{
+    const vlong more = a > b;
+    return (vdouble)(((vlong)a & more) | ((vlong)b & ~more));
+}
+#endif
+SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)((vint)a & INT32_MAX); }
+SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)((vlong)a & INT64_MAX); }
 
 SPHFSI_INLINE four_double four_sqrt(four_double a)
 {
