@@ -43,8 +43,7 @@ static enum err check_names(struct reader *r, const struct param *param, const v
                           !one                            ? param->also
                           : probe->quantity == PROBE_POSE ? SECTION_rigid
                                                           : param->kind);
-    for (int k = 0; scene_listed(text, k, name); k++)
-        TRY(check_name(r, param, name, param->also));
+    for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, param, name, param->also));
     return ERR_OK;
 }
 
@@ -506,7 +505,7 @@ enum err case_check(struct reader *r)
         {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
         {SECTION_rigid, case_check_rigid}, {SECTION_motion, check_motion},
         {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
-        {SECTION_probe, check_probe}, {SECTION_contact, check_contact},
+        {SECTION_probe, check_probe},      {SECTION_contact, check_contact},
         {SECTION_load, check_load},        {SECTION_reference, check_reference},
     };
     if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)

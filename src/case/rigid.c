@@ -60,8 +60,7 @@ enum err case_check_rigid(struct reader *r, const void *section)
 {
     const struct scene_rigid *const rigid = section;
     if (isnan(rigid->density) == isnan(rigid->mass))
-        return bad_section(r,
-                           isnan(rigid->mass) ? "needs `density` or `mass`"
-                                              : "has both `density` and `mass`; leave one out");
+        return bad_section(r, isnan(rigid->mass) ? "needs `density` or `mass`"
+                                                 : "has both `density` and `mass`; leave one out");
     return ERR_OK;
 }
