@@ -31,4 +31,13 @@ SPHFSI_INLINE void box2_corner(const struct box2 *b, int corner, double at[2])
     at[1] = corner & 2 ? b->high[1] : b->low[1];
 }
 
+/* Whether the distance between two boxes along each axis is at most `reach`. */
+SPHFSI_INLINE bool box2_near(const struct box2 *a, const struct box2 *b, double reach)
+{
+    bool near = true;
+    for (int c = 0; c < 2; c++)
+        near &= a->low[c] - b->high[c] <= reach && b->low[c] - a->high[c] <= reach;
+    return near;
+}
+
 #endif

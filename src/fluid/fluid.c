@@ -82,21 +82,6 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
     return ERR_OK;
 }
 
-static enum err power_create(struct fluid *fluid, struct arena *a, int sections,
-                             const struct particles *particles, const struct cells *cells,
-                             struct diag *d)
-{
-    const int64_t in_all = (int64_t)cells->nx * cells->ny;
-    const int32_t chunks =
-        fluid_chunk_count((int32_t)(particles->capacity < in_all ? particles->capacity : in_all));
-    const size_t n = (size_t)(FLUID_POWERS * sections);
-    fluid->sections = sections;
-    fluid->power = arena_alloc(a, n, sizeof *fluid->power, "energy account", d);
-    fluid->chunk_power =
-        arena_alloc(a, (size_t)chunks * n, sizeof *fluid->chunk_power, "energy account", d);
-    return fluid->power && fluid->chunk_power ? ERR_OK : ERR_MEMORY;
-}
-
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
                       effect_set effects, const struct particles kinds[KIND_COUNT],
                       const struct cells *cells, struct diag *d)
@@ -120,8 +105,6 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
                     "cells near walls and structures", d);
     if (!fluid->near_dummies) return ERR_MEMORY;
     if (effects & FX_NO_SLIP) TRY(note_slip(fluid, a, scene, d));
-    if (effects & FX_ENERGY_ACCOUNT)
-        TRY(power_create(fluid, a, scene->n_fluid, &kinds[KIND_FLUID], cells, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(packed_create(&fluid->packed[k], a, cells_clusters(cells, kinds[k].capacity),
@@ -140,68 +123,28 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
     return ERR_OK;
 }
 
-/* A fixed number of slices for threads, in blocks: the order of sums does not depend on the number
- * of threads. */
-enum { SHIFT_SLICES = 24, SHIFT_BLOCK = 64 };
-
-/* The shifts of `count` particles from `from` on, and if it `counts` by how much each gains energy,
- * J/m. Their factor: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al. 2017). At
- * the free surface, where the divergence of the positions falls from 2 to below 1.5, the shift goes
- * to zero as in Dominguez et al. 2022. Returns the largest, squared. */
-static double shift_block(const struct fluid *fluid, struct particles *particles, double dt,
-                          const double g[2], int64_t from, int count, bool counts,
-                          double gain[SHIFT_BLOCK])
+/* The factor of the shift: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al.
+ * 2017). At the free surface, where the divergence of the positions falls from 2 to below 1.5, the
+ * shift goes to zero as in Dominguez et al. 2022. */
+double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt)
 {
-    const double full = 2, none = 1.5, c0 = fluid->k.c0, given = fluid->k.shifting_speed,
-                 of_speed = given > 0 ? 0 : 1, fills = fluid->k.fills_domain ? 2 : 0;
-    double size[SHIFT_BLOCK], before[SHIFT_BLOCK], longest2 = 0;
-    for (int r = 0; r < count; r++) {
-        const bool held = particles->open && particles->open[from + r]; /* T-50: given motion */
-        size[r] = held ? 0 : -fluid->k.model->shifting * fluid->k.h * dt;
-    }
-#pragma omp simd reduction(max : longest2)
-    for (int r = 0; r < count; r++) {
-        const int64_t i = from + r;
+    const double full = 2, none = 1.5, given = fluid->k.shifting_speed,
+                 of_speed = given > 0 ? 0 : 1, fills = fluid->k.fills_domain ? 2 : 0,
+                 size = -fluid->k.model->shifting * fluid->k.h * dt;
+    double longest2 = 0;
+#pragma omp parallel for simd schedule(static) num_threads(fluid->threads) reduction(max : longest2)
+    for (int64_t i = 0; i < particles->n; i++) {
+        const bool held = particles->open && particles->open[i]; /* T-50: given motion */
         const double fade = min2(1, max2(0, (particles->div_r[i] - none) / (full - none)));
         const double speed =
             given + of_speed * sqrt(square(particles->vx[i]) + square(particles->vy[i]));
-        const double step = size[r] * speed * fade, dens = particles->dens[i];
+        const double step = (held ? 0 : size) * speed * fade, dens = particles->dens[i];
         const double dx = step * particles->grad_c_x[i], dy = step * particles->grad_c_y[i];
-        const double after = dens + fills * (1 + dens) * /* L-9 */
-                                        (dx * particles->grad_c_x[i] + dy * particles->grad_c_y[i]);
         particles->x[i] += dx;
         particles->y[i] += dy;
-        particles->dens[i] = after;
-        before[r] = dens;
-        gain[r] = -(g[0] * dx + g[1] * dy);
+        particles->dens[i] = dens + fills * (1 + dens) * /* L-9 */
+                                        (dx * particles->grad_c_x[i] + dy * particles->grad_c_y[i]);
         longest2 = max2(longest2, dx * dx + dy * dy);
-    }
-    if (!counts) return longest2;
-    for (int r = 0; r < count; r++)
-        gain[r] = particle_mass(&fluid->k, particles, from + r) *
-                  (gain[r] + eos_energy(particles->dens[from + r], c0) - eos_energy(before[r], c0));
-    return longest2;
-}
-
-double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt,
-                   const double g[2], double *gain)
-{
-    const int64_t n = particles->n;
-    double longest2 = 0, part[SHIFT_SLICES][SCENE_MAX_SECTIONS] = {{0}};
-#pragma omp parallel for schedule(static) num_threads(fluid->threads) reduction(max : longest2)
-    for (int m = 0; m < SHIFT_SLICES; m++) {
-        const int64_t end = n * (m + 1) / SHIFT_SLICES;
-        for (int64_t i = n * m / SHIFT_SLICES; i < end; i += SHIFT_BLOCK) {
-            double gained[SHIFT_BLOCK];
-            const int count = (int)(end - i < SHIFT_BLOCK ? end - i : SHIFT_BLOCK);
-            longest2 = max2(longest2,
-                            shift_block(fluid, particles, dt, g, i, count, gain != NULL, gained));
-            for (int r = 0; r < count && gain; r++) part[m][particles->body[i + r]] += gained[r];
-        }
-    }
-    for (int k = 0; k < fluid->sections && gain; k++) {
-        gain[k] = 0;
-        for (int m = 0; m < SHIFT_SLICES; m++) gain[k] += part[m][k];
     }
     return sqrt(longest2);
 }
@@ -277,25 +220,11 @@ static void pass_wall(struct fluid *fluid, struct particles kinds[KIND_COUNT],
     fluid->walls_placed = !(fluid->effects & FX_MOTION) && !fluid->never_skip;
 }
 
-/* In the order of the chunks; empty ones have found none. */
-static void sum_powers(struct fluid *fluid, int32_t n_active)
-{
-    const int n = FLUID_POWERS * fluid->sections;
-    for (int k = 0; k < n; k++) fluid->power[k] = 0;
-    for (int32_t m = 0; m < fluid_chunk_count(n_active); m++)
-        for (int k = 0;
-             k < n && fluid_chunk_start(n_active, m) < fluid_chunk_start(n_active, m + 1); k++)
-            fluid->power[k] += fluid->k.mass * fluid->chunk_power[m * n + k];
-}
-
 /* The fluid's rates, chunk by chunk. */
 static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                        const struct cells *cells)
 {
     const int32_t n_active = cells->kind[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
-    fluid_rates *const rates =
-        fluid->finds_power ? fluid->kernel->rates_and_power : fluid->kernel->rates;
-    const int powers = FLUID_POWERS * fluid->sections;
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(fluid->threads) \
     reduction(max                                                     \
@@ -305,12 +234,11 @@ static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                       end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
         struct fluid_extremes top = {acceleration2, approach};
-        rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top, fluid->chunk_power + m * powers);
+        fluid->kernel->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
         acceleration2 = top.acceleration2;
         approach = top.approach;
     }
     fluid->extremes = (struct fluid_extremes){acceleration2, approach};
-    if (fluid->finds_power) sum_powers(fluid, n_active);
 }
 
 /* The passes of an evaluation, in order; phase_table says which scenes have them. */

@@ -91,23 +91,19 @@ struct packed_fields {
     struct cluster_boxes boxes;
 };
 
-/* Power on the motion and compression of fluid (T-46a): of all pairs, and of those with walls and
- * structures. */
-enum fluid_power { POWER_OF_PAIRS, POWER_OF_BODIES, FLUID_POWERS };
-
 struct fluid;
 
-/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, their extremes,
- * and the powers on each section over the mass of a particle, [FLUID_POWERS][sections]. */
+/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, and their
+ * extremes. */
 typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, int32_t first, int32_t end,
-                         struct fluid_extremes *top, double *power);
+                         struct fluid_extremes *top);
 
-/* They for a set of pair effects, without and with the powers. */
+/* They for a set of pair effects. */
 struct fluid_kernel {
     const char *name;
     effect_set effects; /* ANY_EFFECTS: generic */
-    fluid_rates *rates, *rates_and_power;
+    fluid_rates *rates;
 };
 #define ANY_EFFECTS (~(effect_set)0)
 
@@ -174,13 +170,10 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    bool keeps_slopes; /* L-5a: the gradients of dens are those of an earlier evaluation */
-    bool finds_power;  /* the energy account reads it after this evaluation */
-    int sections;      /* of fluid */
-    double *power, *chunk_power; /* W/m, [FLUID_POWERS][sections]; the same of each chunk */
-    bool walls_placed;           /* walls rest, and their packed positions are valid */
-    bool *near_dummies;          /* [cells]: walls or structures in the nine cells around */
-    bool *sticks[KIND_COUNT];    /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
+    bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
+    bool walls_placed;        /* walls rest, and their packed positions are valid */
+    bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
+    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
     int threads;
@@ -193,10 +186,8 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
                       const struct cells *cells, struct diag *d) SPHFSI_CHECKED;
 
 /* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
- * except those at the free surface. Returns the largest shift, m. `gain`: by how much the energy of
- * position in gravity g, and of compression, of each section grows, J/m; or NULL. */
-double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt,
-                   const double g[2], double *gain);
+ * except those at the free surface. Returns the largest shift, m. */
+double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt);
 
 /* The density that the acoustic damper remembers moves towards the present one. */
 void fluid_follow_density(const struct fluid *fluid, struct particles *particles, double dt);

@@ -36,13 +36,10 @@ struct chunk {
     real *deferred; /* scratch of the thread */
 };
 
-/* Of a chunk: largest values, reduced over the SIMD lanes once; and powers, of a single section in
- * four lanes, else of each section. */
+/* Of a chunk: largest values, reduced over the SIMD lanes once. */
 struct chunk_totals {
     vreal approach;
     double acceleration2[CLUSTER];
-    four_double power[FLUID_POWERS];
-    double *power_on; /* [FLUID_POWERS][sections]; NULL: not wanted */
 };
 
 #include "fluid/pair_sums.h"
@@ -67,23 +64,11 @@ SPHFSI_INLINE four_double even_sum(const struct cluster_sums *s, real *deferred,
     return own_sum(s, which) + take_deferred(DEFERRED(deferred, which));
 }
 
-/* Adds the power on `count` particles from i on, over their mean mass. */
-SPHFSI_INLINE void add_power(const struct fluid *fluid, const struct particles *particles,
-                             int32_t i, int count, enum fluid_power which, four_double power,
-                             struct chunk_totals *top)
-{
-    if (fluid->sections == 1 && count == CLUSTER)
-        top->power[which] += power;
-    else
-        for (int r = 0; r < count; r++)
-            top->power_on[(int)which * fluid->sections + particles->body[i + r]] += power[r];
-}
-
 /* Writes the rates of `count` particles from i on, from their sums and the factors not included in
- * them. With `power` their pairs' (T-46a). */
+ * them. */
 SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
                                int count, const struct cluster_sums *s, real *deferred,
-                               const struct vector_constants *k, struct pair_set fx, bool power,
+                               const struct vector_constants *k, struct pair_set fx,
                                struct chunk_totals *top)
 {
     const four_double dens = FOUR(particles->dens, i);
@@ -107,40 +92,10 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
     store_four(particles->ay + i, ay, count);
     store_four(particles->ddens + i, ddens, count);
     for (int r = 0; r < count; r++) top->acceleration2[r] = max2(top->acceleration2[r], a2[r]);
-    if (power) {
-        const four_double on = FOUR(particles->vx, i) * fx_a + FOUR(particles->vy, i) * fy_a +
-                               EOS_ENERGY_RATE(dens, fluid->k.c0) * ddens;
-        add_power(fluid, particles, i, count, POWER_OF_PAIRS,
-                  PAIR_HAS(fx, MASSES) ? FOUR(particles->m, i) * on : on, top);
-    }
     if (!(PAIR_HAS(fx, SHIFTING))) return;
     store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
     store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
     store_four(particles->div_r + i, fluid->k.h * full * even_sum(s, deferred, SUM_DIV_R), count);
-}
-
-/* Sums with walls and structures. With `power` also theirs on `count` particles from i on: what
- * they add in T-6 and T-7 to kinetic and compression energy and to that of the damper. */
-SPHFSI_INLINE void sum_bodies(const struct fluid *fluid, const struct particles *particles,
-                              int32_t i, int count, const struct neighbours neighbours[KIND_COUNT],
-                              const struct receiver a[ROWS], const struct vector_constants *k,
-                              struct pair_set fx, bool power, struct cluster_sums *s,
-                              struct chunk_totals *top)
-{
-    struct cluster_sums with = *s;
-    if (!neighbours[KIND_WALL].n && !neighbours[KIND_SOLID].n) return;
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, s);
-    if (!power) return;
-    for (int row = 0; row < ROWS; row++)
-        for (int part = 0; part < PARTS; part++)
-            for (int m = SUM_X; m <= SUM_RATE; m++)
-                with.of[row][part][m] = s->of[row][part][m] - with.of[row][part][m];
-    const four_double on =
-        FOUR(particles->vx, i) * own_sum(&with, SUM_X) +
-        FOUR(particles->vy, i) * own_sum(&with, SUM_Y) -
-        acting_pressure(fluid, particles, i, fluid->effects) * own_sum(&with, SUM_RATE);
-    add_power(fluid, particles, i, count, POWER_OF_BODIES, k->acceleration * on, top);
 }
 
 /* Receivers of the fluid from their packed fields. */
@@ -167,26 +122,27 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
                                     const struct vector_constants *k, struct pair_set fx,
-                                    bool power, const struct chunk *chunk, struct chunk_totals *top)
+                                    const struct chunk *chunk, struct chunk_totals *top)
 {
     const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
-    sum_bodies(fluid, particles, i, count, neighbours, a, k, fx, power, &s, top);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
     top->approach = s.approach;
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
     if (count == CLUSTER) /* a compile-time constant */
-        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, fx, power, top);
+        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, fx, top);
     else
-        rates_store(fluid, particles, i, count, &s, deferred, k, fx, power, top);
+        rates_store(fluid, particles, i, count, &s, deferred, k, fx, top);
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
                                  const struct cells *cells, int32_t cell,
-                                 const struct vector_constants *k, struct pair_set fx, bool power,
+                                 const struct vector_constants *k, struct pair_set fx,
                                  const struct chunk *chunk, struct chunk_totals *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
@@ -211,54 +167,44 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                                               (enum kind)kind, KIND_FLUID, cluster)
                                             : (struct neighbours){.n = 0};
         rates_of_cluster(fluid, particles, list->start[cell] + m * CLUSTER,
-                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, power,
-                         chunk, top);
+                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, chunk,
+                         top);
     }
 }
 
-/* A chunk of the active cells, first to end - 1; `power`: NULL or those of its sections. */
+/* A chunk of the active cells, first to end - 1. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t first, int32_t end,
                                   const struct vector_constants *k, struct pair_set fx,
-                                  struct fluid_extremes *top, double *power)
+                                  struct fluid_extremes *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
                                 fluid->neighbour_scratch[thread_index()].deferred};
-    struct chunk_totals here = {.power_on = power};
-    for (int m = 0; m < FLUID_POWERS * fluid->sections && power; m++) power[m] = 0;
+    struct chunk_totals here = {.acceleration2 = {0}};
     for (int32_t m = first; m < end; m++)
-        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, power, &chunk, &here);
+        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, &chunk, &here);
     top->approach = max2(top->approach, (double)vtop(here.approach));
-    for (int r = 0; r < CLUSTER; r++) {
+    for (int r = 0; r < CLUSTER; r++)
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
-        for (int m = 0; m < FLUID_POWERS && power; m++)
-            power[m * fluid->sections] += here.power[m][r];
-    }
 }
 
 /* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a
  * separate function before it can see that fx is a constant. */
-#define RATES(name, set, power)                                                              \
-    static void SWEEP(name)(const struct fluid *fluid, struct particles *particles,          \
-                            const struct cells *cells, int32_t first, int32_t end,           \
-                            struct fluid_extremes *top, double *on)                          \
-    {                                                                                        \
-        const struct vector_constants k = constants_of_sweep(fluid);                         \
-        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top, \
-                       (power) ? on : NULL);                                                 \
+#define VARIANT(variant, set)                                                                  \
+    static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \
+                                       const struct cells *cells, int32_t first, int32_t end,  \
+                                       struct fluid_extremes *top)                             \
+    {                                                                                          \
+        const struct vector_constants k = constants_of_sweep(fluid);                           \
+        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top);  \
     }
-#define VARIANT(variant, set)          \
-    RATES(rates_##variant, set, false) \
-    RATES(power_##variant, set, FX_ENERGY_ACCOUNT != 0)
 #include "fluid/variants.def"
 VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
-#undef RATES
 
 static const struct fluid_kernel SWEEP(kernels)[] = {
-#define VARIANT(variant, set) \
-    {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant), SWEEP(power_##variant)},
+#define VARIANT(variant, set) {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant)},
 #include "fluid/variants.def"
     VARIANT(any, ANY_EFFECTS)
 #undef VARIANT

@@ -34,8 +34,10 @@ static enum err check_energy(const struct energy_account *account, struct diag *
     const double *const number = (const double *)(const void *)account;
     for (size_t k = 0; k < ENERGY_NUMBERS; k++)
         TRY(range_check("energy", number[k], -FINITE, FINITE, d));
-    for (int k = 0; k < ENERGY_ENTRIES; k++)
+    for (int k = 0; k < ENERGY_ENTRIES; k++) {
         TRY(range_check("energy", account->entry[k].work_change, 0, FINITE, d));
+        TRY(range_check("energy", account->entry[k].region, -1, k, d));
+    }
     return ERR_OK;
 }
 

@@ -177,10 +177,7 @@ static double energy_of(const struct ledger *l)
 /* The most that a region has gained by each term of the account (T-46). */
 static void write_gains(struct json *j, const struct simulation *sim)
 {
-    static const char *const names[ENERGY_TERMS] = {
-        [TERM_FLUID] = "fluid", [TERM_DISSIPATION] = "dissipation", [TERM_INTERFACE] = "interface",
-        [TERM_SOLID] = "solid", [TERM_RESTARTS] = "restarts",       [TERM_ALL] = "boundaries",
-    };
+    static const char *const names[] = {"fluid", "interface", "solid", "boundaries"};
     const struct energy_account *const account = &sim->state.energy;
     const double available = account->largest_available;
     const bool known = sim->effects & FX_ENERGY_ACCOUNT;

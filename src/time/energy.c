@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/box2.h"
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
@@ -12,37 +13,24 @@
 
 /* --- energies --- */
 
-void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
-{
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double since = sim->state.dt;
-    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-    for (int64_t i = 0; i < particles->n && particles->vx_old; i++) {
-        if (particles->open && particles->open[i]) continue; /* set anew at each evaluation */
-        const double u = particles->vx_old[i] + since * particles->ax[i],
-                     v = particles->vy_old[i] + since * particles->ay[i];
-        const double d = particles->dens_old[i] + since * particles->ddens[i];
-        of[particles->body[i]] +=
-            0.5 * particle_mass(k, particles, i) *
-            (0.5 * (square(particles->vx[i]) + square(particles->vy[i]) - square(u) - square(v)) +
-             eos_energy(particles->dens[i], k->c0) - eos_energy(d, k->c0));
-    }
-}
-
-/* Of a section: its share of the ledger, and what only the account has. */
+/* Of a section or region: its share of the ledger, and what only the account has. Doubles only. */
 struct energies {
     struct ledger row;
-    double dummies;     /* compression energy of dummies by their pressure */
-    double repulsion;   /* of walls and structures, by L-7b */
-    double alternating; /* by which Verlet's two solutions differ (T-46f) */
-    double damper;      /* that the acoustic damper holds and has yet to dissipate (T-9a) */
-    double scale;       /* of round-off: of all mass at the speed of sound */
+    double dummies;   /* compression energy of dummies by their pressure */
+    double repulsion; /* of walls and structures, by L-7b */
+    double damper;    /* that the acoustic damper holds and has yet to dissipate (T-9a) */
+    double term[ENERGY_TERMS];
+    double tolerance; /* below which a gain is an error of the sums */
 };
 
-static double without_potential(const struct ledger *row)
+/* Round-off of sums, and of strains and speeds, whose squares are energies (T-46). */
+#define ROUND_OFF 1e-9
+
+static double without_potential(const struct energies *e)
 {
-    return row->kinetic + row->internal + row->elastic + row->hourglass + row->contact;
+    const struct ledger *const row = &e->row;
+    return row->kinetic + row->internal + row->elastic + row->hourglass + row->contact +
+           e->repulsion + e->damper;
 }
 
 static void add_energies(struct energies *sum, const struct energies *e)
@@ -66,7 +54,7 @@ static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_EN
         e->row.momentum_x += m * particles->vx[i];
         e->row.momentum_y += m * particles->vy[i];
         e->row.mass += m;
-        e->scale += m * square(k->c0);
+        e->tolerance += m * square(ROUND_OFF * k->c0);
         if (particles->dens_slow)
             e->damper += 0.5 * m * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
     }
@@ -86,7 +74,7 @@ static double add_solids(struct simulation *sim, struct energies *solid)
         row->momentum_x += b->mass * particles->vx[i];
         row->momentum_y += b->mass * particles->vy[i];
         row->mass += b->mass;
-        solid[particles->body[i]].scale += b->young * square(b->dp);
+        solid[particles->body[i]].tolerance += b->young * square(ROUND_OFF * b->dp);
         if (!particles->interface_impulse_x)
             continue; /* the fluid has not received that yet (T-35b) */
         row->momentum_x -= particles->interface_impulse_x[i];
@@ -116,6 +104,7 @@ static void add_rigid(const struct simulation *sim, struct energies *wall)
     }
 }
 
+/* Returns the smallest det F. */
 static double find_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
     memset(of, 0, ENERGY_ENTRIES * sizeof *of);
@@ -126,7 +115,7 @@ static double find_energies(struct simulation *sim, struct energies of[ENERGY_EN
 
 struct ledger simulation_ledger(struct simulation *sim)
 {
-    struct energies of[ENERGY_ENTRIES], sum = {.scale = 0};
+    struct energies of[ENERGY_ENTRIES], sum = {.tolerance = 0};
     const struct state *const state = &sim->state;
     const struct particles *const fluid = &sim->kind[KIND_FLUID];
     simulation_refresh(sim);
@@ -141,8 +130,8 @@ struct ledger simulation_ledger(struct simulation *sim)
         row.newton_residual = sim->solid.implicit->residual;
     }
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
-                     sim->solid.work + open_energy(&sim->open) - state->lost_energy -
-                     without_potential(&row) - row.potential;
+                     sim->solid.work + open_energy(&sim->open) - state->lost_energy - row.kinetic -
+                     row.internal - row.elastic - row.hourglass - row.contact - row.potential;
     for (int64_t i = 0; i < fluid->n; i++)
         row.dens_extreme = max2(row.dens_extreme, fabs(fluid->dens[i]));
     return row;
@@ -164,123 +153,221 @@ static void add_dummies(const struct simulation *sim, struct energies *fluid)
         fluid[k].dummies = sim->fluid.k.mass * dummies * fluid[k].row.internal / internal;
 }
 
+/* Also those of the account. */
 static void find_all_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
-    double repulsion[SCENE_MAX_SECTIONS] = {0}, alternating[SCENE_MAX_SECTIONS] = {0};
+    double repulsion[SCENE_MAX_SECTIONS] = {0};
     struct energies *const fluid = &of[energy_entry(KIND_FLUID, 0)];
     find_energies(sim, of);
     if (sim->effects & FX_FLUID) add_dummies(sim, fluid);
     if (sim->effects & FX_REPULSION) repulsion_energy(sim, repulsion);
-    if (sim->integrator->alternates) energy_alternating(sim, alternating);
-    for (int k = 0; k < sim->scene->n_fluid; k++) {
-        fluid[k].repulsion = repulsion[k];
-        fluid[k].alternating = alternating[k];
-    }
+    for (int k = 0; k < sim->scene->n_fluid; k++) fluid[k].repulsion = repulsion[k];
 }
+
+/* --- work --- */
+
+static struct energy_entry *entry_of(struct simulation *sim, enum kind kind, int section)
+{
+    return &sim->state.energy.entry[energy_entry(kind, section)];
+}
+
+static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
 
 void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
 {
-    if (sim->effects & FX_ENERGY_ACCOUNT)
-        sim->state.energy.entry[energy_entry(kind, section)].supplied += work;
+    if (!keeps_account(sim)) return;
+    entry_of(sim, kind, section)->supplied += work;
+    entry_of(sim, kind, section)->noted += work;
+}
+
+/* Work in dt by the last evaluation: on the fluid by a program, by gravity beyond its value at
+ * t = 0, by the constraint at open boundaries and by moving walls; on structures by the fluid's
+ * force, at the velocity that the fluid uses. */
+static void add_work(struct simulation *sim, double dt)
+{
+    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid =
+                                                                      &sim->kind[KIND_SOLID];
+    const struct external *const external = &sim->external[KIND_FLUID];
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double gx = k->gravity[0] - sim->scene->top.gravity[0],
+                 gy = k->gravity[1] - sim->scene->top.gravity[1];
+    if (sim->gravity_varies || external->at)
+        for (int64_t i = 0; i < fluid->n; i++) {
+            const double ax = gx + (external->at ? external->ax[i] : 0),
+                         ay = gy + (external->at ? external->ay[i] : 0);
+            entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
+                dt * particle_mass(k, fluid, i) * (ax * fluid->vx[i] + ay * fluid->vy[i]);
+        }
+    for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
+        entry_of(sim, KIND_FLUID, 0)->supplied += dt * sim->open.rate[b].power;
+    for (int b = 0; b < sim->wall_motion.n; b++) {
+        const struct moving_wall *const wall = &sim->wall_motion.body[b];
+        struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
+        const double work = dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
+        if (wall->free)
+            e->given -= work;
+        else
+            e->supplied += work;
+    }
+    for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
+        entry_of(sim, KIND_SOLID, solid->body[i])->given +=
+            dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
+}
+
+void energy_of_step(struct simulation *sim, double dt)
+{
+    struct energy_account *const account = &sim->state.energy;
+    if (!keeps_account(sim)) return;
+    add_work(sim, account->pending);
+    energy_test_due(sim);
+    account->pending = 0.5 * dt;
+    add_work(sim, account->pending);
+}
+
+void energy_of_midpoint(struct simulation *sim, double dt)
+{
+    if (keeps_account(sim)) add_work(sim, dt);
+}
+
+void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
+{
+    if (!keeps_account(sim)) return;
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const double *const *const external = sim->solid.external;
+    /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
+     * the kicks are longer by half a kick of the change of velocity. */
+    const double late = centred ? 0 : 0.5 * dt / n;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (particles->free[i] == 0) continue;
+        struct energy_entry *const e = entry_of(sim, KIND_SOLID, particles->body[i]);
+        const double mass = sim->solid.body[particles->body[i]].mass;
+        const double ux =
+            particles->ux[i] - particles->x0[i] - late * (particles->vx[i] - particles->vx0[i]);
+        const double uy =
+            particles->uy[i] - particles->y0[i] - late * (particles->vy[i] - particles->vy0[i]);
+        double work = particles->fx[i] * ux + particles->fy[i] * uy;
+        if (sim->coupling.impedance > 0) work += mass * particles->face_work[i]; /* T-35a */
+        e->received += work;
+        if (external[0]) work += mass * (external[0][i] * ux + external[1][i] * uy);
+        e->supplied += work;
+    }
+}
+
+void energy_of_rigid(struct simulation *sim)
+{
+    for (int k = 0; k < sim->rigid.n && keeps_account(sim); k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_WALL, scene_rigid_wall(sim->scene, k));
+        e->supplied += sim->rigid.body[k].work;
+        e->received += sim->rigid.body[k].work;
+    }
+}
+
+/* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
+ * ledger has the potential energy of the value at t = 0. */
+static double gravity_work(struct simulation *sim)
+{
+    double g[2], px = 0, py = 0;
+    const double *const start = sim->scene->top.gravity;
+    const double dt = sim->state.dt;
+    scene_gravity_at(sim->scene, sim->state.time - 0.5 * dt, g);
+    const double gx = g[0] - start[0], gy = g[1] - start[1];
+    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
+                                                                      &sim->kind[KIND_SOLID];
+    for (int64_t i = 0; i < fluid->n; i++) {
+        px += sim->fluid.k.mass * fluid->vx[i];
+        py += sim->fluid.k.mass * fluid->vy[i];
+    }
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double mass = sim->scene->solid[particles->body[i]].gravity * particles->free[i] *
+                            sim->solid.body[particles->body[i]].mass;
+        px += mass * particles->vx[i];
+        py += mass * particles->vy[i];
+        energy_supply(sim, KIND_SOLID, particles->body[i],
+                      dt * mass * (gx * particles->vx[i] + gy * particles->vy[i]));
+    }
+    for (int k = 0; k < sim->rigid.n; k++) {
+        if (!sim->rigid.body[k].given->gravity) continue;
+        const double *const v = sim->rigid.state[k].v, mass = sim->rigid.body[k].mass[0];
+        px += mass * v[0];
+        py += mass * v[1];
+        energy_supply(sim, KIND_WALL, scene_rigid_wall(sim->scene, k),
+                      dt * mass * (gx * v[0] + gy * v[1]));
+    }
+    return dt * (gx * px + gy * py);
 }
 
 /* --- regions: sections that exchange energy with each other and with no others --- */
 
-int energy_entries(const struct simulation *sim, int list[ENERGY_ENTRIES])
+static int region_of(const struct energy_account *account, int entry)
 {
-    int n = 0;
-    for (int k = 0; k < sim->scene->n_solid; k++) list[n++] = energy_entry(KIND_SOLID, k);
-    for (int k = 0; k < sim->scene->n_fluid; k++) list[n++] = energy_entry(KIND_FLUID, k);
-    for (int k = 0; k < sim->wall_motion.n; k++)
-        list[n++] = energy_entry(KIND_WALL, sim->wall_motion.body[k].section);
-    return n;
+    return (int)account->entry[entry].region;
 }
 
 static void unite(struct energy_account *account, int one, int other)
 {
-    const int a = energy_region(account, one), b = energy_region(account, other);
+    const int a = region_of(account, one), b = region_of(account, other);
     const int first = a < b ? a : b, second = a < b ? b : a;
+    if (first < 0 || first == second) return;
     struct energy_entry *const to = &account->entry[first], *const from = &account->entry[second];
-    if (a == b) return;
     for (int t = 0; t < ENERGY_TERMS; t++) {
         to->lowest[t] += from->lowest[t];
         to->available[t] += from->available[t];
     }
     to->lowest_potential += from->lowest_potential;
     for (int k = 0; k < ENERGY_ENTRIES; k++)
-        if (energy_region(account, k) == second) account->entry[k].region = first;
+        if (region_of(account, k) == second) account->entry[k].region = first;
 }
 
-/* The smallest box around a section's particles: lowest x and y, and highest x and y with changed
- * sign. */
-struct section_box {
-    double low[4];
-};
-
-static void find_boxes(const struct simulation *sim, struct section_box box[ENERGY_ENTRIES])
+/* The energy of contact is a single number: all bodies belong together once any have touched. */
+static void join_bodies(struct energy_account *account)
 {
-    for (int k = 0; k < ENERGY_ENTRIES; k++)
-        for (int side = 0; side < 4; side++) box[k].low[side] = (double)INFINITY;
-    for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
-        for (int64_t i = 0; i < particles->n; i++) {
-            const double at[] = {particles->x[i], particles->y[i], -particles->x[i],
-                                 -particles->y[i]};
-            double *const low = box[energy_entry((enum kind)kind, particles->body[i])].low;
-            for (int side = 0; side < 4; side++) low[side] = min2(low[side], at[side]);
-        }
-    }
+    for (int k = energy_entry(KIND_SOLID, 1); k < ENERGY_ENTRIES; k++)
+        unite(account, energy_entry(KIND_SOLID, 0), k);
 }
 
-static bool are_near(const struct section_box *a, const struct section_box *b, double reach)
-{
-    bool near = true;
-    for (int side = 0; side < 4; side++) near &= a->low[side] + b->low[(side + 2) % 4] <= reach;
-    return near;
-}
-
-/* A fluid and another section whose boxes are within the kernel's reach of each other belong to one
- * region from now on. */
+/* Sections whose boxes are within the kernel's reach of each other belong together from now on; all
+ * sections do in a domain that is periodic or has open boundaries. */
 static void join_neighbours(struct simulation *sim)
 {
-    int list[ENERGY_ENTRIES];
-    const int n = energy_entries(sim, list), first_wall = energy_entry(KIND_WALL, 0);
     struct energy_account *const account = &sim->state.energy;
-    struct section_box box[ENERGY_ENTRIES];
-    bool apart = false;
-    for (int k = 1; k < n; k++)
-        apart |= energy_region(account, list[k]) != energy_region(account, list[0]);
-    if (!apart) return;
-    find_boxes(sim, box);
-    for (int j = 0; j < n; j++)
-        for (int k = 0; k < j; k++)
-            if ((list[j] < first_wall || list[k] < first_wall) &&
-                are_near(&box[list[j]], &box[list[k]], KERNEL_REACH * sim->scene->h))
-                unite(account, list[j], list[k]);
+    const bool all = sim->effects & (FX_PERIODIC | FX_OPEN);
+    struct box2 box[ENERGY_ENTRIES];
+    for (int k = 0; k < ENERGY_ENTRIES; k++) box[k] = box2_empty();
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n && !all; i++)
+            box2_include(&box[energy_entry((enum kind)kind, particles->body[i])], particles->x[i],
+                         particles->y[i]);
+    }
+    for (int j = 0; j < ENERGY_ENTRIES; j++)
+        for (int k = 0; k < j && region_of(account, j) >= 0; k++)
+            if (all || box2_near(&box[j], &box[k], KERNEL_REACH * sim->scene->h))
+                unite(account, j, k);
 }
 
-/* Sections that belong together at any distance: joined bodies; all bodies once any is in contact,
- * since the energy of contact is a single number; all sections of a domain that is periodic or has
- * open boundaries. */
-static void join_distant(struct simulation *sim, bool contact)
+void energy_after_step(struct simulation *sim)
 {
-    int list[ENERGY_ENTRIES];
-    const int n = energy_entries(sim, list);
-    struct energy_account *const account = &sim->state.energy;
-    for (int j = 0; j < sim->scene->n_solid; j++)
-        for (int k = 0; k < j; k++)
-            if (contact || sim->solid.body[j].bond == sim->solid.body[k].bond)
-                unite(account, energy_entry(KIND_SOLID, j), energy_entry(KIND_SOLID, k));
-    for (int k = 1; k < n && sim->effects & (FX_PERIODIC | FX_OPEN); k++)
-        unite(account, list[0], list[k]);
-}
-
-/* Bodies that have exchanged a force in this step: they may part before the next test. */
-void energy_join_touching(struct simulation *sim)
-{
-    if (!(sim->effects & FX_CONTACT) || !sim->contact.touched) return;
+    double *const work = &sim->state.wall_work;
+    if (sim->effects & FX_MOTION && sim->effects & FX_FLUID)
+        *work += sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
+    *work += sim->solid.work;
+    sim->solid.work = 0;
+    if (sim->gravity_varies) *work += gravity_work(sim);
+    if (!keeps_account(sim)) return;
+    if (sim->effects & FX_OPEN) sim->state.energy.open = open_energy(&sim->open);
+    for (int k = 0; k < sim->solid.n_bodies; k++) {
+        entry_of(sim, KIND_SOLID, k)->supplied += sim->solid.work_on[k];
+        sim->solid.work_on[k] = 0;
+    }
+    for (int k = 0; k < ENERGY_ENTRIES; k++) {
+        struct energy_entry *const e = &sim->state.energy.entry[k];
+        const double done = e->supplied - e->noted;
+        e->work_change = max2(e->work_change, fabs(done - e->last_work));
+        e->last_work = done;
+        e->noted = e->supplied;
+    }
+    if (sim->contact.touched) join_bodies(&sim->state.energy); /* they may part before the test */
     sim->contact.touched = false;
-    join_distant(sim, true);
 }
 
 /* --- terms --- */
@@ -300,29 +387,22 @@ static void find_waiting_work(const struct simulation *sim, double of[ENERGY_ENT
             particles->interface_impulse_y[i] * particles->wy[i];
 }
 
-/* Energy that the work on a section changes. */
-static double own_energy(const struct energies *e)
-{
-    return without_potential(&e->row) + e->row.potential - e->alternating;
-}
-
-static void find_terms(const struct simulation *sim, const struct energies of[ENERGY_ENTRIES],
-                       double terms[ENERGY_ENTRIES][ENERGY_TERMS])
+static void find_terms(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
     const int first_wall = energy_entry(KIND_WALL, 0);
     double waiting[ENERGY_ENTRIES];
     find_waiting_work(sim, waiting);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         const struct energy_entry *const e = &sim->state.energy.entry[k];
-        const bool body = k >= first_wall;
-        double *const term = terms[k];
-        memset(term, 0, ENERGY_TERMS * sizeof *term);
-        term[body ? TERM_SOLID : TERM_FLUID] = own_energy(&of[k]) - e->supplied;
-        term[TERM_DISSIPATION] = e->dissipated + of[k].damper;
-        if (body) term[TERM_INTERFACE] = e->interface - waiting[k];
-        term[TERM_RESTARTS] = e->restarts;
-        for (int t = 0; t < TERM_ALL; t++) term[TERM_ALL] += term[t];
-        term[TERM_ALL] += e->dummies + of[k].repulsion;
+        const double gained = without_potential(&of[k]) + of[k].row.potential - e->supplied;
+        double *const term = of[k].term;
+        const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
+        term[body ? TERM_SOLID : TERM_FLUID] = gained;
+        if (body) term[TERM_FLUID] = e->given;
+        if (body) term[TERM_INTERFACE] = e->received - e->given - waiting[k];
+        term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
+        of[k].tolerance +=
+            e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
     }
 }
 
@@ -331,9 +411,10 @@ void energy_begin(struct simulation *sim)
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES];
     double waiting[ENERGY_ENTRIES];
+    const int sections[] = {sim->scene->n_fluid, 0, sim->scene->n_solid};
     memset(account, 0, sizeof *account);
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
-    if (!(sim->effects & FX_ENERGY_ACCOUNT)) return;
+    if (!keeps_account(sim)) return;
     find_all_energies(sim, of);
     find_waiting_work(sim, waiting);
     account->open = sim->effects & FX_OPEN ? open_energy(&sim->open) : 0;
@@ -341,63 +422,30 @@ void energy_begin(struct simulation *sim)
     account->tested_steps = (double)sim->state.steps;
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         struct energy_entry *const e = &account->entry[k];
-        const double available = without_potential(&of[k].row) + of[k].repulsion;
-        e->supplied = own_energy(&of[k]);
+        e->region = k % SCENE_MAX_SECTIONS < sections[k / SCENE_MAX_SECTIONS] ? k : -1;
+        e->received = waiting[k];
+        e->supplied = e->noted = without_potential(&of[k]) + of[k].row.potential;
         e->lowest_potential = of[k].row.potential;
-        for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = available;
-        e->lowest[TERM_ALL] = of[k].dummies + of[k].damper + of[k].repulsion;
-        e->lowest[TERM_DISSIPATION] = of[k].damper;
-        e->interface = waiting[k];
-        e->region = k;
+        e->lowest[TERM_FLUID] = e->lowest[TERM_ALL] = of[k].dummies;
+        for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = without_potential(&of[k]);
     }
-    join_distant(sim, of[energy_entry(KIND_SOLID, 0)].row.contact > 0);
-}
-
-enum err energy_check_saved(const struct energy_account *account, struct diag *d)
-{
-    for (int k = 0; k < ENERGY_ENTRIES; k++)
-        if (!(account->entry[k].region >= 0 && account->entry[k].region <= k))
-            return diag_fail(d, ERR_INPUT,
-                             "checkpoint: section %d refers to region %g, which does not exist; "
-                             "the file is damaged or not of this case",
-                             k, account->entry[k].region);
-    return ERR_OK;
+    for (int k = 0; k < sim->wall_motion.n; k++) {
+        const int wall = energy_entry(KIND_WALL, sim->wall_motion.body[k].section);
+        account->entry[wall].region = wall;
+    }
+    join_neighbours(sim);
+    if (of[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(account);
 }
 
 /* --- the test for gains --- */
 
-/* Round-off of sums, and of strains and speeds, whose squares are energies (T-46). */
-#define ROUND_OFF 1e-9
-
-/* Sums over the sections of a region. */
-struct region {
-    int entry;
-    struct energies energies;
-    double term[ENERGY_TERMS];
-    double tolerance; /* below which a gain is an error of the sums */
-    /* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it
-     * the energy at the start from rest says nothing. */
-    double driven;
-};
-
-static struct region sum_region(const struct simulation *sim, int entry, const struct energies *of,
-                                double terms[ENERGY_ENTRIES][ENERGY_TERMS])
+/* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it the
+ * energy at the start from rest says nothing. */
+static double driven_energy(const struct simulation *sim)
 {
-    const struct energy_account *const account = &sim->state.energy;
-    struct region sum = {.entry = entry};
-    for (int k = 0; k < ENERGY_ENTRIES; k++) {
-        const struct energy_entry *const e = &account->entry[k];
-        if (energy_region(account, k) != entry) continue;
-        add_energies(&sum.energies, &of[k]);
-        for (int t = 0; t < ENERGY_TERMS; t++) sum.term[t] += terms[k][t];
-        sum.tolerance += e->work_change +
-                         ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential)) +
-                         square(ROUND_OFF) * of[k].scale;
-    }
-    if (sim->effects & FX_OPEN)
-        sum.driven = 0.5 * sim->fluid.k.mass * (double)sim->kind[KIND_FLUID].n *
-                     square(0.1 * sim->fluid.k.c0);
-    return sum;
+    if (!(sim->effects & FX_OPEN)) return 0;
+    return 0.5 * sim->fluid.k.mass * (double)sim->kind[KIND_FLUID].n *
+           square(0.1 * sim->fluid.k.c0);
 }
 
 /* Whether a gain is the larger fraction of the available energy. */
@@ -406,57 +454,52 @@ static bool exceeds(const struct energy_gain *g, const struct energy_gain *other
     return other->entry < 0 || g->energy * other->available > other->energy * g->available;
 }
 
-/* The term of a region that has gained the largest fraction. A gain of all terms together is
- * attributed to the largest of them, if that is half of it; the rest is the work of dummies. */
-static struct energy_gain gain_of_region(struct energy_account *account,
-                                         const struct region *region)
+/* The term of a region that has gained the largest fraction. */
+static struct energy_gain gain_of_region(struct energy_account *account, int entry,
+                                         const struct energies *region, double driven)
 {
-    const struct energies *const e = &region->energies;
-    struct energy_entry *const at = &account->entry[region->entry];
+    struct energy_entry *const at = &account->entry[entry];
     struct energy_gain worst = {.entry = -1, .available = 1};
-    double gained[ENERGY_TERMS];
-    int largest = TERM_FLUID;
-    at->lowest_potential = min2(at->lowest_potential, e->row.potential);
-    const double active = region->driven + without_potential(&e->row) + e->repulsion +
-                          e->row.potential - at->lowest_potential;
+    at->lowest_potential = min2(at->lowest_potential, region->row.potential);
+    const double active =
+        driven + without_potential(region) + region->row.potential - at->lowest_potential;
     account->largest_available = max2(account->largest_available, active);
+    double gained = 0;
     for (int t = 0; t < ENERGY_TERMS; t++) {
         /* Dummies may return what they hold. */
-        const double now = region->term[t], base = now + (t == TERM_ALL ? e->dummies : 0);
+        const double now = region->term[t],
+                     base = now + (t == TERM_FLUID || t == TERM_ALL ? region->dummies : 0);
         at->available[t] = base <= at->lowest[t] ? active : max2(at->available[t], active);
         at->lowest[t] = min2(at->lowest[t], base);
-        gained[t] = now - at->lowest[t] - region->tolerance;
-        account->most[t] = max2(account->most[t], gained[t] + region->tolerance);
-        const struct energy_gain gain = {region->entry, (enum energy_term)t, 0,
-                                         gained[t],     at->available[t],    e->row};
-        if (gained[t] > 0 && exceeds(&gain, &worst)) worst = gain;
-        if (t != TERM_ALL && gained[t] > gained[largest]) largest = t;
+        gained = now - at->lowest[t];
+        account->most[t] = max2(account->most[t], gained);
+        gained -= region->tolerance;
+        const struct energy_gain gain = {entry,  (enum energy_term)t, 0,
+                                         gained, at->available[t],    region->row};
+        if (t != TERM_ALL && gained > 0 && exceeds(&gain, &worst)) worst = gain;
     }
-    worst.all = max2(0, gained[TERM_ALL] / at->available[TERM_ALL]);
-    if (worst.term == TERM_ALL && gained[largest] >= 0.5 * worst.energy)
-        worst.term = (enum energy_term)largest;
+    worst.all = max2(0, gained / at->available[TERM_ALL]);
     return worst;
 }
 
 struct energy_gain energy_find_gain(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    struct energies of[ENERGY_ENTRIES];
-    double terms[ENERGY_ENTRIES][ENERGY_TERMS];
+    struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES];
     struct energy_gain worst = {.entry = -1, .available = 1};
-    int list[ENERGY_ENTRIES];
-    const int n = energy_entries(sim, list);
     find_all_energies(sim, of);
-    join_distant(sim, of[energy_entry(KIND_SOLID, 0)].row.contact > 0);
+    find_terms(sim, of);
     join_neighbours(sim);
-    find_terms(sim, of, terms);
     memset(account->now, 0, sizeof account->now);
-    for (int m = 0; m < n; m++) {
-        const int k = list[m];
-        for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += terms[k][t];
-        if (energy_region(account, k) != k) continue;
-        const struct region region = sum_region(sim, k, of, terms);
-        const struct energy_gain gain = gain_of_region(account, &region);
+    memset(sum, 0, sizeof sum);
+    for (int k = 0; k < ENERGY_ENTRIES; k++) {
+        if (region_of(account, k) < 0) continue;
+        add_energies(&sum[region_of(account, k)], &of[k]);
+        for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += of[k].term[t];
+    }
+    for (int k = 0; k < ENERGY_ENTRIES; k++) {
+        if (region_of(account, k) != k) continue;
+        const struct energy_gain gain = gain_of_region(account, k, &sum[k], driven_energy(sim));
         if (gain.entry >= 0 && exceeds(&gain, &worst)) worst = gain;
     }
     return worst;
@@ -471,7 +514,7 @@ void energy_test_due(struct simulation *sim)
     struct energy_account *const account = &sim->state.energy;
     const double time = sim->state.time;
     const int interval = sim->effects & FX_FLUID ? TEST_STEPS : SOLID_ONLY_TEST_STEPS;
-    if (!(sim->effects & FX_ENERGY_ACCOUNT)) return;
+    if (!keeps_account(sim)) return;
     if (sim->effects & FX_OPEN) { /* brought in other than by the constraint */
         const double now = open_energy(&sim->open);
         energy_supply(sim, KIND_FLUID, 0, now - account->open);

@@ -34,8 +34,6 @@ struct ledger {
 #undef LEDGER
 };
 
-/* --- the account --- */
-
 /* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
 enum { ENERGY_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
 SPHFSI_INLINE int energy_entry(enum kind kind, int section)
@@ -43,29 +41,25 @@ SPHFSI_INLINE int energy_entry(enum kind kind, int section)
     return (int)kind * SCENE_MAX_SECTIONS + section;
 }
 
-/* Terms of the account, J/m. Each is negative in an exact solution, or zero (T-46). */
+/* Terms of the account, J/m. None of them grows in an exact solution (T-46). */
 enum energy_term {
-    TERM_FLUID,       /* what the fluid's energy gains beyond the work of all its rates */
-    TERM_DISSIPATION, /* work of viscosity, diffusion, shifting and T-45 */
-    TERM_INTERFACE,   /* work on structures less what the fluid delivers */
-    TERM_SOLID,       /* what the solid's energy gains beyond the work on it */
-    TERM_RESTARTS,    /* what Verlet's Euler steps add (Eq. 26) */
-    TERM_ALL,         /* these, and the work of dummies */
+    TERM_FLUID,     /* what the fluid's energy gains beyond the work on it */
+    TERM_INTERFACE, /* work on structures less what the fluid delivers */
+    TERM_SOLID,     /* what the solid's energy gains beyond the work on it */
+    TERM_ALL,       /* their sum: beyond the work at the boundaries of a region */
     ENERGY_TERMS
 };
 
-/* Work of a step on a section. */
-enum work_source { WORK_OF_FLUID, WORK_FROM_OUTSIDE, WORK_SOURCES };
-
 /* Energies of a section, or of a region at its first section, J/m. */
 struct energy_entry {
-    double supplied;                /* energy at the start and all work since then */
-    double last_work[WORK_SOURCES]; /* of the last step */
-    double work_change;             /* largest change of either from step to step */
-    double dissipated, restarts;    /* TERM_DISSIPATION and TERM_RESTARTS of fluids */
-    double dummies;                 /* work of dummies on the fluid beyond that on the structure */
-    double interface;               /* TERM_INTERFACE of solids, with the work still to return */
-    double region; /* the first section of the region that the section belongs to */
+    double region; /* first section of its region; -1: no entry, as of walls at rest */
+    double
+        supplied; /* energy at the start and all work since then; of driven walls: on the fluid */
+    double given; /* to a body, by the fluid: work at the velocity that the fluid uses */
+    double received; /* by a body, from the fluid (T-46c) */
+    /* `supplied` after the last step, work of that step, and its largest change from step to step,
+     * which bounds the error of the sums over steps. */
+    double noted, last_work, work_change;
     /* Of a region: the lowest value of each term, the largest available energy since then, and the
      * lowest potential energy. */
     double lowest[ENERGY_TERMS], available[ENERGY_TERMS], lowest_potential;

@@ -65,8 +65,6 @@ void evaluate_fluid(struct simulation *sim, double time)
         open_set(&sim->open, &sim->fluid.k, &sim->kind[KIND_FLUID], &sim->cells, time, counts);
         phase_add(sim, PHASE_open, start);
     }
-    sim->fluid.finds_power = sim->effects & FX_ENERGY_ACCOUNT &&
-                             (sim->integrator->ahead == 0 || time != sim->state.time);
     if (sim->effects & FX_ANTUONO) sim->fluid.keeps_slopes = keeps_slopes(sim, time);
     fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, sim->phase_seconds);
     const double clock = wall_clock();

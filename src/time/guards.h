@@ -10,10 +10,6 @@
  * that time. */
 enum { CHECK_INTERVAL = 16 };
 
-/* Reads the last test of the energy account: warns once if a region has gained energy, and
- * fails if the gain is nine tenths of its available energy. */
-enum err guards_energy(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
-
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
  * there are more than stray particles. */
 enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;

@@ -65,11 +65,7 @@ void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 /* Moves fluid particles towards lower concentration. */
 static double shift_fluid(struct simulation *sim, double clock)
 {
-    double gain[SCENE_MAX_SECTIONS];
-    const bool counts = sim->effects & FX_ENERGY_ACCOUNT;
-    sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt,
-                               sim->scene->top.gravity, counts ? gain : NULL);
-    if (counts) energy_of_shift(sim, gain);
+    sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
     return phase_add(sim, PHASE_shift, clock);
 }
 
@@ -162,7 +158,6 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
 
 enum err simulation_resume(struct simulation *sim, struct diag *d)
 {
-    TRY(energy_check_saved(&sim->state.energy, d));
     sim->evaluated = false;
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     if (sim->effects & FX_FLUID) {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/tension.h"
-#include "time/energy.h"
 
 #include <math.h>
 
@@ -38,7 +37,6 @@ void limit_isolated_tension(struct simulation *sim)
         if (!(particles->dens[i] < lowest) ||
             particles_near(sim, particles->x[i], particles->y[i]) > most)
             continue;
-        energy_drop_density(sim, i);
         particles->dens[i] = 0;
         if (particles->dens_slow) particles->dens_slow[i] = 0;
         if (particles->dens_old) particles->dens_old[i] = 0;

@@ -43,7 +43,6 @@ static void verlet_step(struct simulation *sim, double t_limit)
     const bool euler = sim->state.verlet_count == 0;
     sim->state.verlet_count = (sim->state.verlet_count + 1) % sim->scene->numerics.verlet_reset;
     energy_of_step(sim, dt);
-    if (euler) energy_of_restart(sim);
     advance_fluid(sim, update_verlet_rows, &(struct step_sizes){dt, sim->state.dt, euler});
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);

@@ -453,8 +453,7 @@ static void test_concentration_by_hand(void)
     assert_near(1e-14, 0.8 * size, p->grad_c_y[b], "gradient, y");
     assert_near(1e-14, size, p->div_r[b], "divergence");
     const double x = p->x[b];
-    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, p, 0.1, rig.sim.scene->top.gravity, NULL) == 0 &&
-                     p->x[b] == x);
+    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, p, 0.1) == 0 && p->x[b] == x);
 }
 
 static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
@@ -488,7 +487,7 @@ static void shift_evens_out(const char *whose, double moves, double counts)
     const double fade = (p->div_r[out] - 1.5) / 0.5;
     const double expected = 2 * 0.135 * counts * 0.02 * fade * p->grad_c_x[out];
     TEST_ASSERT_TRUE(fade > 0.5 && p->grad_c_x[out] > 0.1);
-    fluid_shift(&rig.sim.fluid, p, 0.02, rig.sim.scene->top.gravity, NULL);
+    fluid_shift(&rig.sim.fluid, p, 0.02);
     assert_near(1e-15, x - expected, p->x[out], "x");
     assert_near(1e-14, y, p->y[out], "y");
     TEST_ASSERT_TRUE(p->x[corner] == at);

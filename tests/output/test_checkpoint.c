@@ -202,7 +202,7 @@ static void numbers_that_no_run_has_are_refused(void)
     refuses("block ax holds nan for fluid particle 7");
     first.kind[KIND_FLUID].ax[7] = 0;
     REFUSES(energy.entry[1].work_change, -1, "energy = -1");
-    REFUSES(energy.entry[0].region, -2, "section 0 refers to region -2");
+    REFUSES(energy.entry[0].region, -2, "energy = -2");
     first.kind[KIND_SOLID].body[5] = 1;
     refuses("solid particle 5 belongs to section 1, but the case has sections 0 to 0");
     first.kind[KIND_SOLID].body[5] = -1;

@@ -28,6 +28,13 @@ static const char beam[] = "dp = 5 mm\nend_time = 1\n[solid beam]\nshape = box 0
                            "poisson = 0.3\nartificial_viscosity = 0\nlaw = svk\n"
                            "velocity = 0, 5*x\n";
 
+/* Fluid without viscosity and walls, which is stretched and turns: nothing takes its energy. */
+static const char patch[] = "dp = 5 mm\nend_time = 1\nscheme = standard\n[fluid patch]\n"
+                            "shape = circle 0, 0, 0.05\nsound_speed = 20\n"
+                            "artificial_viscosity = 0\ndensity_diffusion = 0\nshifting = 0\n"
+                            "acoustic_damper = 0\nvelocity = 4*x - 4*y, 4*x - 4*y\n"
+                            "[domain]\nlower = -0.3, -0.3\nupper = 0.3, 0.3\n";
+
 static const char *const integrators[] = {"integrator=leapfrog", "integrator=symplectic",
                                           "integrator=verlet"};
 
@@ -94,13 +101,14 @@ static void falls(const char *text, enum energy_term term, const char *key, doub
         printf("%s: %.2e of the available energy, %.2e at a quarter of the step\n", integrators[k],
                wide, narrow);
         assert_at_most(most, wide, integrators[k]);
-        assert_at_most(0.3 * wide, narrow, integrators[k]);
+        /* Verlet's Euler steps gain energy in proportion to the step (T-46f). */
+        assert_at_most((k == 2 ? 0.35 : 0.3) * wide, narrow, integrators[k]);
     }
 }
 
 static void test_the_fluid_closes_with_the_step(void)
 {
-    falls(tanks, TERM_FLUID, "numerics.cfl", 0.2, 0.03, 1e-3);
+    falls(patch, TERM_FLUID, "numerics.cfl", 0.2, 0.03, 1e-3);
 }
 
 static void test_the_solid_closes_with_the_step(void)
@@ -108,8 +116,8 @@ static void test_the_solid_closes_with_the_step(void)
     falls(beam, TERM_SOLID, "numerics.solid_safety", 0.9, 0.05, 1e-3);
 }
 
-/* All terms and the work of dummies are the change of energy that the ledger has, which knows
- * none of them. */
+/* All terms are the change of energy that the ledger has, which knows none of them, apart from the
+ * impulse that waits. */
 static void test_the_terms_add_up(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -119,11 +127,9 @@ static void test_the_terms_add_up(void)
         const struct ledger last = simulation_ledger(&rig.sim);
         energy_find_gain(&rig.sim);
         const struct energy_account *const a = &rig.sim.state.energy;
-        double lost = 0;
-        for (int e = 0; e < ENERGY_ENTRIES; e++)
-            lost += a->entry[e].dissipated + a->entry[e].dummies;
         const double available = first.internal + last.kinetic + last.elastic;
-        assert_near(0.01 * available, last.dissipated - first.dissipated, -lost, integrators[k]);
+        assert_near(1e-3 * available, last.dissipated - first.dissipated, -a->now[TERM_ALL],
+                    integrators[k]);
         rig_close(&rig);
     }
 }
@@ -132,7 +138,7 @@ static void test_the_terms_add_up(void)
     "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[wall bed]\n"                    \
     "shape = box 0, -0.02, 0.4, 0\n[fluid drop]\nshape = circle 0.2, 0.06, 0.05\n" \
     "max_speed = 3\nvelocity = 0, -2\nartificial_viscosity = 0.02\n"
-static const char plain_drop[] = DROP, drop[] = DROP "acoustic_damper = 4\n";
+static const char drop[] = DROP "acoustic_damper = 4\n";
 
 /* By L-7 a wall stores the energy of particles that it repels, and returns it (L-7b). A jet
  * that runs into the corner of the wall gives it 3 to 5 % of all energy. Without that energy
@@ -185,35 +191,15 @@ static void test_what_repulsion_holds(void)
     assert_near(1e-3 * work, work, after - before, "stored energy");
 }
 
-/* Each Euler step of Verlet (Eq. 26) discards one of two solutions (T-46f): four times as many
- * steps between them gain a quarter. The rest of the account closes. */
-static void test_restarts_of_verlet(void)
-{
-    double gained[2];
-    for (int k = 0; k < 2; k++) {
-        begin(plain_drop, "integrator=verlet", "drop.max_speed=6",
-              k ? "numerics.verlet_reset=160" : "numerics.verlet_reset=40");
-        go_on(0.03);
-        const struct energy_account *const a = &rig.sim.state.energy;
-        gained[k] = a->entry[energy_entry(KIND_FLUID, 0)].restarts / a->largest_available;
-        printf("verlet_reset %d: restarts %.2e, the fluid's term %.2e\n", k ? 160 : 40, gained[k],
-               a->most[TERM_FLUID] / a->largest_available);
-        assert_at_most(3e-4 * a->largest_available, a->most[TERM_FLUID], "fluid");
-        rig_close(&rig);
-    }
-    TEST_ASSERT_TRUE(gained[0] > 1e-3);
-    assert_near(0.08, 0.25, gained[1] / gained[0], "with four times as many steps between");
-}
-
-/* A drop that meets a wall: its damper takes work of the wall as of the fluid, so its
- * dissipation gains nothing. */
+/* A drop that meets a wall: its damper takes work of the wall as of the fluid, and gives nothing
+ * back. */
 static void test_the_damper_dissipates(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         begin(drop, integrators[k], NULL, NULL);
         go_on(0.02);
         const struct energy_account *const a = &rig.sim.state.energy;
-        assert_at_most(1e-4 * a->largest_available, a->most[TERM_DISSIPATION], integrators[k]);
+        assert_at_most(1e-4 * a->largest_available, a->most[TERM_FLUID], integrators[k]);
         rig_close(&rig);
     }
 }
@@ -229,11 +215,15 @@ static void test_what_the_damper_holds(void)
     double held = 0;
     for (int64_t i = 0; i < particles->n; i++)
         held += 0.5 * k->mass * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
+    const struct ledger row = simulation_ledger(&rig.sim);
+    double repulsion[SCENE_MAX_SECTIONS];
+    repulsion_energy(&rig.sim, repulsion);
     energy_find_gain(&rig.sim);
     const struct energy_account *const a = &rig.sim.state.energy;
+    const double all = row.kinetic + row.internal + row.potential + repulsion[0] + held;
     TEST_ASSERT_TRUE(held > 1e-4);
-    assert_near(1e-9 * held, a->entry[energy_entry(KIND_FLUID, 0)].dissipated + held,
-                a->now[TERM_DISSIPATION], "dissipation");
+    assert_near(1e-9 * held, all - a->entry[energy_entry(KIND_FLUID, 0)].supplied,
+                a->now[TERM_FLUID], "fluid");
 }
 
 /* The energies beside a gain are those of the ledger. */
@@ -289,7 +279,7 @@ static void test_a_gain_at_the_interface_is_named(void)
     double available = 0;
     for (int k = 0; k < ENERGY_ENTRIES; k++)
         available = fmax(available, a->entry[k].available[TERM_INTERFACE]);
-    a->entry[energy_entry(KIND_SOLID, 0)].interface += 0.02 * available;
+    a->entry[energy_entry(KIND_SOLID, 0)].received += 0.02 * available;
     go_on(start + 6e-3);
     TEST_ASSERT_TRUE(named > 0);
     assert_at_most(5e-3, named - start, "time until it is named");
@@ -306,7 +296,6 @@ int main(void)
     RUN_TEST(test_the_terms_add_up);
     RUN_TEST(test_repulsion_is_counted);
     RUN_TEST(test_what_repulsion_holds);
-    RUN_TEST(test_restarts_of_verlet);
     RUN_TEST(test_the_damper_dissipates);
     RUN_TEST(test_what_the_damper_holds);
     RUN_TEST(test_energies_beside_a_gain);

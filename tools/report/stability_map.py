@@ -31,7 +31,7 @@ SUBSTEPS = (0.5, 1.5, 2.5, 12.5, 100)        # step of the fluid over the limit 
 SIDES = (1, 2)                               # wet sides
 INTEGRATORS = ("leapfrog", "symplectic", "verlet")
 SCHEMES = ("paper", "standard")
-TERMS = ("fluid", "dissipation", "interface", "solid", "restarts", "boundaries")
+TERMS = ("fluid", "interface", "solid", "boundaries")
 COLUMNS = ("density", "across", "sides", "integrator", "scheme", "substeps",
            "E",       # Pa
            "result",  # finished, stopped, or why it was not run
