@@ -35,7 +35,7 @@ ifneq ($(filter-out $(IDLE),$(GOALS)),)
                energy-account forecast glance performance stability-% turek-hron validate \
                verify-%,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
-           SETUP='$(SETUP)'
+           SETUP='$(or $(SETUP),$(if $(filter gate test%,$(GOALS)),yes))'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
     $(error tools/setup.sh $(NEEDS) did not succeed; see above)
   endif

@@ -7,9 +7,11 @@
 #   tools/setup.sh plot     Python 3 with numpy, matplotlib, h5py  -> build/python
 #   tools/setup.sh web      a compiler for WebAssembly             -> build/zig.mk
 #
-# Installs through apt-get as root or with a sudo that asks nothing; Python packages go into .venv
-# where pip can reach them. Otherwise prints what to install and exits with 1. Says nothing when
-# nothing is missing. Hints: CC, HDF5_PREFIX, UNITY_DIR, PYTHON, ZIG; SETUP=no installs nothing.
+# Installs through apt-get as root, or with a sudo that needs no password, after a question on the
+# terminal. With SETUP=yes (`make gate`, `make test`) or CI it does not ask; without a terminal the
+# answer is no. Python packages go into .venv where pip can reach them. Otherwise prints what to
+# install and exits with 1. Says nothing when nothing is missing. Hints: CC, HDF5_PREFIX, UNITY_DIR,
+# PYTHON, ZIG; SETUP=no installs nothing.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 CC=${CC:-cc}
@@ -294,6 +296,15 @@ install_packages() {
         say "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
 }
 
+# Whether the packages may be installed.
+agreed() {
+    local answer
+    [ "${SETUP:-}" = yes ] || [ -n "${CI:-}" ] && return
+    [ -t 2 ] && { : </dev/tty; } 2>/dev/null || return 1
+    read -rp "setup: install $* with apt-get, as root? [y/N] " answer </dev/tty
+    case $answer in [yY]*) ;; *) return 1 ;; esac
+}
+
 unique() { printf '%s\n' "$@" | awk '!seen[$0]++'; }
 
 mkdir -p build
@@ -304,7 +315,7 @@ if [ "${SETUP:-}" != no ]; then
     case "${missing[*]}" in *"Python 3"*) make_venv && find_all "$@" ;; esac
     case "${missing[*]}" in *WebAssembly*) fetch_zig && find_all "$@" ;; esac
 fi
-if [ ${#packages[@]} -gt 0 ] && sudo=$(privilege); then
+if [ ${#packages[@]} -gt 0 ] && sudo=$(privilege) && agreed $(unique "${packages[@]}"); then
     install_packages "$sudo" $(unique "${packages[@]}")
     find_all "$@"
 fi

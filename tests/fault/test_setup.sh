@@ -41,3 +41,34 @@ if [ $status != 1 ]; then
     echo "an unknown need gives exit status $status instead of 1"
     exit 1
 fi
+
+# With a package manager it installs as root only where that is agreed: here nobody can be asked.
+cat >"$copy/bin/apt-get" <<'END'
+#!/bin/bash
+echo "$*" >>"$CALLED"
+exit 1
+END
+printf '#!/bin/bash\necho 0\n' >"$copy/id"
+rm "$copy/bin/id"
+mv "$copy/id" "$copy/bin/id"
+chmod +x "$copy/bin/apt-get" "$copy/bin/id"
+calls() {
+    rm -f "$copy/called"
+    env -i PATH="$copy/bin" CALLED="$copy/called" "$@" bash "$copy/tools/setup.sh" build \
+        >"$copy/output" 2>&1 </dev/null
+    expect 'missing: a C compiler (cc)'
+    [ -e "$copy/called" ]
+}
+if calls A=b; then
+    echo "setup.sh installs without having asked: $(cat "$copy/called")"
+    exit 1
+fi
+for consent in SETUP=yes CI=true; do
+    calls $consent && continue
+    echo "setup.sh does not install with $consent"
+    exit 1
+done
+if calls SETUP=no CI=true; then
+    echo "setup.sh installs with SETUP=no"
+    exit 1
+fi
