@@ -25,6 +25,11 @@ SPHFSI_INLINE void box2_include(struct box2 *b, double x, double y)
     b->high[1] = max2(b->high[1], y);
 }
 
+SPHFSI_INLINE bool box2_contains(const struct box2 *b, double x, double y)
+{
+    return x >= b->low[0] && x <= b->high[0] && y >= b->low[1] && y <= b->high[1];
+}
+
 SPHFSI_INLINE void box2_corner(const struct box2 *b, int corner, double at[2])
 {
     at[0] = corner & 1 ? b->high[0] : b->low[0];

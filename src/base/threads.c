@@ -6,6 +6,12 @@
 #include <time.h>
 #ifdef _OPENMP
 #include <omp.h>
+#else /* one thread */
+static int omp_get_max_threads(void) { return 1; }
+static int omp_get_num_procs(void) { return 1; }
+static int omp_get_num_threads(void) { return 1; }
+static int omp_get_thread_num(void) { return 0; }
+static void omp_set_num_threads(int n) { (void)n; }
 #endif
 
 double wall_clock(void)
@@ -15,32 +21,11 @@ double wall_clock(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-int thread_count(void)
-{
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
-}
+int thread_count(void) { return omp_get_max_threads(); }
 
-void thread_use(int n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#else
-    (void)n;
-#endif
-}
+void thread_use(int n) { omp_set_num_threads(n); }
 
-int thread_cores(void)
-{
-#ifdef _OPENMP
-    return omp_get_num_procs();
-#else
-    return 1;
-#endif
-}
+int thread_cores(void) { return omp_get_num_procs(); }
 
 /* Two threads were 1.25 times as fast as one where each had 400 particles, 1.6 times with 1300,
  * 1.8 times with 3000 (docs/results/accuracy.md, "Forecast against reality"). */
@@ -89,23 +74,9 @@ void team_begin(struct team *team, int most)
     *team = (struct team){.most = most, .now = most, .chosen = most};
 }
 
-int thread_team(void)
-{
-#ifdef _OPENMP
-    return omp_get_num_threads();
-#else
-    return 1;
-#endif
-}
+int thread_team(void) { return omp_get_num_threads(); }
 
-int thread_index(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
+int thread_index(void) { return omp_get_thread_num(); }
 
 static locale_t c_locale; /* kept until the program ends */
 static pthread_once_t once = PTHREAD_ONCE_INIT;

@@ -196,8 +196,8 @@ static bool removes_any(const struct region *region, const struct outline *cut)
     const struct scene_lattice *const l = &region->lattice;
     int64_t from[2], to[2];
     for (int c = 0; c < 2; c++) {
-        from[c] = (int64_t)floor(cells_to(region, c, max2(cut->low[c], region->box.low[c])));
-        to[c] = (int64_t)floor(cells_to(region, c, min2(cut->high[c], region->box.high[c])));
+        from[c] = (int64_t)floor(cells_to(region, c, max2(cut->box.low[c], region->box.low[c])));
+        to[c] = (int64_t)floor(cells_to(region, c, min2(cut->box.high[c], region->box.high[c])));
     }
     for (int64_t j = from[1]; j <= to[1]; j++)
         for (int64_t i = from[0]; i <= to[0]; i++) {

@@ -82,7 +82,6 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
                         struct samples *samples)
 {
     const struct shape_list *const clamps = &sampler->scene->solid[region->body].clamp;
-    const double *const spacing = region->lattice.spacing;
     struct outlines *const o = &region->clamps;
     TRY(outlines_of(o, sampler->scene, clamps, &sampler->temp, sampler->diag));
     TRY(outlines_turn(o, region->lattice.angle, &sampler->temp, sampler->diag));
@@ -90,11 +89,9 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
     if (!held) return ERR_MEMORY;
     for (int64_t k = from; k < samples->n; k++) {
         double at[2];
-        lattice_place(&region->lattice, samples->x[k], samples->y[k], at);
+        geometry_place(region, samples->x[k], samples->y[k], at);
         for (int c = 0; c < o->n; c++) {
-            if (!outline_contains(&o->item[c], at[0] + NUDGE_X * spacing[0],
-                                  at[1] + NUDGE_Y * spacing[1]))
-                continue;
+            if (!outline_contains(&o->item[c], at[0], at[1])) continue;
             const int shape = o->shape[c];
             held[shape]++;
             samples->clamped[k] = 1;

@@ -202,11 +202,7 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
         TRY(outlines_turn(&clamp, angle, &sampler->temp, sampler->diag));
         omit_hinges(&clamp, &sampler->scene->solid[region->body].clamp, dp);
     }
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int k = 0; k < body.n; k++) {
-        low = min2(low, body.item[k].low[1]);
-        high = max2(high, body.item[k].high[1]);
-    }
+    const double low = body.box.low[1], high = body.box.high[1];
     const int capacity = outlines_ends(&body) + outlines_ends(&minus) + outlines_ends(&clamp) + 4;
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
     const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
@@ -313,8 +309,7 @@ static enum err lower_corner(struct sampler *sampler, const struct lattice_group
     for (int k = 0; k < group->n; k++) {
         struct outlines o;
         TRY(turned_outlines(&o, &group->region[k]->add, group->angle, sampler));
-        for (int j = 0; j < o.n; j++)
-            for (int c = 0; c < 2; c++) corner[c] = min2(corner[c], o.item[j].low[c]);
+        for (int c = 0; c < 2; c++) corner[c] = min2(corner[c], o.box.low[c]);
     }
     return ERR_OK;
 }

@@ -21,16 +21,15 @@ double polygon_area(int n, double (*const pt)[2])
     return 0.5 * twice;
 }
 
-static void set_bounds(struct outline *o)
+/* Sets the box of a piece, and adds it to that of all. */
+static void add_box(struct outlines *o, struct outline *piece)
 {
-    for (int c = 0; c < 2; c++) {
-        o->low[c] = o->n ? o->pt[0][c] : o->centre[c] - o->radius;
-        o->high[c] = o->n ? o->pt[0][c] : o->centre[c] + o->radius;
-        for (int k = 1; k < o->n; k++) {
-            o->low[c] = min2(o->low[c], o->pt[k][c]);
-            o->high[c] = max2(o->high[c], o->pt[k][c]);
-        }
-    }
+    const double *const at = piece->centre, r = piece->radius;
+    piece->box = box2_empty();
+    if (!piece->n) piece->box = (struct box2){{at[0] - r, at[1] - r}, {at[0] + r, at[1] + r}};
+    for (int k = 0; k < piece->n; k++) box2_include(&piece->box, piece->pt[k][0], piece->pt[k][1]);
+    box2_include(&o->box, piece->box.low[0], piece->box.low[1]);
+    box2_include(&o->box, piece->box.high[0], piece->box.high[1]);
 }
 
 /* Unit normal to the left of the segment from point k. */
@@ -173,6 +172,7 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
     for (int k = 0; k < list->n; k++)
         most += list->item[k].kind == SHAPE_POLYLINE ? (size_t)list->item[k].n : 1;
     o->n = 0;
+    o->box = box2_empty();
     o->item = arena_alloc(a, most, sizeof *o->item, "shapes", d);
     o->shape = arena_alloc(a, most, sizeof *o->shape, "shapes", d);
     if (!o->item || !o->shape) return ERR_MEMORY;
@@ -181,7 +181,7 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
         const int pieces = shape->kind == SHAPE_POLYLINE ? shape->n - 1 : 1;
         TRY(cut_shape(scene, shape, &o->item[o->n], a, d));
         for (int j = 0; j < pieces; j++) {
-            set_bounds(&o->item[o->n]);
+            add_box(o, &o->item[o->n]);
             o->shape[o->n++] = k;
         }
     }
@@ -230,7 +230,7 @@ bool outline_contains(const struct outline *o, double x, double y)
 {
     double crossing, ends[2];
     bool inside = false;
-    if (x < o->low[0] || x > o->high[0] || y < o->low[1] || y > o->high[1]) return false;
+    if (!box2_contains(&o->box, x, y)) return false;
     if (!o->n) return outline_crossings(o, y, ends) && ends[0] <= x && x < ends[1];
     for (int k = 0; k < o->n; k++) inside ^= edge_crossing(o, k, y, &crossing) && crossing <= x;
     return inside;
@@ -250,6 +250,7 @@ enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct
                  s = elementary_sin(angle);
     struct outline *const item = arena_alloc(a, (size_t)o->n, sizeof *item, "shapes", d);
     if (!item) return ERR_MEMORY;
+    o->box = box2_empty();
     for (int k = 0; k < o->n; k++) {
         const struct outline *const from = &o->item[k];
         struct outline *const to = &item[k];
@@ -262,7 +263,7 @@ enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct
             to->pt[j][0] = c * from->pt[j][0] + s * from->pt[j][1];
             to->pt[j][1] = c * from->pt[j][1] - s * from->pt[j][0];
         }
-        set_bounds(to);
+        add_box(o, to);
     }
     o->item = item;
     return ERR_OK;
@@ -289,7 +290,7 @@ static int merged(const struct outlines *o, double y, double *to)
 {
     int n = 0, kept = 0;
     for (int k = 0; k < o->n; k++) {
-        if (y < o->item[k].low[1] || y > o->item[k].high[1]) continue;
+        if (y < o->item[k].box.low[1] || y > o->item[k].box.high[1]) continue;
         n += outline_crossings(&o->item[k], y, to + n);
     }
     qsort(to, (size_t)(n / 2), 2 * sizeof *to, by_start);
@@ -337,8 +338,8 @@ static int add_heights(const struct outlines *o, double *to)
         const struct outline *const piece = &o->item[k];
         for (int j = 0; j < piece->n; j++) to[n++] = piece->pt[j][1];
         if (piece->n) continue;
-        to[n++] = piece->low[1];
-        to[n++] = piece->high[1];
+        to[n++] = piece->box.low[1];
+        to[n++] = piece->box.high[1];
     }
     return n;
 }

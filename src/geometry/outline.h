@@ -3,6 +3,7 @@
 #ifndef SPHFSI_GEOMETRY_OUTLINE_H
 #define SPHFSI_GEOMETRY_OUTLINE_H
 
+#include "base/box2.h"
 #include "case/scene.h"
 
 /* One closed piece: a polygon, or a circle (n == 0). */
@@ -10,14 +11,15 @@ struct outline {
     int n;
     double (*pt)[2];
     double centre[2], radius;
-    double low[2], high[2]; /* bounding box */
+    struct box2 box;
 };
 
 /* A region: the union of some shapes, minus others. */
 struct outlines {
     int n;
     struct outline *item;
-    int *shape; /* index of the shape that a piece belongs to */
+    int *shape;      /* index of the shape that a piece belongs to */
+    struct box2 box; /* of all pieces */
 };
 
 /* The area of a polygon, positive if its points turn counter-clockwise. */

@@ -17,19 +17,14 @@ static const double too_near = 0.7;
 
 int geometry_piece_at(const struct region *region, double u, double v)
 {
-    const struct box2 *const box = &region->box;
-    if (u < box->low[0] || u > box->high[0] || v < box->low[1] || v > box->high[1] ||
-        outlines_find(&region->minus, u, v) >= 0)
-        return -1;
+    if (!box2_contains(&region->box, u, v) || outlines_find(&region->minus, u, v) >= 0) return -1;
     return outlines_find(&region->add, u, v);
 }
 
 int geometry_shape_at(const struct region *region, double x, double y)
 {
     double at[2];
-    lattice_place(&region->lattice, x, y, at);
-    at[0] += NUDGE_X * region->lattice.spacing[0];
-    at[1] += NUDGE_Y * region->lattice.spacing[1];
+    geometry_place(region, x, y, at);
     const int piece = geometry_piece_at(region, at[0], at[1]);
     return piece < 0 ? -1 : region->add.shape[piece];
 }
@@ -67,9 +62,8 @@ static bool may_lie_in(const struct sampler *sampler, const struct samples *samp
     if (mine->kind != KIND_WALL || its->kind == KIND_FLUID) return false;
     if (its->kind == KIND_WALL)
         return motion_of(sampler->scene, mine) == motion_of(sampler->scene, its);
-    lattice_place(&its->lattice, samples->x[k], samples->y[k], at);
-    return outlines_find(&its->clamps, at[0] + NUDGE_X * its->lattice.spacing[0],
-                         at[1] + NUDGE_Y * its->lattice.spacing[1]) >= 0;
+    geometry_place(its, samples->x[k], samples->y[k], at);
+    return outlines_find(&its->clamps, at[0], at[1]) >= 0;
 }
 
 static bool has_band(const struct region *region)

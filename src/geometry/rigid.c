@@ -10,13 +10,9 @@ enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct re
     const struct scene_rigid *const given = &scene->rigid[rigid];
     struct rigid_mass *const to = &scene->rigid_mass[rigid];
     struct moments of;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int k = 0; k < region->add.n; k++) {
-        low = min2(low, region->add.item[k].low[1]);
-        high = max2(high, region->add.item[k].high[1]);
-    }
+    const double height = region->add.box.high[1] - region->add.box.low[1];
     /* The lines are close enough for the ends of circles. */
-    TRY(outlines_moments(&region->add, &region->minus, 1e-4 * (high - low), &of, &sampler->temp,
+    TRY(outlines_moments(&region->add, &region->minus, 1e-4 * height, &of, &sampler->temp,
                          sampler->diag));
     const double x = of.x / of.area, y = of.y / of.area;
     to->mass = isnan(given->mass) ? given->density * of.area : given->mass;

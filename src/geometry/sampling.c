@@ -111,12 +111,7 @@ static enum err turn_regions(struct sampler *sampler)
         struct region *const region = &sampler->regions[k];
         TRY(outlines_turn(&region->add, region->lattice.angle, &sampler->temp, sampler->diag));
         TRY(outlines_turn(&region->minus, region->lattice.angle, &sampler->temp, sampler->diag));
-        region->box = box2_empty();
-        for (int j = 0; j < region->add.n; j++) {
-            const struct outline *const piece = &region->add.item[j];
-            box2_include(&region->box, piece->low[0], piece->low[1]);
-            box2_include(&region->box, piece->high[0], piece->high[1]);
-        }
+        region->box = region->add.box;
         TRY(layers_find(sampler, region));
     }
     return ERR_OK;
@@ -146,7 +141,7 @@ static double inside(const struct region *region, double x)
 static int64_t mark(struct sampler *sampler, const struct region *region, const struct outline *o,
                     double y, unsigned char value)
 {
-    if (y < o->low[1] || y > o->high[1]) return 0;
+    if (y < o->box.low[1] || y > o->box.high[1]) return 0;
     const int n = outline_crossings(o, y, sampler->scratch);
     int64_t marked = 0;
     for (int k = 0; k + 1 < n; k += 2) {

@@ -45,6 +45,14 @@ struct sampler {
     int problems;           /* found so far */
 };
 
+/* A place in the axes of a region's lattice, with the rounding of centres. */
+SPHFSI_INLINE void geometry_place(const struct region *region, double x, double y, double at[2])
+{
+    lattice_place(&region->lattice, x, y, at);
+    at[0] += NUDGE_X * region->lattice.spacing[0];
+    at[1] += NUDGE_Y * region->lattice.spacing[1];
+}
+
 /* All points, region after region. */
 struct samples {
     int64_t n;

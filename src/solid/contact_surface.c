@@ -274,8 +274,8 @@ static void try_place(struct nearest *n, double x, double y)
 
 static void try_piece(struct nearest *n, const struct outline *o)
 {
-    if (n->x < o->low[0] - n->distance || n->x > o->high[0] + n->distance ||
-        n->y < o->low[1] - n->distance || n->y > o->high[1] + n->distance)
+    if (n->x < o->box.low[0] - n->distance || n->x > o->box.high[0] + n->distance ||
+        n->y < o->box.low[1] - n->distance || n->y > o->box.high[1] + n->distance)
         return;
     if (o->n == 0) {
         const double dx = n->x - o->centre[0], dy = n->y - o->centre[1];
