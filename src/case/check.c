@@ -242,11 +242,6 @@ static enum err check_finite(struct reader *r, const struct expr *e, double leng
 /* A jump would move a body without a velocity. */
 static enum err check_jumps(struct reader *r, const char *key, const struct expr *e, double length)
 {
-    if (expr_steps(e))
-        return bad_key(r, key, NULL,
-                       "%s = %.200s jumps in time, because it rounds a term with t, so the "
-                       "velocity is undefined; use a continuous expression",
-                       key, expr_source(e));
     double size = 0, at;
     for (int n = 0; n <= TIMES; n++)
         size = max2(size, 1e-6 * fabs(expr_jet_at(e, length * n / TIMES).value));

@@ -78,9 +78,6 @@ struct expr_jet {
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
 
-/* Whether it rounds an expression in t. */
-bool expr_steps(const struct expr *e);
-
 /* Whether its value jumps by more than `size` between two times, or has no value, at time `at`. The
  * interval is halved as long as the slopes do not explain the change. So a smooth function, however
  * steep, is never reported; a jump may be missed in an interval with many other changes. */

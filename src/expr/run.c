@@ -178,20 +178,6 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
     return stack[0];
 }
 
-bool expr_steps(const struct expr *e)
-{
-    bool varies[MAX_STACK] = {false}; /* depends on t, for each operand */
-    int top = -1;
-    for (int k = 0; k < e->n; k++) {
-        const enum op_code code = e->op[k].code;
-        top += 1 - operands(code);
-        if (operands(code) == 0) varies[top] = code == OP_X;
-        if (operands(code) == 2) varies[top] |= varies[top + 1];
-        if (code == OP_ROUND && varies[top]) return true;
-    }
-    return false;
-}
-
 /* Difference of a change from the one predicted by the slopes at both ends. */
 static double unexplained(double from, double to, double slope_from, double slope_to, double dt)
 {

@@ -51,11 +51,12 @@ enum err layers_find(struct sampler *sampler, struct region *region)
 
 /* --- loops --- */
 
-/* An outline with the wall on its left. */
+/* An outline that is followed with the wall on its left. */
 struct loop {
     int n;
     double (*pt)[2];
-    bool open; /* no edge from the last point to the first */
+    bool open;     /* no edge from the last point to the first */
+    bool reversed; /* the points are in the order that has the wall on its right */
 };
 
 static int edges_of(const struct loop *o) { return o->open ? o->n - 1 : o->n; }
@@ -74,36 +75,21 @@ static enum err loop_of_circle(const struct outline *o, double dp, struct loop *
     return ERR_OK;
 }
 
-static void turn_round(struct loop *o)
-{
-    for (int k = 0; 2 * k < o->n - 1; k++) {
-        double kept[2];
-        memcpy(kept, o->pt[k], sizeof kept);
-        memcpy(o->pt[k], o->pt[o->n - 1 - k], sizeof kept);
-        memcpy(o->pt[o->n - 1 - k], kept, sizeof kept);
-    }
-}
-
 /* The outline of a piece, or the drawn side of a polyline, from its pieces `first` to `end`. */
 static enum err make_loop(const struct outlines *o, int first, int end, bool polyline,
                           bool wall_inside, double dp, struct loop *to, struct sampler *sampler)
 {
     const struct outline *const piece = &o->item[first];
-    *to = (struct loop){.n = polyline ? end - first + 1 : piece->n, .open = polyline};
-    if (piece->n == 0)
-        TRY(loop_of_circle(piece, dp, to, sampler));
-    else {
-        to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
-        if (!to->pt) return ERR_MEMORY;
-        for (int k = 0; k < to->n; k++)
-            memcpy(to->pt[k],
-                   !polyline       ? piece->pt[k]
-                   : k < to->n - 1 ? piece[k].pt[0]
-                                   : piece[k - 1].pt[1],
-                   sizeof *to->pt);
-    }
-    const double area = polyline ? polygon_area(piece->n, piece->pt) : polygon_area(to->n, to->pt);
-    if ((area > 0) != wall_inside) turn_round(to);
+    *to = (struct loop){.n = piece->n, .pt = piece->pt};
+    if (piece->n == 0) TRY(loop_of_circle(piece, dp, to, sampler));
+    to->reversed = (polygon_area(to->n, to->pt) > 0) != wall_inside;
+    if (!polyline) return ERR_OK;
+    to->n = end - first + 1;
+    to->open = true;
+    to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
+    if (!to->pt) return ERR_MEMORY;
+    for (int k = 0; k < to->n; k++)
+        memcpy(to->pt[k], k < to->n - 1 ? piece[k].pt[0] : piece[k - 1].pt[1], sizeof *to->pt);
     return ERR_OK;
 }
 
@@ -126,7 +112,9 @@ struct edge {
 
 static struct edge edge_of(const struct loop *o, int k, double dp)
 {
-    const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n];
+    const int next = (k + 1) % o->n, last = o->n - 1;
+    const double *const a = o->pt[o->reversed ? last - k : k],
+                        *const b = o->pt[o->reversed ? last - next : next];
     const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
     struct edge e = {.a = {a[0], a[1]}, .length = length};
     if (length <= 1e-9 * dp) return e;

@@ -307,8 +307,8 @@ static void test_bad_expressions(void)
 static void test_jumps_and_poles(void)
 {
     refuses("kind = expression\nx = 0.1*round(t)\n",
-            "motion.cfg:11: [motion move] x = 0.1*round(t) jumps in time, because it rounds a term "
-            "with t, so the velocity is undefined; use a continuous expression");
+            "motion.cfg:11: [motion move] x = 0.1*round(t) jumps or is not finite 0.5 s after "
+            "`start`, so the velocity is undefined; use a continuous expression");
     refuses("kind = expression\nx = t\nturn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337)\n",
             "motion.cfg:12: [motion move] turn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337) jumps or "
             "is not finite 0.33337 s after `start`, so the velocity is undefined; use a continuous "
