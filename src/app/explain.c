@@ -108,18 +108,13 @@ static void say_effects(const struct simulation *sim, const struct sphfsi_option
 
 static void say_fields(const struct simulation *sim, const struct sphfsi_options *o)
 {
-    session_say(o, "fields");
+    session_say(o, "memory");
     for (int k = 0; k < KIND_COUNT; k++) {
         const struct particles *particles = &sim->kind[k];
         if (particles->capacity == 0) continue;
-        char names[1024] = "";
-        size_t at = 0;
-        for (int f = 0; f < field_count; f++)
-            if (field_array(particles, &field_table[f]) && at < sizeof names - 32)
-                at += (size_t)snprintf(names + at, sizeof names - at, " %s", field_table[f].name);
         const size_t bytes = particles_bytes(particles);
-        session_say(o, "  %-6s %.3g MB, %zu bytes per particle:%s", kind_names[k],
-                    1e-6 * (double)bytes, bytes / (size_t)particles->capacity, names);
+        session_say(o, "  %-6s %.3g MB, %zu bytes per particle", kind_names[k],
+                    1e-6 * (double)bytes, bytes / (size_t)particles->capacity);
     }
     session_say(
         o, "  total %.3g MB (fields, cells, packed copies, stencils), and %.3g MB for the case",
