@@ -10,7 +10,7 @@
 int series_number(char text[SERIES_NUMBER], double value)
 {
     int length = 0;
-    for (int digits = 9; digits <= 17; digits += digits == 9 ? 6 : 1) {
+    for (int digits = 15; digits <= 17; digits++) {
         length = snprintf(text, SERIES_NUMBER, "%.*g", digits, value);
         if (strtod(text, NULL) == value) break;
     }
@@ -27,12 +27,11 @@ static int count_columns(const char *header)
 /* One write() per row, so that a killed run leaves complete rows. */
 static enum err append(struct series *s, const char *text, size_t length, struct diag *d)
 {
-    const off_t before = lseek(s->fd, 0, SEEK_END);
     const ssize_t written = write(s->fd, text, length);
     if (written == (ssize_t)length) return ERR_OK;
     diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path,
               strerror(written < 0 ? errno : ENOSPC));
-    if (written > 0 && before >= 0 && ftruncate(s->fd, before) != 0)
+    if (written > 0 && ftruncate(s->fd, lseek(s->fd, 0, SEEK_END) - written) != 0)
         diag_warn(d, "%s: ends in an incomplete row, which a restart drops", s->path);
     return ERR_IO;
 }

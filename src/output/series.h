@@ -31,8 +31,7 @@ enum err series_sync(const struct series *s, struct diag *d) SPHFSI_CHECKED;
 
 void series_close(struct series *s);
 
-/* Writes the number with 9 digits, or as many as give back the same bits; "nan" and "inf" as in C.
- */
+/* Writes the number with as many digits as give back the same bits; "nan" and "inf" as in C. */
 int series_number(char text[SERIES_NUMBER], double value);
 
 #endif
