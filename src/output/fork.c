@@ -10,24 +10,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Every particle of a moving wall has to be where its motion puts it: a jump would move it through
- * the fluid. */
-static enum err check_wall(const struct simulation *sim, int64_t i, const struct motion_state *m,
+/* What moves has to be where its motion puts it: a jump would move it through the fluid. */
+static enum err check_jump(const struct simulation *sim, const char *what, const char *name,
+                           const char *motion, const double from[2], const double to[2], double dp,
                            struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[KIND_WALL];
-    const struct motion_point to = motion_of_point(m, particles->X[i], particles->Y[i]);
-    if (elementary_hypot(particles->x[i] - to.x[0], particles->y[i] - to.x[1]) <=
-        1e-3 * sim->scene->top.dp)
-        return ERR_OK;
-    const struct scene_wall *const w = &sim->scene->wall[particles->body[i]];
+    if (elementary_hypot(from[0] - to[0], from[1] - to[1]) <= 1e-3 * dp) return ERR_OK;
     return diag_fail(
         d, ERR_INPUT,
-        "fork: a particle of [wall %s] would jump at %.6g s from its place in the checkpoint, "
-        "(%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let the motion begin where the "
-        "checkpoint ends",
-        w->common.name, sim->state.time, particles->x[i], particles->y[i], to.x[0], to.x[1],
-        w->motion);
+        "fork: %s %s] would jump at %.6g s from (%.6g, %.6g) m in the checkpoint to "
+        "(%.6g, %.6g) m of [motion %s]; let the motion begin where the checkpoint ends",
+        what, name, sim->state.time, from[0], from[1], to[0], to[1], motion);
 }
 
 static enum err fork_walls(struct simulation *sim, struct diag *d)
@@ -44,7 +37,9 @@ static enum err fork_walls(struct simulation *sim, struct diag *d)
         }
         if (i == 0 || particles->body[i] != particles->body[i - 1])
             m = motion_at(sim->scene, scene_find_motion(sim->scene, w->motion), sim->state.time);
-        TRY(check_wall(sim, i, &m, d));
+        const struct motion_point to = motion_of_point(&m, particles->X[i], particles->Y[i]);
+        TRY(check_jump(sim, "a particle of [wall", w->common.name, w->motion,
+                       (double[]){particles->x[i], particles->y[i]}, to.x, sim->scene->top.dp, d));
     }
     return ERR_OK;
 }
@@ -67,16 +62,10 @@ static enum err fork_clamps(struct simulation *sim, const double *free, struct d
     }
     solid_place_clamps(&sim->solid, particles, sim->state.time);
     for (int64_t i = 0; i < particles->n; i++) {
-        if (elementary_hypot(particles->ux[i] - ux[i], particles->uy[i] - uy[i]) <=
-            1e-3 * sim->solid.dp)
-            continue;
         const struct scene_solid *const b = &sim->scene->solid[particles->body[i]];
-        return diag_fail(d, ERR_INPUT,
-                         "fork: the clamp of [solid %s] would jump at %.6g s from its displacement "
-                         "in the checkpoint, (%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let "
-                         "the motion begin where the checkpoint ends",
-                         b->common.name, sim->state.time, ux[i], uy[i], particles->ux[i],
-                         particles->uy[i], b->clamp_motion);
+        TRY(check_jump(sim, "the displacement of the clamp of [solid", b->common.name,
+                       b->clamp_motion, (double[]){ux[i], uy[i]},
+                       (double[]){particles->ux[i], particles->uy[i]}, sim->solid.dp, d));
     }
     return ERR_OK;
 }
