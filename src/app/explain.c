@@ -10,7 +10,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static void say_scene(const struct session *x, const struct sphfsi_options *o)
@@ -257,8 +256,8 @@ static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o
     return ERR_OK;
 }
 
-enum err explain_text(struct session *x, const struct sphfsi_options *o, const char *unused,
-                      struct diag *d)
+static enum err explain_text(struct session *x, const struct sphfsi_options *o, const char *unused,
+                             struct diag *d)
 {
     (void)unused;
     struct simulation *sim = &x->simulation;
@@ -337,37 +336,39 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
     json_close(j, '}');
 }
 
-static enum err write_all(FILE *file, struct session *x, struct diag *d)
+static enum err write_all(struct json *j, void *session, struct diag *d)
 {
-    struct json j = {.file = file};
+    struct session *const x = session;
     struct simulation *const sim = &x->simulation;
     struct unit_costs c;
-    json_open(&j, NULL, '{');
-    write_scene(&j, x);
-    report_effects(&j, sim);
-    write_fields(&j, sim);
+    json_open(j, NULL, '{');
+    write_scene(j, x);
+    report_effects(j, sim);
+    write_fields(j, sim);
     const enum err e = forecast_measure(&c, sim, d);
     check_simulation(sim, d);
     TRY(e);
-    write_bounds(&j, sim);
-    write_cost(&j, sim, &c);
-    report_derived(&j, &x->scene);
-    report_parameters(&j, &x->scene);
-    json_close(&j, '}');
+    write_bounds(j, sim);
+    write_cost(j, sim, &c);
+    report_derived(j, &x->scene);
+    report_parameters(j, &x->scene);
+    json_close(j, '}');
     return ERR_OK;
 }
 
-enum err explain_json(struct session *x, const struct sphfsi_options *o, const char *unused,
-                      struct diag *d)
+static enum err explain_json(struct session *x, const struct sphfsi_options *o, const char *unused,
+                             struct diag *d)
 {
     (void)unused;
-    char *text = NULL;
-    size_t size;
-    FILE *const file = open_memstream(&text, &size);
-    if (!file) return diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
-    enum err e = write_all(file, x, d);
-    if (fclose(file) != 0 && !e) e = diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
-    if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
-    free(text);
-    return e;
+    return session_json(o, write_all, x, d);
+}
+
+enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
+{
+    return call_of_case("explain", options, true, explain_text, NULL);
+}
+
+enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
+{
+    return call_of_case("explain", options, true, explain_json, NULL);
 }

@@ -65,7 +65,7 @@ static void say_case(const char *text, const struct sphfsi_options *o)
     }
 }
 
-enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
+static enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
 {
     struct image m = {0};
     char file[PATH_BYTES];
@@ -78,4 +78,13 @@ enum err inspect_file(const char *path, const struct sphfsi_options *o, struct d
     checkpoint_free(&m);
     if (e == ERR_IO) d->code = ERR_INPUT;
     return d->code;
+}
+
+enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
+{
+    struct call c;
+    if (!file) return call_without("inspect", "file");
+    enum err e = call_begin(&c, "inspect", options);
+    if (!e) e = inspect_file(file, &c.options, &c.diag);
+    return call_end(&c, e);
 }

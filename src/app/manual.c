@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const section_meanings[][2] = {
@@ -266,12 +265,18 @@ static void list_effects(const struct sphfsi_options *o)
     }
 }
 
-void manual_keys(const struct sphfsi_options *o)
+enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
 {
-    session_say(o, "## Sections and keys");
-    for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
-    say_quantities(o);
-    list_effects(o);
+    struct call c;
+    const enum err e = call_begin(&c, "keys", options);
+    const struct sphfsi_options *const o = &c.options;
+    if (!e) {
+        session_say(o, "## Sections and keys");
+        for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
+        say_quantities(o);
+        list_effects(o);
+    }
+    return call_end(&c, e);
 }
 
 /* --- the keys as JSON --- */
@@ -321,29 +326,30 @@ static void write_key(struct json *j, const struct param *param)
     json_close(j, '}');
 }
 
-enum err manual_keys_json(const struct sphfsi_options *o, struct diag *d)
+static enum err write_keys(struct json *j, void *unused, struct diag *d)
 {
-    char *text = NULL;
-    size_t size;
-    struct json j = {.file = open_memstream(&text, &size)};
-    if (!j.file) return diag_fail(d, ERR_MEMORY, "keys: no memory for their text");
-    json_open(&j, NULL, '{');
+    (void)unused, (void)d;
+    json_open(j, NULL, '{');
     for (int id = 0; id < SECTION_COUNT; id++) {
-        json_open(&j, section_table[id].word, '{');
-        if (section_meaning(id)) json_text(&j, "meaning", section_meaning(id));
-        json_integer(&j, "named", section_table[id].named);
-        json_open(&j, "keys", '{');
+        json_open(j, section_table[id].word, '{');
+        if (section_meaning(id)) json_text(j, "meaning", section_meaning(id));
+        json_integer(j, "named", section_table[id].named);
+        json_open(j, "keys", '{');
         for (int k = 0; k < PARAM_COUNT; k++)
-            if (param_table[k].section == (enum section_id)id) write_key(&j, &param_table[k]);
-        json_close(&j, '}');
-        json_close(&j, '}');
+            if (param_table[k].section == (enum section_id)id) write_key(j, &param_table[k]);
+        json_close(j, '}');
+        json_close(j, '}');
     }
-    json_close(&j, '}');
-    enum err e = ERR_OK;
-    if (fclose(j.file) != 0) e = diag_fail(d, ERR_MEMORY, "keys: no memory for their text");
-    if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
-    free(text);
-    return e;
+    json_close(j, '}');
+    return ERR_OK;
+}
+
+enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options)
+{
+    struct call c;
+    enum err e = call_begin(&c, "keys", options);
+    if (!e) e = session_json(&c.options, write_keys, NULL, &c.diag);
+    return call_end(&c, e);
 }
 
 /* --- publications: src/app/data/citations.txt --- */
@@ -374,8 +380,12 @@ static void say_source(const char *key, const struct sphfsi_options *o)
     session_say(o, "%.*s", (int)strcspn(line, "\n"), line);
 }
 
-void manual_cite(const struct scene *scene, effect_set fx, const struct sphfsi_options *o)
+static enum err cite(struct session *x, const struct sphfsi_options *o, const char *path,
+                     struct diag *d)
 {
+    (void)path, (void)d;
+    const struct scene *const scene = &x->scene;
+    const effect_set fx = effects_of_scene(scene);
     const bool contact = fx & (FX_CONTACT | FX_CONTACT_WALL);
     const int shifting = fx & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
     const struct {
@@ -420,6 +430,12 @@ void manual_cite(const struct scene *scene, effect_set fx, const struct sphfsi_o
     for (size_t k = 0; k < COUNT_OF(source); k++)
         if (source[k].used) say_source(source[k].key, o);
     if (scene->top.source[0]) session_say(o, "The scene: %s", scene->top.source);
+    return ERR_OK;
+}
+
+enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
+{
+    return call_of_case("cite", options, false, cite, NULL);
 }
 
 /* --- templates of cases: the files of cases/templates --- */
@@ -430,16 +446,28 @@ static bool is_template(const struct embedded_file *file)
     return strncmp(file->name, folder, sizeof folder - 1) == 0;
 }
 
-const char *manual_template_name(int k)
+const char *sphfsi_template_name(int k)
 {
-    for (const struct embedded_file *file = embedded_files; file->name; file++)
+    for (const struct embedded_file *file = embedded_files; k >= 0 && file->name; file++)
         if (is_template(file) && k-- == 0) return file->stem;
     return NULL;
 }
 
-const char *manual_template(const char *name)
+const char *sphfsi_template(const char *name)
 {
-    for (const struct embedded_file *file = embedded_files; file->name; file++)
-        if (is_template(file) && strcmp(file->stem, name) == 0) return file->text;
+    struct diag d = {.code = ERR_OK};
+    struct nearest near = {0};
+    char list[256] = "";
+    if (!name) return call_without("template", "name"), NULL;
+    for (const struct embedded_file *file = embedded_files; file->name; file++) {
+        if (!is_template(file)) continue;
+        if (strcmp(file->stem, name) == 0) return file->text;
+        const size_t at = strlen(list);
+        snprintf(list + at, sizeof list - at, "%s%s", at ? ", " : "", file->stem);
+        nearest_offer(&near, name, file->stem);
+    }
+    call_result(&d, diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
+                              near.name ? "; the nearest name is " : "", near.name ? near.name : "",
+                              list));
     return NULL;
 }

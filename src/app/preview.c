@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/actions.h"
 
+#include "base/files.h"
 #include "case/params.h"
 #include "particles/particles.h"
 
@@ -228,22 +229,37 @@ static void put_head(const struct drawing *g)
     end_text(g);
 }
 
-enum err preview_draw(const struct scene *scene, const char *path, struct diag *d)
+static enum err draw(struct session *x, const struct sphfsi_options *o, const char *unused,
+                     struct diag *d)
 {
     static const enum kind order[KIND_COUNT] = {KIND_WALL, KIND_FLUID, KIND_SOLID};
+    const struct scene *const scene = &x->scene;
+    char path[PATH_BYTES];
+    int length;
+    const char *const name = session_name(o, &length);
+    (void)unused;
+    if (o->out)
+        snprintf(path, sizeof path, "%s", o->out);
+    else
+        snprintf(path, sizeof path, "preview-%.*s.svg", length, name);
     struct drawing g = {.scene = scene, .file = fopen(path, "w")};
-    bool ok = g.file != NULL;
-    if (ok) {
-        find_view(&g);
-        put_head(&g);
-        for (int k = 0; k < KIND_COUNT; k++)
-            for (int body = 0; body < section_count(scene, sections[order[k]]); body++)
-                put_body(&g, order[k], body);
-        put_axes(&g);
-        for (int k = 0; k < scene->n_probe; k++) put_probe(&g, &scene->probe[k]);
-        fputs("</svg>\n", g.file);
-        ok = !ferror(g.file);
-        ok = fclose(g.file) == 0 && ok;
-    }
-    return ok ? ERR_OK : diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
+    if (!g.file) return diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
+    find_view(&g);
+    put_head(&g);
+    for (int k = 0; k < KIND_COUNT; k++)
+        for (int body = 0; body < section_count(scene, sections[order[k]]); body++)
+            put_body(&g, order[k], body);
+    put_axes(&g);
+    for (int k = 0; k < scene->n_probe; k++) put_probe(&g, &scene->probe[k]);
+    fputs("</svg>\n", g.file);
+    const bool failed = ferror(g.file);
+    if (fclose(g.file) != 0 || failed)
+        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
+    session_say(o, "%s: picture of the case at the start; open it in a browser", path);
+    return ERR_OK;
+}
+
+enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
+{
+    return call_of_case("preview", options, false, draw, NULL);
 }

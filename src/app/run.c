@@ -507,7 +507,7 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
     return simulate(r);
 }
 
-enum err run_case(const struct sphfsi_options *o, struct diag *d)
+static enum err run_case(const struct sphfsi_options *o, struct diag *d)
 {
     char path[PATH_BYTES];
     const enum run_dir_use use = o->restart ? RUN_DIR_CONTINUE : RUN_DIR_FRESH;
@@ -531,4 +531,12 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     }
     free(r);
     return e;
+}
+
+enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
+{
+    struct call c;
+    enum err e = call_begin(&c, "run", options);
+    if (!e) e = run_case(&c.options, &c.diag);
+    return call_end(&c, e);
 }

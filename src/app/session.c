@@ -124,6 +124,20 @@ enum sphfsi_status call_end(struct call *c, enum err e)
     return call_result(&c->diag, e);
 }
 
+enum err session_json(const struct sphfsi_options *o, json_writer *write, void *context,
+                      struct diag *d)
+{
+    char *text = NULL;
+    size_t size;
+    struct json j = {.file = open_memstream(&text, &size)};
+    if (!j.file) return diag_fail(d, ERR_MEMORY, "json: no memory for the text");
+    enum err e = write(&j, context, d);
+    if (fclose(j.file) != 0 && !e) e = diag_fail(d, ERR_MEMORY, "json: no memory for the text");
+    if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
+    free(text);
+    return e;
+}
+
 /* --- a session --- */
 
 const char *session_name(const struct sphfsi_options *o, int *length)
@@ -284,4 +298,54 @@ enum err session_open(struct session *x, const struct sphfsi_options *o, struct 
     const enum err counted = check_steps(x, d);
     if (counted) session_close(x);
     return counted;
+}
+
+enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *given,
+                                bool simulation, case_action *act, const char *path)
+{
+    struct call c;
+    enum err e = call_begin(&c, name, given);
+    struct session *const x = e ? NULL : calloc(1, sizeof *x);
+    if (!e && !x) e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory", name);
+    if (!e)
+        e = simulation ? session_open(x, &c.options, &c.diag)
+                       : session_read(x, &c.options, &c.diag);
+    if (!e) {
+        e = act(x, &c.options, path, &c.diag);
+        session_close(x);
+    }
+    free(x);
+    return call_end(&c, e);
+}
+
+static enum err write_effective(struct session *x, const struct sphfsi_options *o, const char *path,
+                                struct diag *d)
+{
+    (void)o;
+    return scene_write(&x->scene, path, d);
+}
+
+enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
+{
+    if (!path) return call_without("effective", "path");
+    return call_of_case("case", options, false, write_effective, path);
+}
+
+/* --- small functions of the public header --- */
+
+const char *sphfsi_version(void) { return SPHFSI_VERSION; }
+
+int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
+{
+    if (status == SPHFSI_INTERRUPT && signal_number > 0 && signal_number < 128)
+        return 128 + signal_number;
+    return (unsigned)status <= SPHFSI_INTERRUPT ? err_status((enum err)status) : 2;
+}
+
+const char *sphfsi_nearest(const char *word, const char *const *names, int n)
+{
+    struct nearest best = {0};
+    for (int k = 0; word && names && k < n; k++)
+        if (names[k]) nearest_offer(&best, word, names[k]);
+    return best.name;
 }

@@ -7,6 +7,7 @@
 #include "sphfsi.h"
 
 #include "base/threads.h"
+#include "output/json.h"
 #include "time/simulation.h"
 
 struct call {
@@ -55,5 +56,19 @@ struct diag session_diag(const struct sphfsi_options *o);
 void session_say(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
 /* The same for what --quiet shows, too: what was asked for, and how to go on. */
 void session_result(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
+
+/* Sends what `write` writes as one text through the message callback. */
+typedef enum err json_writer(struct json *j, void *context, struct diag *d);
+enum err session_json(const struct sphfsi_options *o, json_writer *write, void *context,
+                      struct diag *d) SPHFSI_CHECKED;
+
+/* An action on the scene of a case, or on its simulation; `path` is where to write, or NULL. */
+typedef enum err case_action(struct session *x, const struct sphfsi_options *o, const char *path,
+                             struct diag *d);
+
+/* A whole call of the public header that does something with a case: with its scene, or with the
+ * simulation at time zero. */
+enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *given,
+                                bool simulation, case_action *act, const char *path);
 
 #endif

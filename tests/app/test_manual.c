@@ -165,11 +165,11 @@ static void a_copy_without_its_clamp_is_warned_of(void)
 
 static void every_template_runs(void)
 {
-    TEST_ASSERT_NOT_NULL(manual_template_name(0));
-    for (int k = 0; manual_template_name(k); k++) {
-        const char *name = manual_template_name(k);
+    TEST_ASSERT_NOT_NULL(sphfsi_template_name(0));
+    for (int k = 0; sphfsi_template_name(k); k++) {
+        const char *name = sphfsi_template_name(k);
         struct session x;
-        const struct sphfsi_options o = {.case_text = manual_template(name)};
+        const struct sphfsi_options o = {.case_text = sphfsi_template(name)};
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, session_open(&x, &o, &diag), diag.text);
         for (int step = 0; step < 3; step++)
             TEST_ASSERT_EQUAL_INT_MESSAGE(
@@ -182,15 +182,15 @@ static void every_template_runs(void)
 /* --new prints the file, byte by byte. */
 static void every_template_is_its_file(void)
 {
-    for (int k = 0; manual_template_name(k); k++) {
+    for (int k = 0; sphfsi_template_name(k); k++) {
         static char text[1 << 14];
         char path[128];
-        snprintf(path, sizeof path, "cases/templates/%s.cfg", manual_template_name(k));
+        snprintf(path, sizeof path, "cases/templates/%s.cfg", sphfsi_template_name(k));
         FILE *const file = fopen(path, "r");
         TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
         text[fread(text, 1, sizeof text - 1, file)] = '\0';
         fclose(file);
-        TEST_ASSERT_EQUAL_STRING(text, sphfsi_template(manual_template_name(k)));
+        TEST_ASSERT_EQUAL_STRING(text, sphfsi_template(sphfsi_template_name(k)));
     }
 }
 
