@@ -17,6 +17,7 @@ struct implicit_links {
 struct implicit {
     int64_t n;      /* particles whose motion is unknown */
     int32_t *order; /* [n of particles] place among them, -1: its motion is given */
+    int64_t n_free; /* connected pieces of bodies that no clamp holds */
     struct implicit_links links;
     struct envelope springs; /* of T-28, the same for both components, N/m^2; constant */
     struct envelope matrix;  /* the factors of the last matrix */
@@ -24,11 +25,19 @@ struct implicit {
     double *start[4];        /* displacement gradient at the start of the step */
     bool factored;
     double period; /* the longest of the bodies about their undeformed state, s */
-    /* Of the last step. */
+    /* Of the last step, or of a load step. */
+    double left_out; /* part of the forces of the start that a load step leaves out */
     int iterations;  /* solutions with the matrix */
     double residual; /* over the largest force of a particle */
     bool failed;     /* no solution, however short the step */
 };
+
+/* Fields of the solid's scratch that hold the forces which a load step leaves out in part, N/m. */
+enum { IMPLICIT_LEFT_OUT = 4 };
+
+/* T-94: particles across a slender body, the area of all bodies over their largest extent and the
+ * spacing. */
+double implicit_across(const struct solid *solid, const struct particles *particles);
 
 /* Makes the solid take implicit steps; its particles, loads and clamps are set. */
 enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,
@@ -51,8 +60,26 @@ void implicit_advance(struct solid *solid, struct particles *particles, double d
 /* After the state has been read: the matrix that it was found with. */
 void implicit_resume(struct solid *solid, struct particles *particles);
 
+/* T-92: the factors of the matrix for gradients in p, a step of dt and wetted normals (NULL: none),
+ * with `shift` times the mass added, 1/s^2. Returns the number of negative pivots, or -1 if there
+ * are no factors. */
+int64_t implicit_factor(struct solid *solid, const struct particles *particles, double dt,
+                        double shift, const double *nx, const double *ny);
+
+/* Takes the present displacements and velocities as those at the start of a step. */
+void implicit_keep_start(struct solid *solid, struct particles *particles);
+
+/* The residual of T-90 for the present displacements as those of the middle of the step, at `time`,
+ * to `unknown`; returns the largest of a particle over the largest force, 0: below round-off.
+ * dt = INFINITY: of static equilibrium. */
+double implicit_residual(struct solid *solid, struct particles *particles, double dt, double time);
+
+/* Adds the solution for `unknown` to the displacements. */
+void implicit_correct(const struct solid *solid, struct particles *particles);
+
 /* The longest period of the bodies about their undeformed state, in which they are now, s; INFINITY
- * without any. */
+ * without any. From the number of negative pivots of K - omega^2 M, which is the number of
+ * frequencies below omega (Sylvester), three of them zero for each free piece. */
 double implicit_period(struct solid *solid, struct particles *particles);
 
 #endif

@@ -84,8 +84,10 @@ static void number_unknowns(const struct solid *solid, struct implicit *by,
         if (seen[i]) continue;
         const int64_t n = visit(solid, &by->links, p, i, seen, 1, queue);
         visit(solid, &by->links, p, queue[n - 1], seen, 2, queue);
+        const int64_t before = by->n;
         for (int64_t k = 0; k < n; k++)
             by->order[queue[k]] = moves[queue[k]] > 0 ? (int32_t)by->n++ : -1;
+        by->n_free += by->n == before + n;
     }
 }
 
@@ -183,6 +185,17 @@ static enum err create_matrices(const struct solid *solid, struct implicit *by, 
     TRY(envelope_create(&by->matrix, a, 2 * by->n, first, d));
     add_springs(solid, by, p->body, &spring);
     return ERR_OK;
+}
+
+double implicit_across(const struct solid *solid, const struct particles *p)
+{
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, area = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        low[0] = min2(low[0], p->X[i]), high[0] = max2(high[0], p->X[i]);
+        low[1] = min2(low[1], p->Y[i]), high[1] = max2(high[1], p->Y[i]);
+        area += square(solid->body[p->body[i]].dp);
+    }
+    return area / (solid->dp * max2(high[0] - low[0], high[1] - low[1]));
 }
 
 enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *p,

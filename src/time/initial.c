@@ -108,23 +108,15 @@ static const char *remedy_of_substeps(const struct simulation *sim)
 static bool implicit_pays(const struct simulation *sim)
 {
     const struct scene *const scene = sim->scene;
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
     const struct scene_numerics *const n = &scene->numerics;
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, area = 0;
     bool possible = n->solid_steps == SOLID_STEPS_AUTO && sim->effects & FX_COUPLING &&
                     !(sim->effects & FX_HINGE) && n->multirate != MULTIRATE_OFF &&
                     n->solid_precision != SOLID_PRECISION_SINGLE;
     for (int k = 0; k < scene->n_solid; k++)
         possible &= sim->solid.body[k].variational || !(sim->solid.body[k].kappa > 0);
     if (!possible) return false;
-    for (int64_t i = 0; i < particles->n; i++) {
-        low[0] = min2(low[0], particles->X[i]), high[0] = max2(high[0], particles->X[i]);
-        low[1] = min2(low[1], particles->Y[i]), high[1] = max2(high[1], particles->Y[i]);
-        area += square(sim->solid.body[particles->body[i]].dp);
-    }
-    const double across = area / (sim->solid.dp * max2(high[0] - low[0], high[1] - low[1]));
     const double substeps = timestep_fluid_limit(sim) / sim->dt_solid;
-    return substeps > 10 + 2 * across;
+    return substeps > 10 + 2 * implicit_across(&sim->solid, &sim->kind[KIND_SOLID]);
 }
 
 /* Sub-steps help where the solid's step is the smaller one. */
@@ -226,7 +218,8 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         if (sim->effects & FX_IMPLICIT) {
             sim->coupling.centred = true;
             TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
-            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
+            if (!(sim->effects & FX_FLUID))
+                sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
         }
         sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
         timestep_set_solid(sim);

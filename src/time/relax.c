@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "implicit/equilibrium.h"
 #include "time/evaluation.h"
 #include "time/simulation.h"
 #include "time/timestep.h"
@@ -42,7 +43,7 @@ static void stop_solid(struct simulation *sim)
     particles_clear(particles->vy, particles->n);
     particles_clear(particles->wx, particles->n);
     particles_clear(particles->wy, particles->n);
-    if (sim->coupling.centred || particles->n == 0) return;
+    if (sim->coupling.centred || sim->substeps == 0 || particles->n == 0) return;
     solid_stress(&sim->solid, particles);
     solid_forces(&sim->solid, particles);
     for (int64_t i = 0; i < particles->n; i++) {
@@ -167,11 +168,27 @@ static enum err check_held_fluid(const struct simulation *sim, struct diag *d)
                      place, fall);
 }
 
+/* T-78a: solids without fluid, at once; if that fails, they move as with fluid. */
+static enum err find_equilibrium(struct simulation *sim, struct diag *d)
+{
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    sim->guard.case_at_fault = true; /* a body that nothing holds */
+    TRY(equilibrium_find(&sim->rest, &sim->solid, particles, sim->scene,
+                         sim->effects & FX_CONTACT ? &sim->contact : NULL, d));
+    sim->guard.case_at_fault = false;
+    if (!sim->rest.found) return ERR_OK;
+    solid_set_positions(particles);
+    begin_run(sim);
+    return ERR_OK;
+}
+
 enum err relax_step(struct simulation *sim, struct diag *d)
 {
     enum { BATCH = 16 }; /* steps of a solid alone in a call */
     struct state *const st = &sim->state;
     const double fixed = sim->scene->numerics.fixed_step;
+    if (!(sim->effects & FX_FLUID) && st->relax_time == 0) TRY(find_equilibrium(sim, d));
+    if (st->relaxed) return ERR_OK;
     const double limit =
         sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : BATCH * sim->dt_solid;
     const double begin = -1.01 * max2(limit, BATCH * fixed);
@@ -224,7 +241,12 @@ void relax_progress(const struct simulation *sim, char text[RELAX_TEXT])
 void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
 {
     const struct state *const st = &sim->state;
-    if (st->relax_swings == 0)
+    if (sim->rest.load_steps > 0)
+        snprintf(text, RELAX_TEXT,
+                 "at rest: Newton's method found static equilibrium by %d corrections in %d load "
+                 "step%s",
+                 sim->rest.corrections, sim->rest.load_steps, sim->rest.load_steps > 1 ? "s" : "");
+    else if (st->relax_swings == 0)
         snprintf(text, RELAX_TEXT, "nothing moves: the state at the start is one of rest");
     else
         snprintf(

@@ -10,6 +10,7 @@
 #include "particles/cells.h"
 #include "rigid/rigid.h"
 #include "solid/contact.h"
+#include "implicit/equilibrium.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
 #include "time/energy_account.h"
@@ -98,6 +99,7 @@ struct simulation {
     struct contact contact;         /* of the solid; unused without it */
     struct hinges hinges;           /* of the solid */
     struct loads loads;             /* of the solid; unused without loads and moving clamps */
+    struct equilibrium rest;        /* of solids without fluid, with [relax] */
     effect_set effects;             /* bits of case/effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */

@@ -21,6 +21,18 @@ ledger_interval = 1 ms
 body = bar
 point = 0.02, 0
 END
+expect 0 '^at rest: Newton.s method found' "$dir/bar.cfg" --out "$dir/newton"
+# Beside a block that lies on a floor it moves to its rest.
+cat >>"$dir/bar.cfg" <<'END'
+[solid block]
+shape = box 0.2, 0, 0.24, 0.04
+density = 1000
+young = 1e5
+poisson = 0
+law = svk
+[wall floor]
+shape = box 0.18, -0.04, 0.26, 0
+END
 expect 0 '^seeking a state of rest before t = 0' "$dir/bar.cfg" --out "$dir/whole"
 grep -q '^at rest after .* s and [0-9]* stops: over the last' "$dir/output" ||
     fail "what was found is not said"

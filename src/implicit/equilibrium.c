@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: MIT
+ * Static equilibrium of solids by Newton's method (T-78a). Where it does not converge at once, a
+ * part of the forces of the start is left out at first: load steps. */
+#include "implicit/equilibrium.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "solid/contact.h"
+#include "solid/hinges.h"
+#include "solid/loads.h"
+
+/* Of the residual over the largest force of a particle: it is enough, and it is as good as none. */
+#define TOLERANCE 1e-7
+#define FINE 1e-12
+
+/* A matrix is kept while a correction with it reduces the residual by this factor. */
+#define FAST 0.1
+
+enum { ITERATIONS = 25 };
+
+/* T-78b: for bodies of more particles across than along by so much the factors cost more than the
+ * motion. */
+static const double dear = 80;
+
+static const double shortest_part = 1.0 / 256;
+
+/* T-78a: Newton's method from the present displacements. Pieces that nothing holds get a little of
+ * their mass, with which their rigid motions have a solution. */
+static bool balance(struct solid *solid, struct particles *p, struct equilibrium *found)
+{
+    struct implicit *const by = solid->implicit;
+    const double shift = by->n_free ? 1e-12 * square(solid->omega_max) : 0;
+    double last = 0;
+    int64_t negative = -1;
+    for (int k = 0; k < ITERATIONS; k++) {
+        const double residual = implicit_residual(solid, p, (double)INFINITY, 0);
+        if (!isfinite(residual)) return false;
+        if (residual <= FINE || (k && residual <= TOLERANCE && residual > FAST * last))
+            return negative <= 0;
+        if (!(residual <= FAST * last))
+            negative = implicit_factor(solid, p, (double)INFINITY, shift, NULL, NULL);
+        if (negative < 0) return false;
+        implicit_correct(solid, p);
+        found->corrections++;
+        last = residual;
+    }
+    return false;
+}
+
+/* Whether surfaces come near each other between the displacements `from` and those of p, on
+ * straight lines, looked at wherever some particle has moved by half a spacing. */
+static bool comes_near(const struct solid *solid, struct particles *p, double *const from[2],
+                       struct contact *contact)
+{
+    double *const u[2] = {p->ux, p->uy}, *const to[2] = {p->vx0, p->vy0};
+    const size_t bytes = (size_t)p->n * sizeof *p->ux;
+    double moved = 0; /* squared */
+    bool near = false;
+    if (!contact) return false;
+    for (int c = 0; c < 2; c++) memcpy(to[c], u[c], bytes);
+    for (int64_t i = 0; i < p->n; i++)
+        moved = max2(moved, square(to[0][i] - from[0][i]) + square(to[1][i] - from[1][i]));
+    const int parts = 1 + (int)min2(2 * sqrt(moved) / solid->dp, 1e6);
+    for (int k = 1; k <= parts && !near; k++) {
+        for (int c = 0; c < 2; c++)
+            for (int64_t i = 0; i < p->n; i++)
+                u[c][i] = from[c][i] + (to[c][i] - from[c][i]) * k / parts;
+        near = contact_watch(contact, p, 0, 0, 0);
+    }
+    return near;
+}
+
+/* Load steps: those that fail are halved, those that succeed are doubled. */
+static bool load(struct solid *solid, struct particles *p, struct contact *contact,
+                 struct equilibrium *found)
+{
+    double *const *const start = solid->scratch;
+    double done = 0, part = 1;
+    while (done < 1) {
+        implicit_keep_start(solid, p);
+        solid->implicit->left_out = 1 - done - part;
+        if (balance(solid, p, found)) {
+            if (comes_near(solid, p, start, contact)) return false;
+            done += part;
+            part = min2(2 * part, 1 - done);
+            found->load_steps++;
+            continue;
+        }
+        memcpy(p->ux, start[0], (size_t)p->n * sizeof *p->ux);
+        memcpy(p->uy, start[1], (size_t)p->n * sizeof *p->uy);
+        part *= 0.5;
+        if (part < shortest_part) return false;
+    }
+    return true;
+}
+
+/* The forces of the start, which load steps leave out in part. A body that no clamp holds needs
+ * those that add up to none; its name and their sum otherwise. */
+static int find_fallen(struct solid *solid, const struct particles *p, double sum[2])
+{
+    struct implicit *const by = solid->implicit;
+    double total[solid->n_bodies][3]; /* sum of forces, and of their sizes */
+    bool held[solid->n_bodies];
+    memset(total, 0, sizeof total);
+    memset(held, 0, sizeof held);
+    for (int64_t i = 0; i < p->n; i++) {
+        const int bond = solid->body[p->body[i]].bond;
+        held[bond] |= by->order[i] < 0;
+        for (int c = 0; c < 2 && by->order[i] >= 0; c++) {
+            const double f = by->unknown[2 * (int64_t)by->order[i] + c];
+            solid->scratch[IMPLICIT_LEFT_OUT + c][i] = f;
+            total[bond][c] += f;
+            total[bond][2] += fabs(f);
+        }
+    }
+    for (int k = 0; k < solid->n_bodies; k++) {
+        for (int c = 0; c < 2; c++) sum[c] = total[k][c];
+        if (!held[k] && max2(fabs(sum[0]), fabs(sum[1])) > TOLERANCE * total[k][2]) return k;
+    }
+    return -1;
+}
+
+static enum err find(struct equilibrium *found, struct solid *solid, struct particles *p,
+                     const struct scene *scene, struct contact *contact, struct diag *d)
+{
+    double sum[2];
+    char place[LOCATION_TEXT];
+    if (contact && contact_watch(contact, p, 0, 0, 0)) return ERR_OK;
+    implicit_keep_start(solid, p);
+    if (implicit_residual(solid, p, (double)INFINITY, 0) == 0) {
+        found->found = true;
+        return ERR_OK;
+    }
+    const int fallen = find_fallen(solid, p, sum);
+    if (fallen < 0) {
+        found->found = load(solid, p, contact, found);
+        return ERR_OK;
+    }
+    if (contact && (solid->n_bodies > 1 || scene->n_wall > 0)) return ERR_OK;
+    scene_location(scene, scene->solid[fallen].common.line, place);
+    return diag_fail(
+        d, ERR_GUARD,
+        "%s: [relax]: nothing holds [solid %s] against a force of (%.3g, %.3g) N/m, so there "
+        "is no state of rest; give it a `clamp` or a `hinge`, put a [wall] below it, or "
+        "leave [relax] out",
+        place, scene->solid[fallen].common.name, sum[0], sum[1]);
+}
+
+enum err equilibrium_find(struct equilibrium *found, const struct solid *from, struct particles *p,
+                          const struct scene *scene, struct contact *contact, struct diag *d)
+{
+    const size_t bytes = (size_t)p->n * sizeof *p->ux;
+    struct arena arena = {0};
+    struct solid solid;
+    *found = (struct equilibrium){0};
+    const double across = implicit_across(from, p);
+    if (from->hinges || from->external[0] || across * across * across > dear * (double)p->n)
+        return ERR_OK;
+    for (int k = 0; k < from->n_bodies; k++)
+        if (from->body[k].kappa > 0 && !from->body[k].variational) return ERR_OK;
+    enum err e = solid_create(&solid, &arena, scene, p, true, d);
+    double *const start[2] = {arena_alloc(&arena, (size_t)p->n, sizeof *p->ux, "start", d),
+                              arena_alloc(&arena, (size_t)p->n, sizeof *p->uy, "start", d)};
+    if (!e && !(start[0] && start[1])) e = ERR_MEMORY;
+    if (!e) {
+        memcpy(start[0], p->ux, bytes);
+        memcpy(start[1], p->uy, bytes);
+        solid.loads = from->loads;
+        solid.gravity = from->gravity;
+        solid.calls_out = from->calls_out;
+        solid.omega_max = from->omega_max;
+        e = implicit_create(&solid, &arena, p, d);
+    }
+    if (!e) e = find(found, &solid, p, scene, contact, d);
+    if (!e && !found->found) {
+        memcpy(p->ux, start[0], bytes);
+        memcpy(p->uy, start[1], bytes);
+    }
+    arena_free(&arena);
+    return e;
+}
