@@ -4,14 +4,7 @@
 
 #include "solid/material_energy.h"
 
-/* The displacement gradient of a particle, in all SIMD lanes. */
-static struct vtensor2 gradient_at(const struct particles *particles, int64_t i)
-{
-    return (struct vtensor2){vset_double(particles->Uxx[i]), vset_double(particles->Uxy[i]),
-                             vset_double(particles->Uyx[i]), vset_double(particles->Uyy[i])};
-}
-
-/* Those of `count` particles, in the first lanes; the others have none. */
+/* Displacement gradients of `count` particles, in the first lanes; the others have none. */
 static struct vtensor2 gradients_at(const struct particles *particles, int64_t i, int count)
 {
     struct vtensor2 U = {{0}, {0}, {0}, {0}};
@@ -28,7 +21,7 @@ void solid_cauchy(const struct solid *solid, const struct particles *particles, 
                   double sigma[4], double *det)
 {
     const struct solid_body *const b = &solid->body[particles->body[i]];
-    const struct vtensor2 U = gradient_at(particles, i), F = deformation(U);
+    const struct vtensor2 U = gradients_at(particles, i, 1), F = deformation(U);
     double thickness, sigma_zz;
     material_across(b, U, &thickness, &sigma_zz);
     const struct vtensor2 PF = vtensor2_mul_t(material_pk1(b, U), F);

@@ -236,13 +236,13 @@ static void watch_pair(struct contact *contact, const struct particles *particle
     double v[2];
     pair->near = false;
     if (!contact_foot(contact, pair->point, pair->edge, &foot)) return;
-    const double r = foot.distance, left = contact_clearance(&foot), min_reach = foot.min_reach;
+    const double r = foot.distance, left = foot.left, min_reach = foot.min_reach;
     relative_velocity(&foot, v);
     if (r > foot.reach + distance_near(contact, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     contact->near = true;
     /* The overlap in parts of that at which the law of a pair that begins apart is infinite. */
     const double gap = foot.law->reach - foot.law->spacing;
-    find_depth(contact, &foot, (min_reach - left - gap) / (contact_reach_apart(&foot) - gap));
+    find_depth(contact, &foot, (min_reach - left - gap) / (foot.reach_apart - gap));
     const double closing =
         r > 0 ? max2(0, -(v[0] * foot.offset[0] + v[1] * foot.offset[1]) / r) : 0;
     if (closing > 0)

@@ -51,12 +51,6 @@ static double reach_of(const struct contact_law *law, const struct contact_point
     return law->reach + max2(point->outer + end->outer, -0.5 * law->spacing);
 }
 
-double contact_reach_apart(const struct contact_foot *foot)
-{
-    return min2(reach_of(foot->law, foot->point, foot->a),
-                reach_of(foot->law, foot->point, foot->b));
-}
-
 /* --- law --- */
 
 /* Whether a point was initially within the kernel of an end of an edge, with the smoothing length
@@ -109,14 +103,16 @@ bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
     const struct contact_law *const law = contact_law_of(contact, p->body, end[0]->body);
     const double initial = law->on ? initial_distance(contact, p, end) : 0;
     if (!(initial > 0)) return false;
-    const double at_a = min2(initial, reach_of(law, p, end[0])),
-                 at_b = min2(initial, reach_of(law, p, end[1]));
+    const double apart[2] = {reach_of(law, p, end[0]), reach_of(law, p, end[1])};
+    const double at_a = min2(initial, apart[0]), at_b = min2(initial, apart[1]);
     *foot = foot_of(contact, point, edge, at_b - at_a);
     foot->law = law;
     foot->reach_a = at_a;
     foot->reach_b = at_b;
     foot->reach = foot->at == 1 ? at_b : at_a + foot->at * (at_b - at_a);
     foot->min_reach = min2(at_a, at_b);
+    foot->reach_apart = min2(apart[0], apart[1]);
+    foot->left = foot->distance - (foot->reach - foot->min_reach);
     return true;
 }
 

@@ -22,7 +22,9 @@ struct contact_foot {
     const struct contact_point *point, *a, *b;
     double at, offset[2], distance, reach;
     double reach_a, reach_b; /* at the ends, */
-    double min_reach; /* and the least of them, m: R of T-61c, at which the law is infinite */
+    double min_reach;   /* and the least of them, m: R of T-61c, at which the law is infinite */
+    double reach_apart; /* the same for a point that begins apart from them */
+    double left;        /* r of T-61c: the least reach less the overlap, m */
 };
 
 /* The place where the distance less the reach is smallest; false: they do not interact. */
@@ -31,15 +33,6 @@ bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
 
 /* The nearest place, without law and reach. */
 struct contact_foot contact_nearest(const struct contact *contact, int32_t point, int32_t edge);
-
-/* Least reach of both ends for a point that begins apart from them, m. */
-double contact_reach_apart(const struct contact_foot *foot);
-
-/* r of T-61c: the least reach less the overlap, m. */
-SPHFSI_INLINE double contact_clearance(const struct contact_foot *f)
-{
-    return f->distance - (f->reach - f->min_reach);
-}
 
 /* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
  * of the other. */

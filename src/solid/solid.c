@@ -78,33 +78,6 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
     return NULL;
 }
 
-static const struct solid_sweeps *choose_sweeps(const struct solid *solid,
-                                                const struct scene *scene,
-                                                const struct particles *particles, bool implicit)
-{
-    const int choice = scene->numerics.solid_precision;
-    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit)
-        return &solid_sweeps_double;
-    if (choice == SOLID_PRECISION_AUTO && solid_needs_double(solid, scene, particles))
-        return &solid_sweeps_double;
-    return &solid_sweeps_mixed;
-}
-
-/* Whether the scene needs a packed field. */
-static bool lane_needed(const struct solid *solid, int lane)
-{
-    bool mixed = false;
-    for (int k = 0; k < solid->n_bodies; k++) mixed |= solid->body[k].mixed;
-    switch (lane) {
-    case S_PAIRS_X:
-    case S_PAIRS_Y: return solid->variational;
-    case S_DRAG: return mixed;
-    case S_LOW_X:
-    case S_LOW_Y: return solid->sweeps->size < sizeof(double);
-    default: return true;
-    }
-}
-
 /* The packed fields that the scene needs. Sweeps in double precision use the particle fields
  * themselves where these exist. */
 static enum err packed_create(struct solid *solid, struct arena *a,
@@ -116,8 +89,12 @@ static enum err packed_create(struct solid *solid, struct arena *a,
         [S_UYX] = particles->Uyx, [S_UYY] = particles->Uyy, [S_PXX] = particles->Pxx,
         [S_PXY] = particles->Pxy, [S_PYX] = particles->Pyx, [S_PYY] = particles->Pyy,
     };
+    bool mixed = false;
+    for (int k = 0; k < solid->n_bodies; k++) mixed |= solid->body[k].mixed;
     for (int k = 0; k < SOLID_PACKED_FIELDS; k++) {
-        if (!lane_needed(solid, k)) continue;
+        if ((k == S_PAIRS_X || k == S_PAIRS_Y) && !solid->variational) continue;
+        if ((k == S_LOW_X || k == S_LOW_Y) && solid->sweeps->size == sizeof(double)) continue;
+        if (k == S_DRAG && !mixed) continue;
         solid->lane[k] = field[k];
         if (field[k] && solid->sweeps->size == sizeof(double)) continue;
         solid->lane[k] = arena_alloc(a, (size_t)particles->n, solid->sweeps->size,
@@ -152,7 +129,11 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
-    solid->sweeps = choose_sweeps(solid, scene, particles, implicit);
+    const int choice = scene->numerics.solid_precision;
+    const bool in_double =
+        scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit ||
+        (choice == SOLID_PRECISION_AUTO && solid_needs_double(solid, scene, particles));
+    solid->sweeps = in_double ? &solid_sweeps_double : &solid_sweeps_mixed;
     TRY(packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {
