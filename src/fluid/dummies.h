@@ -82,12 +82,13 @@ SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double o
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
-SPHFSI_INLINE void gather_velocity(const struct dummies *d, const struct particles *particles,
-                                   effect_set fx, double u[CLUSTER], double v[CLUSTER])
+SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummies *d,
+                                   const struct particles *particles, double u[CLUSTER],
+                                   double v[CLUSTER])
 {
-    const bool moves = fx & FX_MOTION;
-    gather(d, d->kind == KIND_SOLID ? particles->wx : moves ? particles->vx : NULL, u);
-    gather(d, d->kind == KIND_SOLID ? particles->wy : moves ? particles->vy : NULL, v);
+    const bool moves = fluid->effects & FX_MOTION, solid = d->kind == KIND_SOLID;
+    gather(d, solid ? particles->wx : moves ? particles->vx : NULL, u);
+    gather(d, solid ? particles->wy : moves ? particles->vy : NULL, v);
 }
 
 SPHFSI_INLINE void scatter(const struct dummies *d, const double in[CLUSTER], double *field)
@@ -121,8 +122,9 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
 
 /* What fx_one_sided and fx_repulsion need of the dummies. */
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
-                                       const struct dummies *d, effect_set fx)
+                                       const struct dummies *d)
 {
+    const effect_set fx = fluid->effects;
     double ax[CLUSTER], ay[CLUSTER];
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
@@ -151,7 +153,7 @@ static void no_slip(const struct fluid *fluid, const struct particles *particles
 {
     const bool own_image = fluid->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
-    gather_velocity(d, particles, fluid->effects, u, v);
+    gather_velocity(fluid, d, particles, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && neighbours->n && !own_image; r += GROUPS) {
@@ -200,14 +202,16 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
  * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
                                  const struct dummies *d, const double pressure[CLUSTER],
-                                 const double dens[CLUSTER], effect_set fx)
+                                 const double dens[CLUSTER])
 {
     const double mean = fluid->k.mass / fluid->k.rho0 * square(1 / fluid->k.h);
     double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0}, acting[CLUSTER];
-    gather_velocity(d, particles, fx, u, v);
+    gather_velocity(fluid, d, particles, u, v);
     /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
      * (L-6); and on a structure that of the interface impulse (T-35b). */
-    gather(d, d->kind == KIND_SOLID || fx & FX_RIGID ? particles->interface_pressure : NULL,
+    gather(d,
+           d->kind == KIND_SOLID || fluid->effects & FX_RIGID ? particles->interface_pressure
+                                                              : NULL,
            acting);
     for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
     for (int r = 0; r < d->count; r++)
@@ -224,13 +228,12 @@ _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole bloc
 
 /* Pressures and state of the dummies of a cell. */
 SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct particles *particles,
-                                         enum kind kind, const struct cells *cells, int32_t cell,
-                                         effect_set fx)
+                                         enum kind kind, const struct cells *cells, int32_t cell)
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
-    const bool rests = kind == KIND_WALL && !(fx & FX_MOTION);
+    const bool rests = kind == KIND_WALL && !(fluid->effects & FX_MOTION);
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
     bool wet[CELL_CAPACITY / CLUSTER];
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
@@ -252,7 +255,7 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct parti
         scatter(&d, &dens[m * CLUSTER], particles->dens);
         /* No fluid reads a cluster that none is near to; at rest none of it changes anyway. */
         if (wet[m] || !rests)
-            dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
+            dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
     }
 }
 
@@ -264,7 +267,7 @@ static void dummies_surface_of_cell(const struct fluid *fluid, const struct part
     const struct cell_sides sides = cell_sides_of(fluid, cells);
     for (int32_t m = 0; m < clusters_in(&cells->kind[kind], cell); m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
-        pack_surface_fields(fluid, particles, &d, fluid->effects);
+        pack_surface_fields(fluid, particles, &d);
         if (!(fluid->effects & FX_NO_SLIP)) continue;
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
@@ -272,37 +275,13 @@ static void dummies_surface_of_cell(const struct fluid *fluid, const struct part
     }
 }
 
-/* The state of a cell, with a constant kind and without tests for motion. */
-typedef void SWEEP(dummies_cell)(const struct fluid *fluid, struct particles *particles,
-                                 enum kind kind, const struct cells *cells, int32_t cell);
-#define DUMMIES(name, of_kind, set)                                                               \
-    static void SWEEP(dummies_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
-                                      const struct cells *c, int32_t cell)                        \
-    {                                                                                             \
-        (void)kind;                                                                               \
-        dummies_state_of_cell(f, p, (of_kind), c, cell, (set));                                   \
-    }
-DUMMIES(wall, KIND_WALL, 0u)
-DUMMIES(moving_wall, KIND_WALL, FX_MOTION)
-DUMMIES(rigid, KIND_WALL, FX_MOTION | FX_RIGID)
-DUMMIES(solid, KIND_SOLID, 0u)
-#undef DUMMIES
-
-static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind kind)
-{
-    if (kind == KIND_SOLID) return SWEEP(dummies_solid);
-    if (effects & FX_RIGID) return SWEEP(dummies_rigid);
-    return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
-}
-
 static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
                            const struct cells *cells, enum kind kind)
 {
     struct particles *const particles = &kinds[kind];
-    SWEEP(dummies_cell) *const state = SWEEP(dummies_state)(fluid->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++) {
-        state(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
+        dummies_state_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
         if (fluid->effects & SURFACE_EFFECTS)
             dummies_surface_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
     }

@@ -47,17 +47,19 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
     return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;
 }
 
-static enum err note_slip(struct fluid *fluid, struct arena *a, const struct scene *scene,
-                          struct diag *d)
+/* Volumes of the dummies of each body, and whether fluid sticks to it. */
+static enum err describe_bodies(struct fluid *fluid, struct arena *a, const struct scene *scene,
+                                enum kind kind, struct diag *d)
 {
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const int n = kind == KIND_WALL ? scene->n_wall : scene->n_solid;
-        bool *const sticks = arena_alloc(a, (size_t)n, sizeof *sticks, "walls", d);
-        if (!sticks) return ERR_MEMORY;
-        for (int k = 0; k < n; k++)
-            sticks[k] =
-                (kind == KIND_WALL ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
-        fluid->sticks[kind] = sticks;
+    const bool wall = kind == KIND_WALL, sticks = fluid->effects & FX_NO_SLIP;
+    const size_t n = (size_t)(wall ? scene->n_wall : scene->n_solid);
+    fluid->volume[kind] = arena_alloc(a, n, sizeof *fluid->volume[kind], "volumes", d);
+    fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);
+    if (!fluid->volume[kind] || !fluid->sticks[kind]) return ERR_MEMORY;
+    for (int k = 0; k < (int)n; k++) {
+        fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
+        fluid->sticks[kind][k] =
+            sticks && (wall ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
     }
     return ERR_OK;
 }
@@ -104,7 +106,6 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
         arena_alloc(a, (size_t)cells->nx * (size_t)cells->ny, sizeof *fluid->near_dummies,
                     "cells near walls and structures", d);
     if (!fluid->near_dummies) return ERR_MEMORY;
-    if (effects & FX_NO_SLIP) TRY(note_slip(fluid, a, scene, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(packed_create(&fluid->packed[k], a, cells_clusters(cells, kinds[k].capacity),
@@ -113,12 +114,7 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
         fluid->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity,
                                            sizeof *fluid->near_fluid[k], "cells near fluid", d);
         if (!fluid->near_fluid[k]) return ERR_MEMORY;
-        const int sections = k == KIND_WALL ? scene->n_wall : scene->n_solid;
-        fluid->volume[k] = arena_alloc(a, (size_t)sections, sizeof(double), "volumes", d);
-        if (!fluid->volume[k]) return ERR_MEMORY;
-        for (int b = 0; b < sections; b++)
-            fluid->volume[k][b] =
-                k == KIND_WALL ? 1 : square(scene_solid_dp(scene, b) / scene->top.dp);
+        TRY(describe_bodies(fluid, a, scene, (enum kind)k, d));
     }
     return ERR_OK;
 }
@@ -200,29 +196,9 @@ int32_t fluid_fullest_cell(const struct cells *cells)
     return fullest;
 }
 
-static void pass_pack(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                      const struct cells *cells)
-{
-    fluid->sweeps->packed(fluid, kinds, cells);
-}
-
-static void pass_slope(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                       const struct cells *cells)
-{
-    fluid->sweeps->slopes(fluid, kinds, cells);
-}
-
-static void pass_wall(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                      const struct cells *cells)
-{
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (fluid->n_near_fluid[kind]) fluid->sweeps->dummies(fluid, kinds, cells, (enum kind)kind);
-    fluid->walls_placed = !(fluid->effects & FX_MOTION) && !fluid->never_skip;
-}
-
 /* The fluid's rates, chunk by chunk. */
-static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                       const struct cells *cells)
+static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                           const struct cells *cells)
 {
     const int32_t n_active = cells->kind[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
     double acceleration2 = 0, approach = 0;
@@ -241,20 +217,25 @@ static void pass_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
     fluid->extremes = (struct fluid_extremes){acceleration2, approach};
 }
 
-/* The passes of an evaluation, in order; phase_table says which scenes have them. */
-static const struct pass {
-    enum phase phase;
-    void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
-} passes[] = {
-    {PHASE_packed, pass_pack},
-    {PHASE_slope, pass_slope},
-    {PHASE_wall, pass_wall},
-    {PHASE_fluid, pass_fluid},
-};
+static void dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                    const struct cells *cells)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (fluid->n_near_fluid[kind]) fluid->sweeps->dummies(fluid, kinds, cells, (enum kind)kind);
+    fluid->walls_placed = !(fluid->effects & FX_MOTION) && !fluid->never_skip;
+}
 
+/* The passes in order; phase_table says which scenes have them. */
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT])
 {
+    const struct {
+        enum phase phase;
+        fluid_pass *run;
+    } passes[] = {{PHASE_packed, fluid->sweeps->packed},
+                  {PHASE_slope, fluid->sweeps->slopes},
+                  {PHASE_wall, dummies},
+                  {PHASE_fluid, rates_of_fluid}};
     double since = wall_clock();
     for (size_t k = 0; k < COUNT_OF(passes); k++) {
         if (!phase_runs(passes[k].phase, fluid->effects)) continue;

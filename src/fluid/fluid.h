@@ -107,15 +107,15 @@ struct fluid_kernel {
 };
 #define ANY_EFFECTS (~(effect_set)0)
 
+/* A pass over all kinds. */
+typedef void fluid_pass(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                        const struct cells *cells);
+
 /* The sweeps of one precision. */
 struct fluid_sweeps {
     size_t packed_item_size;
-    /* Pressure by the equation of state, and packed fields of the fluid. */
-    void (*packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
-                   const struct cells *c);
-    /* Renormalised gradient of the fluid's density, and its packed fields. */
-    void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
-                   const struct cells *c);
+    fluid_pass *packed; /* pressure by the equation of state, and packed fields of the fluid */
+    fluid_pass *slopes; /* renormalised gradient of the fluid's density, and its packed fields */
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed
      * fields. The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
@@ -173,7 +173,7 @@ struct fluid {
     bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed;        /* walls rest, and their packed positions are valid */
     bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
-    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
+    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
     int threads;

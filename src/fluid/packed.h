@@ -37,33 +37,23 @@ SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
     *(four_real *)(void *)(packed + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
 }
 
-/* Tait's pressure of four. */
-SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_constants *k)
-{
-    return k->c0 * k->c0 * k->rho0 / EOS_GAMMA * EOS_POWER(dens);
-}
-
-/* Acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a): the pressure psi of four, where
- * `excess` is dens less the value with delay. */
-SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid_constants *k)
-{
-    return k->rho0 * square(k->c0) * excess;
-}
-
-/* Pressure that acts on the neighbours of the four particles from i on: T-3, and T-9a. */
+/* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
+ * acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with
+ * delay. */
 SPHFSI_INLINE four_double acting_pressure(const struct fluid *fluid,
-                                          const struct particles *particles, int32_t i,
-                                          effect_set fx)
+                                          const struct particles *particles, int32_t i)
 {
-    const four_double dens = FOUR(particles->dens, i), pressure = pressure_of(dens, &fluid->k);
-    if (!(fx & FX_DAMPER)) return pressure;
-    return pressure + damper_pressure(dens - FOUR(particles->dens_slow, i), &fluid->k);
+    const struct fluid_constants *const k = &fluid->k;
+    const four_double dens = FOUR(particles->dens, i);
+    const four_double pressure = k->c0 * k->c0 * k->rho0 / EOS_GAMMA * EOS_POWER(dens);
+    if (!(fluid->effects & FX_DAMPER)) return pressure;
+    return pressure + k->rho0 * square(k->c0) * (dens - FOUR(particles->dens_slow, i));
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
  * next cell. */
 SPHFSI_INLINE void pack_cluster(const struct fluid *fluid, const struct particles *particles,
-                                int32_t i, const double centre[2], effect_set fx, real *out)
+                                int32_t i, const double centre[2], real *out)
 {
     const double inv_h = 1 / fluid->k.h, volume = fluid->k.mass / fluid->k.rho0 * square(inv_h);
     const four_double dens = FOUR(particles->dens, i);
@@ -72,14 +62,14 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *fluid, const struct particle
     put_four(out, PACKED_U, FOUR(particles->vx, i));
     put_four(out, PACKED_V, FOUR(particles->vy, i));
     const four_double specific = 1 / (1 + dens), own = volume * specific;
-    put_four(out, PACKED_VOLUME, fx & FX_MASSES ? FOUR(particles->m, i) * own : own);
+    put_four(out, PACKED_VOLUME, fluid->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
     if (fluid->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
-    put_four(out, PACKED_P, acting_pressure(fluid, particles, i, fx));
+    put_four(out, PACKED_P, acting_pressure(fluid, particles, i));
     put_four(out, PACKED_DENS, dens);
 }
 
 SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *particles,
-                             const struct cells *cells, int32_t cell, effect_set fx)
+                             const struct cells *cells, int32_t cell)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const struct packed_fields *const packed = &fluid->packed[KIND_FLUID];
@@ -89,7 +79,7 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(fluid, particles, list->start[cell] + first, centre, fx, out);
+        pack_cluster(fluid, particles, list->start[cell] + first, centre, out);
         if (own < CLUSTER) cluster_close(out, packed->n, own);
         for (int32_t r = own; r < CLUSTER && fluid->effects & FX_VISCOSITY; r++)
             out[PACKED_SPECIFIC * CLUSTER + r] = 1; /* the sum of two is a divisor */
@@ -97,51 +87,13 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *
     }
 }
 
-/* pack_cell for each set of the effects that it depends on. */
-typedef void SWEEP(pack)(const struct fluid *fluid, const struct particles *particles,
-                         const struct cells *cells, int32_t cell);
-#define PACK(name, set)                                                              \
-    static void SWEEP(pack_##name)(const struct fluid *f, const struct particles *p, \
-                                   const struct cells *c, int32_t cell)              \
-    {                                                                                \
-        pack_cell(f, p, c, cell, (set));                                             \
-    }
-PACK(plain, 0u)
-PACK(masses, FX_MASSES)
-PACK(damper, FX_DAMPER)
-PACK(masses_damper, FX_MASSES | FX_DAMPER)
-#undef PACK
-
-static void SWEEP(packed)(const struct fluid *fluid, const struct particles kinds[KIND_COUNT],
+static void SWEEP(packed)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    const bool masses = fluid->effects & FX_MASSES, damper = fluid->effects & FX_DAMPER;
-    SWEEP(pack) *const pack = damper   ? masses ? SWEEP(pack_masses_damper) : SWEEP(pack_damper)
-                                : masses ? SWEEP(pack_masses)
-                                       : SWEEP(pack_plain);
     const int32_t n = cells->kind[KIND_FLUID].n_active;
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < n; k++)
-        pack(fluid, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
-}
-
-/* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the
- * neighbours span no plane (a determinant below a thousandth of the trace squared) its inverse
- * is taken as 0. */
-struct moments {
-    double xx, xy, yy, det;
-};
-
-SPHFSI_INLINE struct moments moments_of(double xx, double xy, double yy)
-{
-    const double det = xx * yy - square(xy);
-    return (struct moments){xx, xy, yy, det > 1e-3 * square(xx + yy) ? det : 0};
-}
-
-SPHFSI_INLINE void moments_solve(const struct moments *m, double x, double y, double out[2])
-{
-    out[0] = m->det > 0 ? (m->yy * x - m->xy * y) / m->det : 0;
-    out[1] = m->det > 0 ? (m->xx * y - m->xy * x) / m->det : 0;
+        pack_cell(fluid, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
 }
 
 /* V t^3 of the candidates. */
@@ -152,7 +104,9 @@ SPHFSI_INLINE vreal gradient_weight(const struct separation *r, const real *b)
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
- * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. */
+ * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
+ * neighbours span no plane (a determinant below a thousandth of the trace squared) the inverse
+ * is taken as 0. */
 static void slopes_of(const struct neighbours *neighbours, const struct receiver *a,
                       double slope[GROUPS][2])
 {
@@ -178,8 +132,12 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
     total(dx, U);
     total(dy, V);
     for (int g = 0; g < GROUPS; g++) {
-        const struct moments m = moments_of((double)A[g], (double)B[g], (double)C[g]);
-        moments_solve(&m, (double)U[g], (double)V[g], slope[g]);
+        const double a_xx = (double)A[g], a_xy = (double)B[g], a_yy = (double)C[g],
+                     x = (double)U[g], y = (double)V[g];
+        const double det = a_xx * a_yy - square(a_xy);
+        const bool plane = det > 1e-3 * square(a_xx + a_yy);
+        slope[g][0] = plane ? (a_yy * x - a_xy * y) / det : 0;
+        slope[g][1] = plane ? (a_xx * y - a_xy * x) / det : 0;
     }
 }
 
@@ -224,7 +182,7 @@ SPHFSI_INLINE void pack_slopes(const struct fluid *fluid, const struct particles
     }
 }
 
-static void SWEEP(slopes)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
+static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
     const struct cell_list *list = &cells->kind[KIND_FLUID];

@@ -47,17 +47,21 @@ void neighbour_clusters_collect(struct neighbour_clusters *s, const struct clust
 {
     const struct cell_list *const list = &cells->kind[kind];
     const float side[] = {(float)(cells->side[0] / h), (float)(cells->side[1] / h)};
-    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
+    int x[3];
+    for (int column = 0; column < 3; column++)
+        x[column] = cells_wrap(cells, 0, cell_x(cells, cell) + column - 1);
     s->n = 0;
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++) {
-            const int32_t other = cell_at(cells, cx + column - 1, cy + row - 1);
-            if (other < 0 || list->count[other] == 0) continue;
+    for (int row = 0; row < 3; row++) {
+        const int y = cells_wrap(cells, 1, cell_y(cells, cell) + row - 1);
+        for (int column = 0; column < 3 && y >= 0; column++) {
+            const int32_t other = y * cells->nx + x[column];
+            if (x[column] < 0 || list->count[other] == 0) continue;
             const int32_t first = list->cluster[other];
             const bool inside = first >= range.first && first < range.end;
             if (inside && first <= list->cluster[cell]) continue;
             append(s, boxes, list, other, side, column, row, inside ? NEIGHBOUR_HALF : 0);
         }
+    }
     const bool half = range.end > range.first;
     if (half) append(s, boxes, list, cell, side, 1, 1, NEIGHBOUR_HALF);
     s->n -= half;
