@@ -22,4 +22,9 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 void update_extremes(struct simulation *sim);
 void find_speed(struct simulation *sim);
 
+/* The integrators, each in a file of its own. */
+extern const struct integrator integrator_symplectic; /* Eqs. 22-24 */
+extern const struct integrator integrator_verlet;     /* Eqs. 25-27 */
+extern const struct integrator integrator_leapfrog;   /* T-32a, T-32b */
+
 #endif

@@ -10,6 +10,9 @@
 /* Present energies, momentum and extremes; calls simulation_refresh. */
 struct ledger simulation_ledger(struct simulation *sim);
 
+/* Energy that walls and structures have stored by repelling each fluid section (L-7b), J/m. */
+void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS]);
+
 /* The ledger and the account begin with the present state. */
 void energy_begin(struct simulation *sim);
 

@@ -10,6 +10,9 @@
  * that time. */
 enum { CHECK_INTERVAL = 16 };
 
+/* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
+int64_t penetration_count(const struct simulation *sim, int64_t *first);
+
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
  * there are more than stray particles. */
 enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;

@@ -7,7 +7,6 @@
 
 #include "time/advance.h"
 #include "time/evaluation.h"
-#include "time/integrator.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

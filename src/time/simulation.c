@@ -9,7 +9,6 @@
 #include "time/advance.h"
 #include "time/guards.h"
 #include "time/initial.h"
-#include "time/integrator.h"
 #include "time/solid_steps.h"
 #include "time/sorting.h"
 #include "time/tension.h"

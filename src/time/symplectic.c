@@ -5,7 +5,6 @@
 #include "coupling/motion.h"
 #include "time/advance.h"
 #include "time/evaluation.h"
-#include "time/integrator.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

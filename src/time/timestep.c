@@ -5,22 +5,6 @@
 
 #include <math.h>
 
-/* The data of a bound: the scene, and the fluid's extremes `now`, which are zero at rest. */
-typedef double bound_function(const struct simulation *sim, const struct fluid_extremes *now);
-
-/* Eq. 28a. */
-static double bound_force(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    const double size = sqrt(max2(now->acceleration2, 1e-300));
-    return sim->scene->numerics.cfl * sqrt(sim->fluid.k.h / size);
-}
-
-/* Eq. 28b. */
-static double bound_acoustic(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    return sim->scene->numerics.cfl * sim->fluid.k.h / (sim->fluid.k.c0 + now->approach);
-}
-
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven
  * lattices. */
 static double bound_decay(const struct simulation *sim, double limit, double rate)
@@ -28,80 +12,45 @@ static double bound_decay(const struct simulation *sim, double limit, double rat
     return 0.9 * limit * sim->fluid.k.h / (rate * sim->fluid.k.c0);
 }
 
-static double bound_diffusion(const struct simulation *sim, const struct fluid_extremes *now)
+/* What bound k of time/bounds.def allows, from the fluid's extremes `now`, which are zero at rest.
+ */
+static double bound_value(const struct simulation *sim, enum bound k,
+                          const struct fluid_extremes *now)
 {
-    (void)now;
-    return bound_decay(sim, sim->integrator->density_decay,
-                       6.5 * sim->fluid.k.model->density_diffusion);
-}
-
-static double bound_artificial(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    return bound_decay(sim, sim->integrator->velocity_decay,
-                       2.3 * sim->fluid.k.model->artificial_viscosity);
-}
-
-/* T-33c. */
-static double bound_damper(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    const double sound = sqrt(2.0) * sim->fluid.k.c0;
-    return sim->scene->numerics.cfl * sim->fluid.k.h / (sound + now->approach);
-}
-
-/* L-8: half of the stable 2/omega between two dummies where L-7 is steepest. */
-static double bound_repulsion(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    const struct fluid_constants *const k = &sim->fluid.k;
-    return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->model->wall_repulsion) * k->c0);
-}
-
-/* Morris et al. 1997, Eq. 21. L-6b gives pairs with a surface twice the weight. */
-static double bound_viscous(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    const double weight = sim->effects & FX_NO_SLIP && sim->effects & FX_ONE_SIDED ? 2 : 1;
-    const double inside =
-        0.125 * square(sim->fluid.k.h) / (weight * sim->fluid.k.model->laminar_viscosity);
-    return sim->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&sim->coupling)) : inside;
-}
-
-static double bound_solid(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    if (sim->effects & FX_MULTIRATE) return (double)INFINITY;
-    return sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
-}
-
-/* Only with sub-steps: nothing passes within the step. */
-static double bound_contact(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    if (!sim->solid.contact) return (double)INFINITY;
-    return sim->effects & FX_MULTIRATE ? sim->contact.approach : sim->dt_solid;
-}
-
-static double bound_added_mass(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
+    const struct scene_numerics *const n = &sim->scene->numerics;
+    const struct fluid_constants *const f = &sim->fluid.k;
+    const double never = (double)INFINITY;
     int lightest;
-    return coupling_added_mass_step(&sim->coupling, &lightest);
+    switch (k) {
+    case BOUND_force: return n->cfl * sqrt(f->h / sqrt(max2(now->acceleration2, 1e-300)));
+    case BOUND_acoustic: return n->cfl * f->h / (f->c0 + now->approach);
+    case BOUND_damper: return n->cfl * f->h / (sqrt(2.0) * f->c0 + now->approach);
+    case BOUND_diffusion:
+        return bound_decay(sim, sim->integrator->density_decay, 6.5 * f->model->density_diffusion);
+    case BOUND_artificial:
+        return bound_decay(sim, sim->integrator->velocity_decay,
+                           2.3 * f->model->artificial_viscosity);
+    case BOUND_repulsion: /* of two dummies where L-7 is steepest */
+        return square(f->h / f->dp) * f->h / (8.1 * sqrt(f->model->wall_repulsion) * f->c0);
+    case BOUND_viscous: { /* L-6b gives pairs with a surface twice the weight */
+        const double weight = sim->effects & FX_NO_SLIP && sim->effects & FX_ONE_SIDED ? 2 : 1;
+        const double inside = 0.125 * square(f->h) / (weight * f->model->laminar_viscosity);
+        return sim->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&sim->coupling))
+                                          : inside;
+    }
+    case BOUND_solid:
+        if (sim->effects & FX_MULTIRATE) return never;
+        return sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
+    case BOUND_contact: /* with sub-steps only what passes within the step */
+        if (!sim->solid.contact) return never;
+        return sim->effects & FX_MULTIRATE ? sim->contact.approach : sim->dt_solid;
+    case BOUND_added_mass: return coupling_added_mass_step(&sim->coupling, &lightest);
+    case BOUND_fixed: return n->fixed_step > 0 ? n->fixed_step : never;
+    case BOUND_COUNT: break;
+    }
+    return never;
 }
 
-static double bound_fixed(const struct simulation *sim, const struct fluid_extremes *now)
-{
-    (void)now;
-    const double fixed = sim->scene->numerics.fixed_step;
-    return fixed > 0 ? fixed : (double)INFINITY;
-}
-
-/* One function for each row of time/bounds.def. */
-static bound_function *const bound_functions[BOUND_COUNT] = {
-#define BOUND(name, effect, source) bound_##name,
-#include "time/bounds.def"
-#undef BOUND
-};
 static const effect_set bound_effects[BOUND_COUNT] = {
 #define FX_NONE 0u
 #define BOUND(name, effect, source) FX_##effect,
@@ -114,7 +63,8 @@ static double bound_at(const struct simulation *sim, int k, const struct fluid_e
 {
     const bool fixed = sim->scene->numerics.fixed_step > 0;
     const bool owned = bound_effects[k] == 0 || sim->effects & bound_effects[k];
-    return owned && (!fixed || k == BOUND_fixed) ? bound_functions[k](sim, now) : (double)INFINITY;
+    return owned && (!fixed || k == BOUND_fixed) ? bound_value(sim, (enum bound)k, now)
+                                                 : (double)INFINITY;
 }
 
 double timestep_fluid_limit(const struct simulation *sim)

@@ -3,7 +3,6 @@
  * (Eq. 27): one evaluation a step. */
 #include "time/advance.h"
 #include "time/evaluation.h"
-#include "time/integrator.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

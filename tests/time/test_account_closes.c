@@ -3,7 +3,6 @@
  * which falls with the step, and a run that becomes unstable is named as soon as it does. */
 #include "time/energy.h"
 #include "time/guards.h"
-#include "time/repulsion.h"
 #include "rig.h"
 #include "unity.h"
 
