@@ -144,6 +144,7 @@ int case_given_count(const struct scene *scene, enum section_id id);
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
+enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 

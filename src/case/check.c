@@ -27,6 +27,14 @@ static enum err check_name(struct reader *r, const struct param *param, const ch
                    two ? section_table[also].word : "", nearest_hint(&near));
 }
 
+/* The other kind of section that a probe of a pose or reaction may name. */
+static enum section_id rigid_or_spring(const struct scene *scene, const struct scene_probe *probe)
+{
+    const bool spring =
+        probe->quantity == PROBE_REACTION && scene_find_spring(scene, probe->body) >= 0;
+    return spring ? SECTION_spring : SECTION_rigid;
+}
+
 /* What is measured of a body but for forces is that of one solid. */
 static enum err check_names(struct reader *r, const struct param *param, const void *section)
 {
@@ -40,9 +48,10 @@ static enum err check_names(struct reader *r, const struct param *param, const v
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
         return check_name(r, param, text,
-                          !one                            ? param->also
-                          : probe->quantity == PROBE_POSE ? SECTION_rigid
-                                                          : param->kind);
+                          !one ? param->also
+                          : probe->quantity == PROBE_POSE || probe->quantity == PROBE_REACTION
+                              ? rigid_or_spring(r->scene, probe)
+                              : param->kind);
     for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, param, name, param->also));
     return ERR_OK;
 }
@@ -287,7 +296,15 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
         for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)
                 return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
-    const int body = scene_find_solid(r->scene, p->body);
+    const int body = scene_find_solid(r->scene, p->body),
+              rigid = scene_find_wall(r->scene, p->body) - scene_rigid_wall(r->scene, 0);
+    const struct scene_rigid *const of = rigid >= 0 ? &r->scene->rigid[rigid] : NULL;
+    if (p->quantity == PROBE_REACTION && of && of->hinge.n == 0 && of->guide[0] == 0 &&
+        of->guide[1] == 0 && of->turns)
+        return bad_section(r,
+                           "measures the force of the hinge or guide of [rigid %s], which has "
+                           "none; give it a `hinge` or a `guide`, or measure a [spring]",
+                           p->body);
     if (p->quantity == PROBE_REACTION && body >= 0 &&
         r->scene->solid[body].clamp.n + r->scene->solid[body].hinge.n == 0)
         return bad_section(r,
@@ -495,13 +512,21 @@ enum err case_check(struct reader *r)
         enum section_id section;
         enum err (*check)(struct reader *r, const void *section);
     } checks[] = {
-        {SECTION_top, check_top},          {SECTION_numerics, check_numerics},
-        {SECTION_output, check_output},    {SECTION_relax, check_relax},
-        {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
-        {SECTION_rigid, case_check_rigid}, {SECTION_motion, check_motion},
-        {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
-        {SECTION_probe, check_probe},      {SECTION_contact, check_contact},
-        {SECTION_load, check_load},        {SECTION_reference, check_reference},
+        {SECTION_top, check_top},
+        {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},
+        {SECTION_relax, check_relax},
+        {SECTION_fluid, check_fluid},
+        {SECTION_solid, check_solid},
+        {SECTION_rigid, case_check_rigid},
+        {SECTION_spring, case_check_spring},
+        {SECTION_motion, check_motion},
+        {SECTION_inflow, case_check_open},
+        {SECTION_outflow, case_check_open},
+        {SECTION_probe, check_probe},
+        {SECTION_contact, check_contact},
+        {SECTION_load, check_load},
+        {SECTION_reference, check_reference},
     };
     if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)
         return bad_line(r, 1,

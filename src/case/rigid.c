@@ -56,11 +56,51 @@ enum err case_place_rigid(struct reader *r)
     return ERR_OK;
 }
 
+/* A hinge is in place or on a wall that is no rigid body. */
+static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
+{
+    const double of_hinge = rigid->hinge_stiffness + rigid->hinge_damping + rigid->hinge_friction;
+    const bool guided = rigid->guide[0] != 0 || rigid->guide[1] != 0;
+    if (rigid->hinge.n == 0)
+        return of_hinge > 0
+                   ? bad_section(r, "gives stiffness, damping or friction of a hinge, but no "
+                                    "`hinge`")
+                   : ERR_OK;
+    const char *const other = rigid->hinge.item[0].other;
+    const int wall = scene_find_wall(r->scene, other);
+    if (rigid->hinge.n > 1)
+        return bad_line(r, rigid->hinge.item[1].line,
+                        "[rigid %s] has a second `hinge`, which would hold it still; leave it out",
+                        rigid->common.name);
+    if (guided || !rigid->turns)
+        return bad_section(r, "has a `hinge`, about which it turns, and `%s`; leave one out",
+                           guided ? "guide" : "turns = off");
+    if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
+        return bad_line(r, rigid->hinge.item[0].line,
+                        "[rigid %s] hinge: %s is no [wall]; a rigid body is hinged to a place or a "
+                        "[wall], and a stiff [spring] joins it to another",
+                        rigid->common.name, other);
+    return ERR_OK;
+}
+
 enum err case_check_rigid(struct reader *r, const void *section)
 {
     const struct scene_rigid *const rigid = section;
     if (isnan(rigid->density) == isnan(rigid->mass))
         return bad_section(r, isnan(rigid->mass) ? "needs `density` or `mass`"
                                                  : "has both `density` and `mass`; leave one out");
+    return check_hinge(r, rigid);
+}
+
+enum err case_check_spring(struct reader *r, const void *section)
+{
+    const struct scene_spring *const spring = section;
+    if (spring->stiffness == 0 && spring->damping == 0)
+        return bad_section(r, "needs `stiffness` or `damping`");
+    if (strcmp(spring->body, spring->other) == 0)
+        return bad_section(r, "joins [rigid %s] to itself; name another body, or none",
+                           spring->body);
+    if (spring->from[0] == spring->to[0] && spring->from[1] == spring->to[1])
+        return bad_section(r, "has no direction, because `from` and `to` are the same point");
     return ERR_OK;
 }

@@ -38,6 +38,11 @@ int scene_find_wall(const struct scene *scene, const char *name)
     return find_section(scene, SECTION_wall, name);
 }
 
+int scene_find_spring(const struct scene *scene, const char *name)
+{
+    return find_section(scene, SECTION_spring, name);
+}
+
 double scene_solid_h(const struct scene *scene, int solid)
 {
     const double own = scene->numerics.solid_h_over_dp;

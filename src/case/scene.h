@@ -352,6 +352,7 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
 int scene_find_motion(const struct scene *scene, const char *name);
 int scene_find_solid(const struct scene *scene, const char *name);
 int scene_find_wall(const struct scene *scene, const char *name);
+int scene_find_spring(const struct scene *scene, const char *name);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */

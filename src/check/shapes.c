@@ -174,6 +174,7 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
 
 static void warn_of_region(struct check *check, const struct region *region)
 {
+    if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
         bool layered = false; /* layers follow faces at any position */

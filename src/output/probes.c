@@ -41,9 +41,11 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
                     "position of the centre of mass of a solid or rigid body, and its "
                     "counter-clockwise rotation: of a solid by least squares over its particles, "
                     "between -pi and pi"},
-    [PROBE_REACTION] = {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-                        "reaction force of its clamps and hinges on a solid, and its "
-                        "counter-clockwise moment about `point`"},
+    [PROBE_REACTION] =
+        {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
+         "reaction force and its counter-clockwise moment about `point`: of clamps and "
+         "hinges on a solid, of a hinge or guide on a rigid body, or of a spring at "
+         "its end `to`"},
     [PROBE_SURFACE_PRESSURE] =
         {"surface_pressure", "p_Pa,fx_N_per_m,fy_N_per_m",
          "mean pressure of the fluid along the line from `point` to `to`, such as the face of a "
@@ -195,6 +197,7 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
     if (pr->target == TARGET_SOLID && pr->body < 0) {
         pr->kind = KIND_WALL;
         pr->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
+        pr->spring = scene_find_spring(sim->scene, sp->body);
         return ERR_OK;
     }
     if (pr->target == TARGET_BODY) return find_bodies(pr, sim->scene, sp->body, a, d);
@@ -375,6 +378,22 @@ static void rigid_pose(const struct probe *pr, const struct simulation *sim, dou
     rate[2] = m.rate;
 }
 
+/* Of its hinge or guide on a rigid body in the last step; of a spring on what its end `to` is fixed
+ * to. */
+static void rigid_reaction(const struct probe *pr, const struct simulation *sim, double out[3])
+{
+    double at[2];
+    if (pr->body >= 0) {
+        const struct rigid_state *const s = &sim->rigid.state[pr->body];
+        for (int c = 0; c < 2; c++) at[c] = sim->rigid.body[pr->body].centre[c] + s->x[c];
+        memcpy(out, s->reaction, sizeof s->reaction);
+    } else {
+        rigid_spring_force(&sim->rigid, pr->spring, out, at);
+        out[2] = 0;
+    }
+    out[2] += (at[0] - pr->point[0]) * out[1] - (at[1] - pr->point[1]) * out[0];
+}
+
 static void energy(const struct probe *pr, const struct simulation *sim, double out[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
@@ -441,6 +460,10 @@ static void values(const struct probe *pr, struct simulation *sim, double *row, 
         weighted_sum(pr, now.ax, now.ay, row);
         break;
     case PROBE_REACTION:
+        if (pr->kind == KIND_WALL) {
+            rigid_reaction(pr, sim, row);
+            break;
+        }
         now = solid_forces_now(&sim->solid, solid, sim->state.time);
         row[0] = row[1] = row[2] = 0;
         add_forces(pr, solid, pr->body, now.held_x, now.held_y, row);

@@ -36,6 +36,7 @@ struct probe {
     int body;                  /* its section among the solids, or rigid bodies; -1: none */
     int n_bodies;              /* of a force */
     struct probe_body *bodies;
+    int spring;              /* of a reaction; -1: that of a body */
     int motion;              /* that carries the point of a probe on a wall; -1: none */
     double point[2];         /* m, in the initial configuration */
     double to[2];            /* m */

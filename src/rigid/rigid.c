@@ -4,7 +4,14 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/cholesky.h"
+#include "rigid/forces.h"
+
+/* The motion of the wall that a body is hinged to; -1: none. */
+static int hinge_motion(const struct scene *scene, const struct scene_rigid *rigid)
+{
+    const int wall = rigid->hinge.n ? scene_find_wall(scene, rigid->hinge.item[0].other) : -1;
+    return wall >= 0 ? scene_find_motion(scene, scene->wall[wall].motion) : -1;
+}
 
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
                       const struct wall_motion *motion, struct particles *walls, bool centred,
@@ -25,23 +32,12 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
         for (int b = 0; b < motion->n; b++)
             if (motion->body[b].section == scene_rigid_wall(scene, k))
                 rigid->body[k].wall = &motion->body[b];
+        rigid->body[k].hinge_motion = hinge_motion(scene, &scene->rigid[k]);
         rigid->state[k] = (struct rigid_state){
             .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
+        rigid_hold(rigid, k, 0);
     }
-    return ERR_OK;
-}
-
-double rigid_longest_step(const struct rigid *rigid)
-{
-    const double *const g = rigid->scene->top.gravity;
-    double rate2 = 1; /* for bodies that nothing moves */
-    for (int k = 0; k < rigid->n; k++) {
-        const double *const mass = rigid->body[k].mass, *const v = rigid->state[k].v;
-        const double r2 = mass[2] / mass[0];
-        rate2 = max2(rate2, sqrt((square(g[0]) + square(g[1])) / r2));
-        rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
-    }
-    return 1e-3 / sqrt(rate2);
+    return rigid_springs_create(rigid, a, d);
 }
 
 /* What a value with a rate is at the end of a step of dt. */
@@ -124,52 +120,61 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 
 /* --- a step --- */
 
-/* Solves (M + T Z) z = z. */
-static void solve(const struct rigid_body *body, double time, double impedance[3][3], double z[3])
-{
-    double matrix[3][3];
-    for (int c = 0; c < 3; c++)
-        for (int e = 0; e < 3; e++)
-            matrix[c][e] = time * impedance[c][e] + (c == e ? body->mass[c] : 0);
-    (void)cholesky_solve(matrix[0], 3, 3, 0, z);
-}
-
-static void advance_body(struct rigid *rigid, int k, const double gravity[2], double dt,
-                         double kick)
+static void advance_body(struct rigid *rigid, int k, const double gravity[2], double time,
+                         double dt, double kick)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
-    const double time = exchange_time(rigid), part = time > 0 ? kick / time : 0;
-    const double early = rigid->centred ? 0.5 * dt : 0, weight = kick / (kick + rigid->mean_time);
-    double impulse[3], impedance[3][3], faster[3];
+    const double exchange = exchange_time(rigid), part = exchange > 0 ? kick / exchange : 0;
+    const double weight = kick / (kick + rigid->mean_time), late = rigid->centred ? 0.5 * dt : dt;
+    double impulse[3], impedance[3][3], before[3], faster[3], start[3];
+    struct rigid_equations eq = {.faster = faster};
+    memcpy(start, s->v, sizeof start);
     find_fluid(rigid, body, impulse, impedance);
+    rigid_hold(rigid, k, time + dt - late);
     for (int c = 0; c < 3; c++) {
+        const double heavy = c < 2 && body->given->gravity ? body->mass[c] * gravity[c] : 0;
+        before[c] = s->v[c];
         impulse[c] = kick * impulse[c] - part * s->impulse[c];
-        const double weight_force =
-            c < 2 && body->given->gravity ? kick * body->mass[c] * gravity[c] : 0;
-        faster[c] = impulse[c] + weight_force - kick * body->mass[c] * s->a[c];
-        s->x[c] += early * s->v[c];
+        eq.impulse[c] = impulse[c] + kick * (heavy + body->load[c]);
+        for (int e = 0; e < 3; e++) {
+            eq.fluid[c][e] = exchange * impedance[c][e];
+            eq.springs[c][e] =
+                0.25 * kick * dt * body->stiffness[c][e] + 0.5 * kick * body->damping[c][e];
+        }
     }
-    solve(body, time, impedance, faster);
-    body->work = 0;
+    rigid_solve(rigid, k, &eq, time + dt, kick);
+    body->work = body->passed = 0;
+    body->driven = kick * rigid_hinge_power(rigid, k, time + dt - late);
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
-        for (int e = 0; e < 3; e++) resisted += time * impedance[c][e] * faster[e];
+        for (int e = 0; e < 3; e++) resisted += eq.fluid[c][e] * faster[e];
         const double change = kick * s->a[c] + faster[c];
-        body->work += (impulse[c] - resisted) * (s->v[c] + 0.5 * change);
+        body->mean[c] = before[c] + 0.5 * change;
+        body->work += (impulse[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
-        s->v[c] += change;
-        s->last[c] = change / kick;
-        s->a[c] += weight * faster[c] / kick;
-        s->x[c] += (dt - early) * s->v[c];
+        s->v[c] = before[c] + change;
+        s->x[c] += late * s->v[c];
+    }
+    rigid_hold(rigid, k, time + dt);
+    for (int c = 0; c < 3; c++) {
+        s->last[c] = (s->v[c] - start[c]) / kick;
+        /* What turns the velocity along the way is a reaction, too. */
+        s->reaction[c] += body->mass[c] * (s->last[c] - (body->mean[c] - before[c]) * 2 / kick);
+        s->a[c] += weight * (s->last[c] - s->a[c]);
     }
     if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, faster);
 }
 
-void rigid_advance(struct rigid *rigid, const double gravity[2], double dt, double kick)
+void rigid_advance(struct rigid *rigid, const double gravity[2], double time, double dt,
+                   double kick)
 {
-    for (int k = 0; k < rigid->n; k++) advance_body(rigid, k, gravity, dt, kick);
+    for (int k = 0; k < rigid->n && rigid->centred; k++)
+        for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
+    rigid_find_loads(rigid);
+    for (int k = 0; k < rigid->n; k++) advance_body(rigid, k, gravity, time, dt, kick);
+    rigid_pass_work(rigid, kick);
 }
 
 /* --- energy --- */
@@ -191,5 +196,7 @@ struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt)
         e.potential -=
             body->given->gravity ? body->mass[c] * g[c] * (body->centre[c] + s->x[c]) : 0;
     }
+    e.elastic =
+        0.5 * body->given->hinge_stiffness * square(s->x[2]) + rigid_spring_energy(rigid, k);
     return e;
 }

@@ -8,27 +8,43 @@
 
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
 struct rigid_state {
-    double x[3];       /* displacement, m, rad */
-    double v[3];       /* velocity; half a step before x unless `centred` */
-    double last[3];    /* acceleration of the last step, m/s^2, 1/s^2 */
-    double a[3];       /* mean acceleration, as the fluid's equations use it (T-98) */
-    double impulse[3]; /* that the fluid has still to receive, N s/m and N s (T-97) */
-    double rate[3];    /* of the impulse in the last step, N/m and N */
+    double x[3];        /* displacement, m, rad */
+    double v[3];        /* velocity; half a step before x unless `centred` */
+    double last[3];     /* acceleration of the last step, m/s^2, 1/s^2 */
+    double a[3];        /* mean acceleration, as the fluid's equations use it (T-98) */
+    double impulse[3];  /* that the fluid has still to receive, N s/m and N s (T-97) */
+    double rate[3];     /* of the impulse in the last step, N/m and N */
+    double reaction[3]; /* of hinge and guide in the last step, N/m and N */
 };
 enum { RIGID_NUMBERS = sizeof(struct rigid_state) / sizeof(double) };
 
 struct rigid_body {
     const struct scene_rigid *given;
-    const struct moving_wall *wall; /* its particles */
-    double mass[3];                 /* kg/m, kg/m, kg m */
-    double centre[2];               /* of mass at the start, m */
-    double work;                    /* of the fluid in the last step, J/m */
+    const struct moving_wall *wall;        /* its particles */
+    double mass[3];                        /* kg/m, kg/m, kg m */
+    double centre[2];                      /* of mass at the start, m */
+    int hinge_motion;                      /* of the wall that it is hinged to; -1: in place */
+    double load[3];                        /* of springs in the coming step, N/m and N */
+    double stiffness[3][3], damping[3][3]; /* of springs to a place */
+    double mean[3];                        /* velocity over the last step, m/s and 1/s */
+    /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
+    double work, driven, passed;
+};
+
+/* A [spring]: the bodies of its ends, -1: in place. */
+struct rigid_spring {
+    const struct scene_spring *given;
+    int body[2];
+    double length;  /* without force, m */
+    double load[3]; /* on the second body in the coming step, N/m and N */
 };
 
 struct rigid {
     int n;
     struct rigid_body *body;
     struct rigid_state *state;
+    int n_springs;
+    struct rigid_spring *spring;
     const struct scene *scene;
     struct particles *walls;
     double impedance; /* rho0 c0; 0: no fluid */
@@ -48,13 +64,18 @@ double rigid_longest_step(const struct rigid *rigid);
  */
 void rigid_publish(const struct rigid *rigid, double time, double dt);
 
-/* A step of dt. The rates of the last evaluation act for `kick`, as on the fluid (T-96). */
-void rigid_advance(struct rigid *rigid, const double gravity[2], double dt, double kick);
+/* A step of dt from a time on. The rates of the last evaluation act for `kick`, as on the fluid
+ * (T-96). */
+void rigid_advance(struct rigid *rigid, const double gravity[2], double time, double dt,
+                   double kick);
+
+/* The force of a spring at its end `to`, and where that is. */
+void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);
 
 /* Energy and momentum of a body, per depth; `waiting`: the work that the fluid has still to
  * receive. */
 struct rigid_energy {
-    double kinetic, potential, momentum[2], mass, waiting;
+    double kinetic, potential, elastic, momentum[2], mass, waiting;
 };
 struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt);
 

@@ -20,7 +20,7 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick)
 {
     double gravity[2];
     scene_gravity_at(sim->scene, time + (sim->rigid.centred ? 0.5 * dt : 0), gravity);
-    rigid_advance(&sim->rigid, gravity, dt, kick);
+    rigid_advance(&sim->rigid, gravity, time, dt, kick);
     energy_of_rigid(sim);
 }
 

@@ -97,6 +97,7 @@ static void add_rigid(const struct simulation *sim, struct energies *wall)
         struct ledger *const row = &wall[scene_rigid_wall(sim->scene, k)].row;
         row->kinetic += e.kinetic;
         row->potential += e.potential;
+        row->elastic += e.elastic;
         row->momentum_x += e.momentum[0];
         row->momentum_y += e.momentum[1];
         row->mass += e.mass;
@@ -316,10 +317,13 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
 
 void energy_of_rigid(struct simulation *sim)
 {
-    for (int k = 0; k < sim->rigid.n && keeps_account(sim); k++) {
+    for (int k = 0; k < sim->rigid.n; k++) {
+        const struct rigid_body *const body = &sim->rigid.body[k];
+        sim->state.wall_work += body->driven;
+        if (!keeps_account(sim)) continue;
         struct energy_entry *const e = entry_of(sim, KIND_WALL, scene_rigid_wall(sim->scene, k));
-        e->supplied += sim->rigid.body[k].work;
-        e->received += sim->rigid.body[k].work;
+        e->supplied += body->work + body->driven + body->passed;
+        e->received += body->work;
     }
 }
 

@@ -31,7 +31,7 @@ void energy_of_midpoint(struct simulation *sim, double dt);
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
 
-/* The work of the fluid on rigid bodies in a step. */
+/* The work on rigid bodies in a step. */
 void energy_of_rigid(struct simulation *sim);
 
 /* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which

@@ -50,6 +50,8 @@ static const char scene_text[] =
     "[solid post]\nshape = box 0.5, 0, 0.52, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
     "[solid more]\nlike = post\nshape = box 0.7, 0, 0.72, 0.1\n"
     "[rigid raft]\nshape = box 0.85, 0, 0.95, 0.1\ndensity = 500\n"
+    "[rigid barge]\nshape = box 1.3, 0, 1.4, 0.1\ndensity = 500\n"
+    "[spring more]\nbody = raft\nto = 1, 1\nstiffness = 1\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
     "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
     "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
@@ -70,6 +72,7 @@ static const char *companion(const struct param *param)
     if (is(param, "solid", "joined")) return "solid more.shape=box 0.52, 0, 0.54, 0.1";
     if (is(param, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(param, "rigid", "minus")) return "rigid raft.shape=box 0.2, 0.3, 0.6, 0.5";
+    if (strncmp(param->key, "hinge_", 6) == 0) return "rigid raft.hinge=0.9, 0";
     if (is(param, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(param, "probe", "point")) return "probe more.quantity=pressure";
     if (is(param, "probe", "to")) return "probe more.quantity=flux";

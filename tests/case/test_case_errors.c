@@ -42,7 +42,7 @@ static const struct {
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
      "fluid, "
-     "wall, solid, rigid, contact, load, motion, inflow, outflow, probe, reference"},
+     "wall, solid, rigid, spring, contact, load, motion, inflow, outflow, probe, reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
      "`laminar_viscosity`?"},

@@ -54,6 +54,63 @@ static void test_a_body_falls_and_spins_exactly(void)
     assert_near(1e-9, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
 }
 
+/* A bar on a hinge at its end, let go when horizontal: after a quarter of a swing it hangs with
+ * omega^2 = 2 m g r/I, and the hinge carries m (g + omega^2 r). */
+static void test_a_bar_swings_about_its_hinge(void)
+{
+    rig_open(&rig,
+             "gravity = 0, -9.81\n" FREE "[rigid a]\nshape = box 0, -0.05, 1, 0.05\nmass = 50\n"
+             "hinge = 0, 0\n",
+             NULL);
+    const double inertia = 50 * (1 + 0.01) / 12 + 50 * 0.25;
+    while (state()->x[2] > -0.5 * acos(-1)) rig_steps(&rig, 1, 1);
+    const double omega2 = 2 * 50 * 9.81 * 0.5 / inertia;
+    assert_near(1e-6 * omega2, omega2, square(state()->v[2]), "omega^2");
+    assert_near(2e-3 * 490, 50 * (9.81 + 0.5 * omega2), state()->reaction[1], "reaction, y");
+    assert_near(2, 0, state()->reaction[0], "reaction, x");
+    assert_near(1e-3, -0.5, state()->x[1], "y of the centre");
+    assert_near(1e-7 * 245, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
+}
+
+/* Two bodies on a spring: the period is that of the reduced mass, momentum stays, and so does
+ * energy. A guided body moves along its line only. */
+static void test_springs_and_guides(void)
+{
+    rig_open(&rig,
+             FREE "[rigid a]\nshape = box 0, 0, 0.1, 0.1\nmass = 2\nvelocity = 0.3, 0\n"
+                  "[rigid b]\nshape = box 1, 0, 1.1, 0.1\nmass = 4\n"
+                  "[rigid c]\nshape = box 0, 3, 0.1, 3.1\nmass = 1\nguide = 1, 1\n"
+                  "velocity = 1, 0\nturns = off\n"
+                  "[spring s]\nbody = a\nfrom = 0.1, 0.05\nother = b\nto = 1, 0.05\n"
+                  "stiffness = 100\n",
+             NULL);
+    const double omega = sqrt(100 / (2 * 4 / 6.0));
+    rig_run(&rig, 0.2);
+    assert_near(1e-6, 0.1 * 0.2 + 0.2 / omega * sin(omega * 0.2), state()[0].x[0], "x of a");
+    assert_near(1e-6, 0.1 * 0.2 - 0.1 / omega * sin(omega * 0.2), state()[1].x[0], "x of b");
+    assert_near(1e-9, 0.1, state()[2].x[0], "x of c");
+    assert_near(1e-9, 0.1, state()[2].x[1], "y of c");
+    const struct ledger row = simulation_ledger(&rig.sim);
+    assert_near(1e-9, 0.6 + 0.5, row.momentum_x, "momentum");
+    assert_near(1e-6, 0, row.dissipated, "dissipated");
+}
+
+/* A line that is longer than the distance does not act; a damper takes energy. */
+static void test_a_mooring_pulls_only(void)
+{
+    rig_open(&rig,
+             FREE "[rigid a]\nshape = box 0, 0, 0.1, 0.1\nmass = 2\nvelocity = -1, 0\n"
+                  "[spring s]\nbody = a\nfrom = 0.1, 0.05\nto = 1.1, 0.05\nlength = 1.1\n"
+                  "stiffness = 1000\ndamping = 20\nslack = on\n",
+             NULL);
+    rig_run(&rig, 0.09);
+    assert_near(1e-12, -1, state()->v[0], "velocity while slack");
+    rig_run(&rig, 1);
+    TEST_ASSERT_TRUE(state()->v[0] > 0.3 && state()->v[0] < 0.9);
+    assert_near(1e-9, 1 - square(state()->v[0]), simulation_ledger(&rig.sim).dissipated,
+                "dissipated");
+}
+
 /* Without gravity and walls, what the body loses the fluid has, or has still to receive. */
 static void test_momentum_is_exchanged(void)
 {
@@ -114,6 +171,19 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\nmass = 1\n",
                 "has both `density` and `mass`");
     rig_refuses(FREE "[rigid a]\ndensity = 1\n", "[rigid a] lacks `shape`");
+#define BOX "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n"
+    rig_refuses(FREE BOX "hinge_friction = 1\n", "but no `hinge`");
+    rig_refuses(FREE BOX "hinge = 0, 0\nhinge = 1, 1\n", "second `hinge`");
+    rig_refuses(FREE BOX "hinge = 0, 0\nguide = 1, 0\n", "leave one out");
+    rig_refuses(FREE BOX "[rigid b]\nshape = box 2, 0, 3, 1\ndensity = 1\nhinge = 0, 0, a\n",
+                "a is no [wall]");
+    rig_refuses(FREE BOX "[spring s]\nbody = b\nstiffness = 1\nto = 1, 1\n",
+                "there is no [rigid] of that name");
+    rig_refuses(FREE BOX "[spring s]\nbody = a\nother = a\nstiffness = 1\nto = 1, 1\n",
+                "to itself");
+    rig_refuses(FREE BOX "[spring s]\nbody = a\nstiffness = 1\n", "no direction");
+    rig_refuses(FREE BOX "[spring s]\nbody = a\nto = 1, 1\n", "needs `stiffness` or `damping`");
+    rig_refuses(FREE BOX "[probe p]\nquantity = reaction\nbody = a\n", "which has none");
     rig_refuses(FREE "[wall a]\nshape = box 3, 3, 4, 4\n"
                      "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n",
                 "has the name of [wall a]");
@@ -131,6 +201,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_mass_is_that_of_the_shapes);
     RUN_TEST(test_a_body_falls_and_spins_exactly);
+    RUN_TEST(test_a_bar_swings_about_its_hinge);
+    RUN_TEST(test_springs_and_guides);
+    RUN_TEST(test_a_mooring_pulls_only);
     RUN_TEST(test_momentum_is_exchanged);
     RUN_TEST(test_a_light_body_is_stable);
     RUN_TEST(test_a_body_floats);

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: MIT */
+#include "rigid/forces.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/cholesky.h"
+#include "base/elementary.h"
+
+/* --- hinges and guides --- */
+
+/* T-99: velocities that a body may have: `base` and any sum of the `n` columns of B. */
+struct freedom {
+    int n;
+    double B[3][3], base[3];
+};
+
+/* The point of a hinge: position and velocity at a time. */
+static struct motion_point hinge_at(const struct rigid *rigid, const struct rigid_body *body,
+                                    double time)
+{
+    const double *const at = body->given->hinge.item[0].at;
+    const struct motion_state m = motion_at(rigid->scene, body->hinge_motion, time);
+    return motion_of_point(&m, at[0], at[1]);
+}
+
+/* The arm from the hinge to the centre of mass. */
+static void hinge_arm(const struct rigid_body *body, double angle, double arm[2])
+{
+    const double *const at = body->given->hinge.item[0].at;
+    const double x = body->centre[0] - at[0], y = body->centre[1] - at[1];
+    const double c = elementary_cos(angle), s = elementary_sin(angle);
+    arm[0] = c * x - s * y;
+    arm[1] = s * x + c * y;
+}
+
+static struct freedom freedom_of(const struct rigid *rigid, int k, double time)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    const double *const along = body->given->guide, size = elementary_hypot(along[0], along[1]);
+    struct freedom f = {.n = 0};
+    if (body->given->hinge.n) {
+        const struct motion_point at = hinge_at(rigid, body, time);
+        double arm[2];
+        hinge_arm(body, rigid->state[k].x[2], arm);
+        f.B[0][0] = -arm[1], f.B[1][0] = arm[0], f.B[2][0] = 1;
+        memcpy(f.base, at.v, sizeof at.v);
+        f.n = 1;
+        return f;
+    }
+    if (size > 0) {
+        f.B[0][0] = along[0] / size, f.B[1][0] = along[1] / size;
+        f.n = 1;
+    } else {
+        f.B[0][0] = f.B[1][1] = 1;
+        f.n = 2;
+    }
+    if (body->given->turns) f.B[2][f.n++] = 1;
+    return f;
+}
+
+void rigid_hold(struct rigid *rigid, int k, double time)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    struct rigid_state *const s = &rigid->state[k];
+    const struct freedom f = freedom_of(rigid, k, time);
+    double v[3];
+    if (body->given->hinge.n) {
+        const struct motion_point at = hinge_at(rigid, body, time);
+        double arm[2];
+        hinge_arm(body, s->x[2], arm);
+        for (int c = 0; c < 2; c++) s->x[c] = at.x[c] + arm[c] - body->centre[c];
+        for (int c = 0; c < 3; c++) v[c] = f.base[c] + f.B[c][0] * s->v[2];
+    } else if (f.n == 3) {
+        return;
+    } else {
+        /* Columns of B are orthonormal. */
+        for (int c = 0; c < 3; c++) {
+            v[c] = 0;
+            for (int j = 0; j < f.n; j++)
+                for (int e = 0; e < 3; e++) v[c] += f.B[c][j] * f.B[e][j] * s->v[e];
+        }
+    }
+    memcpy(s->v, v, sizeof v);
+}
+
+/* Dry friction takes off what it can of the turning, and does not reverse it. */
+static double with_friction(double rate, double most)
+{
+    return rate > most ? rate - most : rate < -most ? rate + most : 0;
+}
+
+void rigid_solve(struct rigid *rigid, int k, struct rigid_equations *eq, double end, double kick)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    struct rigid_state *const s = &rigid->state[k];
+    struct freedom f = freedom_of(rigid, k, end);
+    const double c_hinge = body->given->hinge_damping;
+    double A[3][3], right[3], S[3][3] = {{0}}, q[3], friction = 0;
+    eq->impulse[2] -= kick * (body->given->hinge_stiffness * s->x[2] + c_hinge * s->v[2]);
+    eq->springs[2][2] += 0.5 * kick * c_hinge;
+    for (int c = 0; c < 3; c++) {
+        right[c] = eq->impulse[c] - kick * body->mass[c] * s->a[c];
+        for (int e = 0; e < 3; e++) {
+            const double mass = eq->fluid[c][e] + (c == e ? body->mass[c] : 0);
+            A[c][e] = mass + eq->springs[c][e];
+            right[c] += mass * (s->v[e] + kick * s->a[e] - f.base[e]) +
+                        eq->springs[c][e] * (s->v[e] - f.base[e]);
+        }
+    }
+    for (int i = 0; i < f.n; i++) {
+        q[i] = 0;
+        for (int c = 0; c < 3; c++) {
+            q[i] += f.B[c][i] * right[c];
+            for (int e = 0; e < 3; e++)
+                for (int j = 0; j < f.n; j++) S[i][j] += f.B[c][i] * A[c][e] * f.B[e][j];
+        }
+    }
+    if (f.n) friction = kick * body->given->hinge_friction / S[0][0];
+    if (f.n) (void)cholesky_solve(S[0], f.n, 3, 0, q);
+    if (friction > 0) q[0] = with_friction(q[0], friction);
+    double change[3];
+    for (int c = 0; c < 3; c++) {
+        change[c] = f.base[c] - s->v[c];
+        for (int j = 0; j < f.n; j++) change[c] += f.B[c][j] * q[j];
+        eq->faster[c] = change[c] - kick * s->a[c];
+    }
+    for (int c = 0; c < 3; c++) {
+        double needed = body->mass[c] * change[c] - eq->impulse[c];
+        for (int e = 0; e < 3; e++)
+            needed += eq->fluid[c][e] * eq->faster[e] + eq->springs[c][e] * change[e];
+        s->reaction[c] = f.n < 3 ? needed / kick : 0;
+    }
+}
+
+/* --- springs --- */
+
+static int find_rigid(const struct scene *scene, const char *name)
+{
+    return *name ? scene_find_wall(scene, name) - scene_rigid_wall(scene, 0) : -1;
+}
+
+enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag *d)
+{
+    const struct scene *const scene = rigid->scene;
+    rigid->n_springs = scene->n_spring;
+    rigid->spring = arena_alloc(a, (size_t)rigid->n_springs, sizeof *rigid->spring, "springs", d);
+    if (!rigid->spring) return ERR_MEMORY;
+    for (int k = 0; k < rigid->n_springs; k++) {
+        const struct scene_spring *const given = &scene->spring[k];
+        const double start =
+            elementary_hypot(given->to[0] - given->from[0], given->to[1] - given->from[1]);
+        rigid->spring[k] =
+            (struct rigid_spring){.given = given,
+                                  .body = {find_rigid(scene, given->body),
+                                           find_rigid(scene, given->other)},
+                                  .length = isnan(given->length) ? start : given->length};
+    }
+    return ERR_OK;
+}
+
+/* An end of a spring: where it is, its velocity, and its arm from the centre of mass. */
+struct spring_end {
+    double x[2], v[2], arm[2];
+};
+
+static struct spring_end end_at(const struct rigid *rigid, const struct rigid_spring *spring,
+                                int end)
+{
+    const double *const at = end ? spring->given->to : spring->given->from;
+    const int k = spring->body[end];
+    struct spring_end e = {.x = {at[0], at[1]}};
+    if (k < 0) return e;
+    const struct rigid_body *const body = &rigid->body[k];
+    const struct rigid_state *const s = &rigid->state[k];
+    const double c = elementary_cos(s->x[2]), n = elementary_sin(s->x[2]);
+    const double x = at[0] - body->centre[0], y = at[1] - body->centre[1];
+    e.arm[0] = c * x - n * y;
+    e.arm[1] = n * x + c * y;
+    for (int m = 0; m < 2; m++) {
+        e.x[m] = body->centre[m] + s->x[m] + e.arm[m];
+        e.v[m] = s->v[m] + (m ? e.arm[0] : -e.arm[1]) * s->v[2];
+    }
+    return e;
+}
+
+/* A spring now: its ends, the direction from one to the other, and its elongation. */
+struct spring_now {
+    struct spring_end end[2];
+    double along[2], longer, tension;
+    bool slack;
+};
+
+/* T-100. A damper in a line that only pulls does not push. */
+static struct spring_now spring_now(const struct rigid *rigid, const struct rigid_spring *spring)
+{
+    struct spring_now now = {.end = {end_at(rigid, spring, 0), end_at(rigid, spring, 1)}};
+    const double *const a = now.end[0].x, *const b = now.end[1].x;
+    const double length = max2(elementary_hypot(b[0] - a[0], b[1] - a[1]), 1e-300);
+    double rate = 0;
+    for (int c = 0; c < 2; c++) {
+        now.along[c] = (b[c] - a[c]) / length;
+        rate += now.along[c] * (now.end[1].v[c] - now.end[0].v[c]);
+    }
+    now.longer = length - spring->length;
+    now.tension = spring->given->stiffness * now.longer + spring->given->damping * rate;
+    now.slack = spring->given->slack && (now.longer <= 0 || now.tension <= 0);
+    if (now.slack) now.tension = 0;
+    return now;
+}
+
+void rigid_find_loads(struct rigid *rigid)
+{
+    for (int k = 0; k < rigid->n; k++) {
+        struct rigid_body *const body = &rigid->body[k];
+        memset(body->load, 0, sizeof body->load);
+        memset(body->stiffness, 0, sizeof body->stiffness);
+        memset(body->damping, 0, sizeof body->damping);
+        body->stiffness[2][2] = body->given->hinge_stiffness;
+    }
+    for (int k = 0; k < rigid->n_springs; k++) {
+        struct rigid_spring *const spring = &rigid->spring[k];
+        memset(spring->load, 0, sizeof spring->load);
+        const struct spring_now now = spring_now(rigid, spring);
+        for (int end = 0; end < 2 && !now.slack; end++) {
+            if (spring->body[end] < 0) continue;
+            struct rigid_body *const body = &rigid->body[spring->body[end]];
+            const double *const arm = now.end[end].arm, sign = end ? -1 : 1;
+            const double to[3] = {now.along[0], now.along[1],
+                                  arm[0] * now.along[1] - arm[1] * now.along[0]};
+            const bool fixed = spring->body[1] < 0; /* else both ends would have to move at once */
+            for (int c = 0; c < 3; c++) {
+                body->load[c] += sign * now.tension * to[c];
+                if (end) spring->load[c] = -now.tension * to[c];
+                for (int e = 0; e < 3 && fixed; e++) {
+                    body->stiffness[c][e] += spring->given->stiffness * to[c] * to[e];
+                    body->damping[c][e] += spring->given->damping * to[c] * to[e];
+                }
+            }
+        }
+    }
+}
+
+void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2])
+{
+    const struct spring_now now = spring_now(rigid, &rigid->spring[spring]);
+    for (int c = 0; c < 2; c++) {
+        force[c] = -now.tension * now.along[c];
+        at[c] = now.end[1].x[c];
+    }
+}
+
+double rigid_spring_energy(const struct rigid *rigid, int k)
+{
+    double sum = 0;
+    for (int j = 0; j < rigid->n_springs; j++) {
+        if (rigid->spring[j].body[0] != k) continue;
+        const struct spring_now now = spring_now(rigid, &rigid->spring[j]);
+        const bool slack = rigid->spring[j].given->slack && now.longer <= 0;
+        sum += slack ? 0 : 0.5 * rigid->spring[j].given->stiffness * square(now.longer);
+    }
+    return sum;
+}
+
+void rigid_pass_work(struct rigid *rigid, double kick)
+{
+    for (int j = 0; j < rigid->n_springs; j++) {
+        const struct rigid_spring *const spring = &rigid->spring[j];
+        if (spring->body[1] < 0) continue;
+        struct rigid_body *const body = &rigid->body[spring->body[1]];
+        double work = 0;
+        for (int c = 0; c < 3; c++) work += kick * spring->load[c] * body->mean[c];
+        body->passed += work;
+        rigid->body[spring->body[0]].passed -= work;
+    }
+}
+
+double rigid_hinge_power(const struct rigid *rigid, int k, double time)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    if (body->hinge_motion < 0) return 0;
+    const struct motion_point at = hinge_at(rigid, body, time);
+    return rigid->state[k].reaction[0] * at.v[0] + rigid->state[k].reaction[1] * at.v[1];
+}
+
+double rigid_longest_step(const struct rigid *rigid)
+{
+    const double *const g = rigid->scene->top.gravity;
+    double rate2 = 1; /* for bodies that nothing moves */
+    for (int k = 0; k < rigid->n; k++) {
+        const struct rigid_body *const body = &rigid->body[k];
+        const double *const v = rigid->state[k].v, r2 = body->mass[2] / body->mass[0];
+        rate2 = max2(rate2, elementary_hypot(g[0], g[1]) / sqrt(r2));
+        rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
+        rate2 = max2(rate2, body->given->hinge_stiffness / body->mass[2]);
+        for (int j = 0; j < rigid->n_springs; j++)
+            for (int end = 0; end < 2; end++) {
+                if (rigid->spring[j].body[end] != k) continue;
+                const struct spring_end at = end_at(rigid, &rigid->spring[j], end);
+                rate2 = max2(rate2, 2 * rigid->spring[j].given->stiffness / body->mass[0] *
+                                        (1 + (square(at.arm[0]) + square(at.arm[1])) / r2));
+            }
+    }
+    return 1e-3 / sqrt(rate2);
+}
