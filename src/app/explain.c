@@ -25,17 +25,6 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
                     (long long)x->simulation.kind[k].n);
 }
 
-/* Whether a lattice begins between the lines of the common one. */
-static bool is_shifted(const struct scene *scene, const struct scene_lattice *l)
-{
-    bool shifted = false;
-    for (int c = 0; c < 2; c++) {
-        const double lines = (l->origin[c] - scene->lattice.origin[c]) / l->spacing[c];
-        shifted |= fabs(lines - round(lines)) > 1e-6;
-    }
-    return shifted;
-}
-
 /* How bodies are sampled where the lattice is not simply the common one. */
 static void say_lattices(const struct scene *scene, const struct sphfsi_options *o)
 {
@@ -46,12 +35,7 @@ static void say_lattices(const struct scene *scene, const struct sphfsi_options 
     for (int k = 0; k < scene->n_solid; k++) {
         const struct scene_lattice *const l = &scene->solid_lattice[k];
         const double off = fabs(l->area_error) < 5e-5 ? 0 : l->area_error;
-        if (l->angle == 0 && !l->fitted && is_shifted(scene, l))
-            session_say(o,
-                        "  [solid %s] has a lattice of its own, which begins at its corner (%.6g, "
-                        "%.6g) m",
-                        scene->solid[k].common.name, l->origin[0], l->origin[1]);
-        if (l->angle == 0 && !l->fitted && fabs(off) < 5e-5) continue;
+        if (l->angle == 0 && !l->fitted && off == 0) continue;
         session_say(o,
                     "  [solid %s] lattice at %.4g degrees, cells of %.5g x %.5g m, area off by "
                     "%.2g %%, bending stiffness of a thin body by about %.2g %%",
