@@ -128,15 +128,6 @@ void report_effects(struct json *j, const struct simulation *sim)
     json_close(j, '}');
 }
 
-enum bound report_binding(const struct simulation *sim)
-{
-    int best = BOUND_COUNT;
-    int64_t most = 0;
-    for (int k = 0; k < BOUND_COUNT; k++)
-        if (sim->state.bound_steps[k] > most) best = k, most = sim->state.bound_steps[k];
-    return (enum bound)best;
-}
-
 static void number_if(struct json *j, bool known, const char *name, double value)
 {
     json_number(j, name, known ? value : (double)NAN);
@@ -145,6 +136,9 @@ static void number_if(struct json *j, bool known, const char *name, double value
 static void write_time_step(struct json *j, const struct simulation *sim)
 {
     const struct state *st = &sim->state;
+    int most = -1; /* the bound that limited the most steps */
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (st->bound_steps[k] > (most < 0 ? 0 : st->bound_steps[most])) most = k;
     json_open(j, "time_step", '{');
     json_number(j, "last", st->dt);
     number_if(j, st->steps, "smallest", st->dt_min);
@@ -152,8 +146,7 @@ static void write_time_step(struct json *j, const struct simulation *sim)
     number_if(j, st->steps, "mean", st->time / (double)st->steps);
     number_if(j, sim->dt_solid > 0, "solid", sim->dt_solid);
     json_integer(j, "substeps", sim->substeps);
-    const enum bound b = report_binding(sim);
-    json_text(j, "bound", b < BOUND_COUNT ? bound_names[b] : "none");
+    json_text(j, "bound", most < 0 ? "none" : bound_names[most]);
     json_open(j, "bound_steps", '{');
     for (int k = 0; k < BOUND_COUNT; k++) json_integer(j, bound_names[k], st->bound_steps[k]);
     json_close(j, '}');

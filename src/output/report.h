@@ -36,7 +36,4 @@ void report_derived(struct json *j, const struct scene *scene);
 /* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *sim, const struct record *r);
 
-/* The bound that limited the most steps; BOUND_COUNT before the first step. */
-enum bound report_binding(const struct simulation *sim);
-
 #endif
