@@ -140,52 +140,13 @@ SPHFSI_INLINE effect_set wetted_effect(effect_set effects, enum kind kind)
     return effects & needs ? FX_IMPEDANCE : 0;
 }
 
-/* A cell, for the sets of effects that are frequent; `any` has those of the case. */
-typedef void SWEEP(force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
-                          const struct cells *cells, int32_t cell,
-                          const struct vector_constants *k);
-#define FORCE(name, set)                                                                     \
-    static void SWEEP(force_##name)(const struct fluid *fluid, struct particles *particles,  \
-                                    enum kind kind, const struct cells *cells, int32_t cell, \
-                                    const struct vector_constants *k)                        \
-    {                                                                                        \
-        force_on_cell(fluid, particles, kind, cells, cell, k, (set));                        \
-    }
-#define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
-#define BODY_IN_FLOW_SURFACE (STANDARD_SURFACE | FX_ONE_SIDED | FX_NO_SLIP)
-#define FORCES(FORCE)                                          \
-    FORCE(bare, 0u)                                            \
-    FORCE(impedance, FX_IMPEDANCE)                             \
-    FORCE(standard, STANDARD_SURFACE)                          \
-    FORCE(standard_impedance, STANDARD_SURFACE | FX_IMPEDANCE) \
-    FORCE(body_in_flow, BODY_IN_FLOW_SURFACE)                  \
-    FORCE(body_in_flow_impedance, BODY_IN_FLOW_SURFACE | FX_IMPEDANCE)
-FORCES(FORCE)
-FORCE(any, (fluid->effects & ~(effect_set)FX_IMPEDANCE) | wetted_effect(fluid->effects, kind))
-#undef FORCE
-
-static SWEEP(force) * SWEEP(force_for)(effect_set effects)
-{
-    static const struct {
-        effect_set effects;
-        SWEEP(force) * force;
-    } stamped[] = {
-#define FORCE(name, set) {(set), SWEEP(force_##name)},
-        FORCES(FORCE)
-#undef FORCE
-    };
-    for (size_t m = 0; m < COUNT_OF(stamped); m++)
-        if (stamped[m].effects == effects) return stamped[m].force;
-    return SWEEP(force_any);
-}
-
 void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
                        const struct cells *cells)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
-    SWEEP(force) *const force = SWEEP(force_for)((fluid->effects & (effect_set)SURFACE_EFFECTS) |
-                                                 wetted_effect(fluid->effects, kind));
+    const effect_set fx =
+        (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
-        force(fluid, particles, kind, cells, fluid->near_fluid[kind][n], &k);
+        force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], &k, fx);
 }
