@@ -424,13 +424,7 @@ static enum err check_solid_steps(struct reader *r)
         return bad_line(r, scene_line(scene, SECTION_numerics, 0, "multirate"),
                         "%s gives the solid steps of its own, but multirate = off; use auto", with);
     for (int k = 0; k < scene->n_solid; k++)
-        if (scene->solid[k].hinge.n)
-            return bad_line(
-                r, scene->solid[k].hinge.item[0].line,
-                "[solid %s] has a `hinge`, which %s does not hold; use solid_steps = explicit",
-                scene->solid[k].common.name, with);
-        else if (scene->solid[k].hourglass > 0 &&
-                 scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
+        if (scene->solid[k].hourglass > 0 && scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
             return bad_line(r, scene_line(scene, SECTION_solid, k, "hourglass_form"),
                             "[solid %s] hourglass_form = printed has no energy, which %s needs; "
                             "use variational",

@@ -3,6 +3,8 @@
  * part of the forces of the start is left out at first: load steps. */
 #include "implicit/equilibrium.h"
 
+#include "implicit/constraint.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -80,6 +82,7 @@ static bool load(struct solid *solid, struct particles *p, struct contact *conta
     while (done < 1) {
         implicit_keep_start(solid, p);
         solid->implicit->left_out = 1 - done - part;
+        if (solid->hinges) constraint_begin(solid->implicit, solid->hinges, p, 0, false);
         if (balance(solid, p, found)) {
             if (comes_near(solid, p, start, contact)) return false;
             done += part;
@@ -95,8 +98,8 @@ static bool load(struct solid *solid, struct particles *p, struct contact *conta
     return true;
 }
 
-/* The forces of the start, which load steps leave out in part. A body that no clamp holds needs
- * those that add up to none; its name and their sum otherwise. */
+/* The forces of the start, which load steps leave out in part. A body that no clamp or hinge holds
+ * needs those that add up to none; its name and their sum otherwise. */
 static int find_fallen(struct solid *solid, const struct particles *p, double sum[2])
 {
     struct implicit *const by = solid->implicit;
@@ -104,6 +107,10 @@ static int find_fallen(struct solid *solid, const struct particles *p, double su
     bool held[solid->n_bodies];
     memset(total, 0, sizeof total);
     memset(held, 0, sizeof held);
+    for (int k = 0; solid->hinges && k < solid->hinges->n; k++)
+        for (int end = 0; end < 2; end++)
+            if (solid->hinges->hinge[k].bond[end] >= 0)
+                held[solid->hinges->hinge[k].bond[end]] = true;
     for (int64_t i = 0; i < p->n; i++) {
         const int bond = solid->body[p->body[i]].bond;
         held[bond] |= by->order[i] < 0;
@@ -155,8 +162,7 @@ enum err equilibrium_find(struct equilibrium *found, const struct solid *from, s
     struct solid solid;
     *found = (struct equilibrium){0};
     const double across = implicit_across(from, p);
-    if (from->hinges || from->external[0] || across * across * across > dear * (double)p->n)
-        return ERR_OK;
+    if (from->external[0] || across * across * across > dear * (double)p->n) return ERR_OK;
     for (int k = 0; k < from->n_bodies; k++)
         if (from->body[k].kappa > 0 && !from->body[k].variational) return ERR_OK;
     enum err e = solid_create(&solid, &arena, scene, p, true, d);
@@ -167,12 +173,15 @@ enum err equilibrium_find(struct equilibrium *found, const struct solid *from, s
         memcpy(start[0], p->ux, bytes);
         memcpy(start[1], p->uy, bytes);
         solid.loads = from->loads;
+        solid.hinges = from->hinges;
         solid.gravity = from->gravity;
         solid.calls_out = from->calls_out;
         solid.omega_max = from->omega_max;
         e = implicit_create(&solid, &arena, p, d);
     }
+    if (from->hinges) from->hinges->released = true;
     if (!e) e = find(found, &solid, p, scene, contact, d);
+    if (from->hinges) from->hinges->released = false;
     if (!e && !found->found) {
         memcpy(p->ux, start[0], bytes);
         memcpy(p->uy, start[1], bytes);

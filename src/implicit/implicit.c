@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of the solid (T-90 to T-93): the midpoint rule with the mean stress over the
  * step, solved by Newton's method with a factored matrix that is kept while it serves. */
-#include "implicit/implicit.h"
+#include "implicit/constraint.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "implicit/stress.h"
+#include "solid/hinges.h"
 #include "solid/loads.h"
 
 /* A matrix is replaced when a correction with it reduces the residual less than by this factor. */
@@ -160,6 +161,7 @@ double implicit_residual(struct solid *solid, struct particles *p, double dt, do
         p->vy[i] = 2 / dt * (p->uy[i] - start[START_UY][i]);
     }
     solid_forces_within(solid, p, time);
+    if (solid->hinges) constraint_push(solid->implicit, solid->hinges, p);
     for (int64_t i = 0; i < p->n; i++)
         if (solid->implicit->order[i] >= 0) find_one(solid, p, i, dt, &top);
     return top.off <= rounding_of(&top, dt) ? 0 : top.off / top.force;
@@ -168,6 +170,7 @@ double implicit_residual(struct solid *solid, struct particles *p, double dt, do
 void implicit_correct(const struct solid *solid, struct particles *p)
 {
     struct implicit *const by = solid->implicit;
+    if (solid->hinges) constraint_solve(by, solid->hinges, p);
     envelope_solve(&by->matrix, by->unknown);
     for (int64_t i = 0; i < p->n; i++) {
         const int64_t row = 2 * (int64_t)by->order[i];
@@ -185,7 +188,7 @@ static bool solve(struct solid *solid, struct particles *p, double dt)
     double last = (double)INFINITY;
     for (int k = 0; k < ITERATIONS; k++) {
         by->residual = implicit_residual(solid, p, dt, solid->time + 0.5 * dt);
-        if (by->residual <= TOLERANCE) return true;
+        if (by->residual <= TOLERANCE && (k || !solid->hinges)) return true;
         if (!isfinite(by->residual)) break;
         const bool other_step = fabs(square(dt / *p->matrix_dt) - 1) > SLOW;
         if (!by->factored || other_step || by->residual > SLOW * last) factor_here(solid, p, dt);
@@ -238,6 +241,7 @@ static void finish(struct solid *solid, struct particles *p, double dt)
                                 (p->sx[i] * (p->vx[i] + start[START_VX][i]) +
                                  p->sy[i] * (p->vy[i] + start[START_VY][i]));
     }
+    if (solid->hinges) constraint_end(solid->implicit, solid->hinges, p, dt);
     solid_book_work(solid, p, start[START_VX], start[START_VY], dt);
 }
 
@@ -258,6 +262,7 @@ static void begin(struct solid *solid, struct particles *p, double dt)
     double *const *const start = solid->scratch;
     const struct loads *const loads = solid->loads;
     implicit_keep_start(solid, p);
+    if (solid->hinges) constraint_begin(solid->implicit, solid->hinges, p, solid->time + dt, true);
     solid_place_clamps(solid, p, solid->time + dt);
     for (int64_t k = 0; loads && k < loads->n_held; k++) {
         const int64_t i = loads->held[k];
@@ -295,11 +300,14 @@ static bool step(struct solid *solid, struct particles *p, double dt, int halvin
 void implicit_step(struct solid *solid, struct particles *p, double dt)
 {
     struct loads *const loads = solid->loads;
+    struct hinges *const hinges = solid->hinges;
     solid->implicit->iterations = 0;
     solid->within_step = take_mean_stress;
     if (loads) loads->released = true;
+    if (hinges) hinges->released = true;
     solid->implicit->failed |= !step(solid, p, dt, HALVINGS);
     if (loads) loads->released = false;
+    if (hinges) hinges->released = false;
     solid->within_step = NULL;
 }
 

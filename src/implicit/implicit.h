@@ -22,7 +22,10 @@ struct implicit {
     struct envelope springs; /* of T-28, the same for both components, N/m^2; constant */
     struct envelope matrix;  /* the factors of the last matrix */
     double *unknown;         /* both components, one particle after the other */
-    double *start[4];        /* displacement gradient at the start of the step */
+    /* Of hinges, two items each: their forces, N/m; places of their points, m; [2 n][2 n] the
+     * displacements that forces give the points, m^2/N; and a vector of unknowns. */
+    double *held, *place, *yields, *column;
+    double *start[4]; /* displacement gradient at the start of the step */
     bool factored;
     double period; /* the longest of the bodies about their undeformed state, s */
     /* Of the last step, or of a load step. */
@@ -38,6 +41,13 @@ enum { IMPLICIT_LEFT_OUT = 4 };
 /* T-94: particles across a slender body, the area of all bodies over their largest extent and the
  * spacing. */
 double implicit_across(const struct solid *solid, const struct particles *particles);
+
+/* T-94: an implicit step costs as much as so many sub-steps. */
+SPHFSI_INLINE double implicit_pays_from(const struct solid *solid,
+                                        const struct particles *particles)
+{
+    return 10 + 2 * implicit_across(solid, particles);
+}
 
 /* Makes the solid take implicit steps; its particles, loads and clamps are set. */
 enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "implicit/implicit.h"
+#include "implicit/constraint.h"
 #include "solid/loads.h"
 #include "solid/packed.h"
 
@@ -220,5 +220,5 @@ enum err implicit_create(struct solid *solid, struct arena *a, const struct part
     const enum err e = moves ? create_matrices(solid, by, a, p, moves, &scratch, d) : ERR_MEMORY;
     arena_free(&scratch);
     solid->implicit = by;
-    return e;
+    return e || !solid->hinges ? e : constraint_create(by, solid->hinges, a, d);
 }

@@ -2,7 +2,7 @@
  * The matrix of T-92 and its factors. */
 #include <math.h>
 
-#include "implicit/implicit.h"
+#include "implicit/constraint.h"
 #include "implicit/stress.h"
 
 /* dP/dF of one particle, Pa, in the order xx, xy, yx, yy. */
@@ -114,5 +114,6 @@ int64_t implicit_factor(struct solid *solid, const struct particles *p, double d
     }
     const int64_t negative = envelope_factor(&by->matrix);
     by->factored = negative >= 0;
+    if (by->factored && solid->hinges) constraint_factor(by, solid->hinges);
     return negative;
 }

@@ -184,6 +184,11 @@ static struct motion_point place_of(const struct hinges *hinges, const struct hi
     return at;
 }
 
+void hinges_place(const struct hinges *hinges, int hinge, double time, double to[2])
+{
+    memcpy(to, place_of(hinges, &hinges->hinge[hinge], time).x, 2 * sizeof *to);
+}
+
 /* Solves T-81 for the values of the nodes: those of the points become what `force` has before. */
 static void solve_hinges(struct hinges *hinges, const struct particles *particles, bool resisted)
 {

@@ -53,6 +53,9 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
 /* The same without dt for accelerations `by`; adds the forces, N/m. */
 void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time);
 
+/* Displacement that a hinge gives its point at a time, m. */
+void hinges_place(const struct hinges *hinges, int hinge, double time, double to[2]);
+
 /* Work of hinges on moving walls over a kick of dt with the last forces, J/m, from the velocities
  * before it. Adds each body's part to `on`. */
 double hinges_work(const struct hinges *hinges, const double *vx, const double *vy, double dt,

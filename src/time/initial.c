@@ -110,13 +110,12 @@ static bool implicit_pays(const struct simulation *sim)
     const struct scene *const scene = sim->scene;
     const struct scene_numerics *const n = &scene->numerics;
     bool possible = n->solid_steps == SOLID_STEPS_AUTO && sim->effects & FX_COUPLING &&
-                    !(sim->effects & FX_HINGE) && n->multirate != MULTIRATE_OFF &&
-                    n->solid_precision != SOLID_PRECISION_SINGLE;
+                    n->multirate != MULTIRATE_OFF && n->solid_precision != SOLID_PRECISION_SINGLE;
     for (int k = 0; k < scene->n_solid; k++)
         possible &= sim->solid.body[k].variational || !(sim->solid.body[k].kappa > 0);
     if (!possible) return false;
     const double substeps = timestep_fluid_limit(sim) / sim->dt_solid;
-    return substeps > 10 + 2 * implicit_across(&sim->solid, &sim->kind[KIND_SOLID]);
+    return substeps > implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]);
 }
 
 /* Sub-steps help where the solid's step is the smaller one. */

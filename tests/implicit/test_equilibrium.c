@@ -134,12 +134,31 @@ static void test_the_kinetic_search_takes_over(void)
     TEST_ASSERT_TRUE(lowest < -0.08); /* through the place of the shelf */
 }
 
+/* A beam on two hinges, without a clamp, sags by 5 w L^4/(384 EI) and the shear's 1.2 w L^2/(8 G
+ * A); the hinges keep its axis from shortening, which holds it up by less than a percent. */
+static void test_beam_on_hinges(void)
+{
+    RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\nprecision = double\ngravity = 0, -0.05\n"
+                   "[solid bar]\nshape = box 0, 0, 0.6, 0.04\nhinge = 0, 0.02\nhinge = 0.6, 0.02\n"
+                   "density = 1000\nyoung = 1e6\npoisson = 0\nlaw = svk\n[relax]\n",
+                   NULL);
+    double sag = 0;
+    const double w = 0.05 * 1000 * 0.04,
+                 exact = 5 * w * pow(0.6, 4) / (384 * 1e6 * pow(0.04, 3) / 12) +
+                         1.2 * w * 0.36 / (8 * 0.5e6 * 0.04);
+    find(true);
+    for (int64_t i = 0; i < p->n; i++)
+        if (fabs(p->X[i] - 0.3) < 0.005) sag = -p->uy[i];
+    assert_near(0.02 * exact, exact, sag, "sag");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_elastica);
     RUN_TEST(test_load_steps);
     RUN_TEST(test_a_free_bar_in_balance);
+    RUN_TEST(test_beam_on_hinges);
     RUN_TEST(test_what_nothing_holds);
     RUN_TEST(test_the_kinetic_search_takes_over);
     return UNITY_END();

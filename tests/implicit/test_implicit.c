@@ -284,6 +284,82 @@ static void test_damping_is_that_of_explicit_steps(void)
     }
 }
 
+/* Bodies of different stiffness that are joined keep energy and momentum as one does. */
+static void test_joined_bodies(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 10\n" IMPLICIT "fixed_step = 1 ms\n"
+                   "[solid a]\nshape = box -0.12, 0, 0, 0.06\ndensity = 1100\nyoung = 2e6\n"
+                   "poisson = 0.4\nlaw = svk\nartificial_viscosity = 0\n"
+                   "velocity = 3 - 15*y + 5*x, 1 + 15*x\n"
+                   "[solid b]\nlike = a\nshape = box 0, 0, 0.12, 0.06\nyoung = 8e6\n"
+                   "joined = a\n[contact none]\nenabled = off\n",
+                   "title=joined");
+    const double before = energy();
+    const struct ledger start = simulation_ledger(&rig.sim);
+    rig_run(&rig, 0.08);
+    const struct ledger end = simulation_ledger(&rig.sim);
+    TEST_ASSERT_TRUE(end.elastic > 1e-4 * start.kinetic);
+    assert_near(2e-6 * before, before, energy(), "energy");
+    assert_near(1e-6 * start.momentum_x, start.momentum_x, end.momentum_x, "x");
+    assert_near(1e-6 * start.momentum_x, start.momentum_y, end.momentum_y, "y");
+}
+
+/* Two bars, hinged to each other and the first to a point, fall from the horizontal: the points
+ * stay where they must, and energy is kept while they turn by more than 90 degrees. */
+static void test_double_pendulum(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 10\ngravity = 0, -9.81\n" IMPLICIT "fixed_step = 1 ms\n"
+                   "[solid a]\nshape = box 0, 0, 0.3, 0.04\nhinge = 0.02, 0.02\n"
+                   "density = 1000\nyoung = 2e6\npoisson = 0.3\nlaw = svk\n"
+                   "artificial_viscosity = 0\n[solid b]\nshape = box 0.31, 0, 0.61, 0.04\n"
+                   "hinge = 0.305, 0.02, a\ndensity = 1000\nyoung = 2e6\npoisson = 0.3\n"
+                   "law = svk\nartificial_viscosity = 0\n[contact none]\nenabled = off\n",
+                   "title=double");
+    TEST_ASSERT_TRUE(rig.sim.solid.stable_step < 1e-4);
+    const double before = energy();
+    double lowest = 0;
+    rig_run(&rig, 0.5);
+    const struct hinges *const hinges = rig.sim.solid.hinges;
+    double off[4] = {0};
+    for (int64_t k = 0; k < hinges->n_nodes; k++) {
+        const struct hinge_node *const node = &hinges->node[k];
+        off[2 * node->hinge] += node->weight * p->ux[node->particle];
+        off[2 * node->hinge + 1] += node->weight * p->uy[node->particle];
+    }
+    for (int k = 0; k < 4; k++) assert_near(1e-12, 0, off[k], "hinge");
+    for (int64_t i = 0; i < p->n; i++) lowest = min2(lowest, p->uy[i]);
+    const struct ledger row = simulation_ledger(&rig.sim);
+    TEST_ASSERT_TRUE(lowest < -0.4 && row.kinetic > 1);
+    assert_near(1e-5 * row.kinetic, before, energy(), "energy");
+}
+
+/* A bar on a wall that moves: the hinge does the work that the bar gains, and it moves as with
+ * explicit steps. */
+static void test_hinge_on_a_moving_wall(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 10\ngravity = 0, -9.81\n" IMPLICIT
+        "[solid bar]\nshape = box 0, 0, 0.04, 0.3\nhinge = 0.02, 0.29, arm\ndensity = 1000\n"
+        "young = 2e6\npoisson = 0.3\nlaw = svk\nartificial_viscosity = 0\n"
+        "[wall arm]\nshape = box 0, 0.32, 0.04, 0.36\nmotion = shake\n[contact none]\n"
+        "enabled = off\n[motion shake]\nkind = expression\nx = 0.05*(1 - cos(8*t))\ny = 0\n";
+    double at[2] = {0}, work[2] = {0};
+    for (int explicit = 0; explicit < 2; explicit ++) {
+        RIG_OPEN_SOLID(text,
+                       explicit ? "numerics.solid_steps=explicit" : "numerics.fixed_step=1 ms",
+                       "numerics.solid_precision=double");
+        const double before = energy();
+        rig_run(&rig, 0.6);
+        for (int64_t i = 0; i < p->n; i++)
+            if (p->Y[i] < 0.01 && p->X[i] < 0.01) at[explicit] = p->ux[i];
+        work[explicit] = rig.sim.state.wall_work;
+        assert_near(5e-3 * fabs(work[explicit]), energy() - before, work[explicit], "work");
+    }
+    TEST_ASSERT_TRUE(fabs(work[1]) > 0.05);
+    assert_near(1e-3, at[1], at[0], "where it swings");
+    assert_near(0.02 * fabs(work[1]), work[1], work[0], "work of both");
+}
+
 /* Surfaces near each other: explicit sub-steps until they part. */
 static void test_contact_is_explicit(void)
 {
@@ -352,6 +428,9 @@ int main(void)
     RUN_TEST(test_period_of_a_free_bar);
     RUN_TEST(test_work_closes_the_account);
     RUN_TEST(test_damping_is_that_of_explicit_steps);
+    RUN_TEST(test_joined_bodies);
+    RUN_TEST(test_double_pendulum);
+    RUN_TEST(test_hinge_on_a_moving_wall);
     RUN_TEST(test_contact_is_explicit);
     RUN_TEST(test_a_step_without_solution_stops);
     RUN_TEST(test_refused);

@@ -278,7 +278,6 @@ static void test_bad_input(void)
 {
 #define ROD TOP "[solid rod]\nshape = box -0.02, 0, 0.02, 0.2\n" STEEL
     rig_refuses(ROD "hinge = 0.032, 0.1\n", "is not on [solid rod]");
-    rig_refuses(ROD "hinge = 0, 0.1\n[numerics]\nsolid_steps = implicit\n", "does not hold");
     rig_refuses(ROD "hinge = 0\n", "`X, Y` or `X, Y, NAME` is expected");
     rig_refuses(ROD "hinge = 0, 0.1, rood\n", "did you mean `rod`");
     rig_refuses(ROD "hinge = 0, 0.1, rod\n", "cannot be hinged to itself");
