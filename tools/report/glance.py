@@ -9,26 +9,30 @@
 import csv
 import re
 import statistics
-import sys
 import tomllib
 
-from common import IMAGES, OUT, QUICK, ROOT, in_scratch, options, plt
+from common import COLOURS, IMAGES, OUT, QUICK, ROOT, in_scratch, options, plt, run_tool
+from palette import shrink
 from study_results import Study, cost
 
 IMG = IMAGES
 EFFECTS = OUT / "effects.csv"
-# case of the accuracy study: its name, its main error, what the error is measured against
-MAIN_ERROR = {
-    "cantilever": ("cantilever, period", "period", "exact"),
-    "elastica": ("bending, tip", "tip, in lengths", "exact"),
-    "plate": ("hydrostatic plate, deflection", "settled deflection", "exact"),
-    "still": ("still water, pressure", "pressure (L2)", "exact"),
-    "wave": ("standing wave, period", "period", "exact"),
-    "impact": ("impact, noise of the pressure", "noise of the pressure", "exact"),
-    "dam": ("dam break, front", "front", "experiment"),
-    "gate": ("elastic gate, motion", "tip motion (RMS) from the finest run", "finest run"),
-}
-STYLE = {"exact": "-", "experiment": ":", "finest run": "--"}
+# Cases of the accuracy study that both schemes have: label, main error, what it is against.
+CASES = {"still": ("still water: pressure", "pressure (L2)"),
+         "impact": ("wave impact: noise of the pressure", "noise of the pressure"),
+         "gate": ("elastic gate: motion, from its finest run",
+                  "tip motion (RMS) from the finest run"),
+         "plate": ("hydrostatic plate: deflection", "settled deflection")}
+# Scenes of the stability suite that are named in the picture.
+NAMED = {"heavy block onto the bed": "a heavy block sinks onto the bed",
+         "retreating wall": "a wall retreats from the water",
+         "nu = 0.4999": "a solid with Poisson's ratio 0.4999",
+         "light plate, ratio 0.02": "a plate of 1/50 of the water's density",
+         "very soft gate": "a gate bends by 0.4 of its length",
+         "water entry": "an elastic wedge enters water at 4 m/s",
+         "wave slap": "a wave slaps a stiff plate",
+         "jet through one spacing": "a jet through an opening of one particle",
+         "pressure behind a thin plate": "pressure behind a plate of two particles"}
 # Each row adds one effect to the one above: label, settings, and whether the gate is elastic.
 BARE = ["water.artificial_viscosity=0"]
 FULL = ["water.wall_repulsion=0.1", "water.laminar_viscosity=1e-6", "water.shifting=0.5"]
@@ -39,71 +43,70 @@ STAGES = [
     ("+ wall repulsion", FULL[:1], True), ("+ laminar viscosity", FULL[:2], True),
     ("+ particle shifting", FULL, True),
 ]
-PASSES, CURED, FAILS = "#3a8f4d", "#e5a823", "#c0392b"
+NONE = 3e-4  # %: where scenes stand that gain nothing, or less
 
 
 def draw_accuracy():
-    """Error against CPU seconds of every case with default settings; thin: with the scheme of the
-    paper."""
+    """Error against CPU seconds of cases that both schemes have."""
     study = Study(ROOT / "docs" / "results" / "accuracy.json")
 
-    def rows_of(points, error):
-        return sorted((cost(p), 100 * abs(p["errors"][error])) for p in points
-                      if p["outcome"] == "finished" and p["errors"].get(error))
-    figure, axes = plt.subplots(figsize=(6, 3.8))
-    paper = False
-    for case, (label, error, against) in MAIN_ERROR.items():
-        rows = rows_of(study.of(case, "base"), error)
-        if not rows:
-            continue
-        line, = axes.loglog(*zip(*rows), STYLE[against], marker="o", ms=4, label=label)
-        # An error below that of a finer run has changed its sign on the way: a zero crossing.
-        for k, row in enumerate(rows):
-            if any(row[1] < 0.9 * e for _, e in rows[k + 1:]):
-                axes.plot(*row, "o", ms=4, color="white", markeredgecolor=line.get_color())
-        beside = rows_of(study.of(case, "scheme", "paper"), error)
-        if beside:
-            axes.loglog(*zip(*beside), STYLE[against], marker="x", ms=4, lw=0.7,
-                        color=line.get_color())
-            paper = True
-    for against, style in STYLE.items():
-        axes.plot([], [], style, color="0.3", label=f"error against: {against}")
-    axes.set(xlabel="CPU time (s)", ylabel="error (%)")
-    axes.grid(True, which="major", alpha=0.3)
-    axes.plot([], [], "o", ms=4, color="white", markeredgecolor="0.3", label="zero crossing")
-    if paper:
-        axes.plot([], [], marker="x", ms=4, lw=0.7, color="0.3", label="scheme = paper")
-    axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
+    def line_of(points, error):
+        return zip(*sorted((cost(p), 100 * abs(p["errors"][error])) for p in points
+                           if p["outcome"] == "finished" and p["errors"].get(error)))
+    figure, axes = plt.subplots(figsize=(6.4, 3.4), layout="constrained")
+    for colour, (case, (label, error)) in zip(COLOURS, CASES.items()):
+        seconds, off = line_of(study.of(case, "base"), error)
+        axes.loglog(seconds, off, "o-", color=colour, markersize=4)
+        axes.loglog(*line_of(study.of(case, "scheme", "paper"), error), "--", color=colour, lw=1)
+        end = 0 if case == "still" else -1  # its last point lies on another line
+        axes.annotate(label, (seconds[end], off[end]), xytext=(7, 3), textcoords="offset points",
+                      color=colour, va="center", fontsize=9)
+    axes.set(xlabel="CPU time (s)", ylabel="error (%)", xlim=(0.05, 1e4))
+    axes.set_yticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
+    axes.set_title("solid: scheme = standard, the default;  dashed: scheme = paper, the article's",
+                   fontsize=9, loc="left")
     save(figure, "accuracy")
 
 
-def stability_colours():
-    """A colour for each scene of the suite; runs of the same scene with a setting, or without a
-    remedy that is on by default, are no scenes of their own."""
-    text = (ROOT / "docs/results/stability.md").read_text()
-    passes = {}
+def scenes():
+    """(name, whether it passes with defaults, with a setting, gain in %) of each scene of the
+    suite; runs with a setting, or without a remedy that is on by default, are none."""
+    text = (ROOT / "docs" / "results" / "stability.md").read_text(encoding="utf-8")
+    rows = {}
     for line in text.split("| scene | what it is |")[1].split("\n## ")[0].splitlines():
         cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
         if len(cells) == 9 and cells[0] != "---":
-            passes[cells[0]] = cells[5] == "passes"
+            rows[cells[0]] = cells[5] == "passes", 100 * float(re.search(r"gain (\S+),",
+                                                                         cells[7])[1])
     for scene in tomllib.loads((ROOT / "tests/stability/suite.toml").read_text())["scene"]:
-        if scene["name"] in passes and not ("settings" in scene or "without" in scene):
-            yield PASSES if passes[scene["name"]] else \
-                CURED if passes.get(scene.get("remedy")) else FAILS
+        if scene["name"] in rows and not ("settings" in scene or "without" in scene):
+            passes, gain = rows[scene["name"]]
+            yield scene["name"], passes, rows.get(scene.get("remedy"), (passes,))[0], gain
 
 
 def draw_stability():
-    """One square for each hard scene: green passes by default, amber with a setting, red not at
-    all."""
-    colours, across = list(stability_colours()), 14
-    figure, axes = plt.subplots(figsize=(7, 0.5 * (len(colours) + across - 1) // across + 0.8))
-    for k, c in enumerate(colours):
-        axes.add_patch(plt.Rectangle((k % across, -(k // across)), 0.9, 0.9, color=c))
-    axes.set(xlim=(-0.1, across), ylim=(-((len(colours) - 1) // across) - 0.1, 1), aspect="equal")
-    axes.set_title(f"{len(colours)} hard scenes: {colours.count(PASSES)} pass with defaults "
-                   f"(green), {colours.count(CURED)} with a setting (amber), "
-                   f"{colours.count(FAILS)} fail (red)", fontsize=9)
-    axes.axis("off")
+    """The energy that hard scenes gain out of nothing: some by their names, the others in a row."""
+    found = list(scenes())
+    figure, axes = plt.subplots(figsize=(7.2, 2.7), layout="constrained")
+    rows = list(NAMED)
+    for name, passes, _, gain in found:
+        row = rows.index(name) if name in NAMED else len(rows)
+        axes.plot(max(gain, NONE), -row, "o", color=COLOURS[0] if passes else COLOURS[1],
+                  markersize=7, alpha=1 if name in NAMED or not passes else 0.4, zorder=3)
+    for row in range(len(rows) + 1):
+        axes.axhline(-row, color="0.9", lw=0.7)
+    good = sum(passes for _, passes, _, _ in found)
+    cured = sum(cure for _, passes, cure, _ in found if not passes)
+    axes.set_yticks([-row for row in range(len(rows) + 1)],
+                    [*NAMED.values(), f"the other {len(found) - len(rows)} scenes"])
+    axes.set(xscale="log", xlim=(2e-4, 10),
+             xlabel="energy gained out of nothing, % of the energy in play")
+    axes.set_xticks([NONE, 1e-3, 1e-2, 0.1, 1, 10], ["none", "0.001", "0.01", "0.1", "1", "10"])
+    axes.minorticks_off()
+    axes.spines[["top", "left", "right"]].set_visible(False)
+    axes.tick_params(top=False, left=False, right=False)
+    axes.set_title(f"{len(found)} hard scenes: {good} stable and right with defaults, {cured} with "
+                   f"a setting (orange), {len(found) - good - cured} not", fontsize=9, loc="right")
     save(figure, "stability")
 
 
@@ -120,9 +123,10 @@ def step_ms(run):
     return 1e3 * (sum(phases.values()) - phases["output"]) / run.summary["steps"]
 
 
-def measure(repeats=5):
+def measure(repeats=1 if QUICK else 5):
     """Median ms of a step on one thread for each row of STAGES, all rows in each round."""
-    rounds = [[in_scratch(step_ms, gate(elastic), ["dp=1 mm", *sets], "--until", "0.02")
+    until = "0.002" if QUICK else "0.02"
+    rounds = [[in_scratch(step_ms, gate(elastic), ["dp=1 mm", *sets], "--until", until)
                for _, sets, elastic in STAGES] for _ in range(repeats)]
     with EFFECTS.open("w", newline="") as file:
         writer = csv.writer(file)
@@ -132,22 +136,30 @@ def measure(repeats=5):
 
 
 def draw_effects():
-    """Cost of a step of the gate as effects are added."""
+    """Cost of a step of the gate as effects are added, what each adds in colour."""
     rows = list(csv.DictReader(EFFECTS.open()))
     value = [float(row["ms_per_step"]) for row in rows]
-    figure, axes = plt.subplots(figsize=(7, 2.6))
-    axes.barh([row["effects"] for row in rows][::-1], value[::-1], color="#3a5f8a")
-    for k, v in enumerate(value[::-1]):
-        axes.text(v, k, f" {v:.2f}", va="center", fontsize=8)
-    axes.set(xlabel="ms per step of the gate (dp = 1 mm, one thread)", xlim=(0, 1.1 * max(value)))
+    before = [0, *value[:-1]]
+    places = range(len(rows), 0, -1)
+    figure, axes = plt.subplots(figsize=(6.4, 2.4), layout="constrained")
+    axes.barh(places, before, color="0.85")
+    axes.barh(places, [v - b for v, b in zip(value, before)], left=before, color=COLOURS[0])
+    for y, v, b in zip(places, value, before):
+        axes.text(v, y, f" +{100 * (v / b - 1):.0f} %" if b else f" {v:.2f} ms", va="center",
+                  fontsize=8)
+    axes.set_yticks(places, [row["effects"] for row in rows])
+    axes.set(xlabel="time of a step, ms (elastic gate, dp = 1 mm, one thread)",
+             xlim=(0, 1.12 * max(value)))
     axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(top=False, right=False, left=False)
+    axes.set_title("An effect costs only a scene that names it", fontsize=9, loc="left")
     save(figure, "effects")
 
 
 def save(figure, name):
     path = IMG / f"glance_{name}.png"
-    figure.savefig(path, dpi=110, bbox_inches="tight")
-    print(f"wrote {path.relative_to(ROOT)}")
+    figure.savefig(path, dpi=130)
+    shrink(path)
 
 
 def main():
@@ -162,4 +174,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    run_tool(main)

@@ -18,9 +18,6 @@ from study_results import (CROSSING, Study, across, against, cost, finished, mac
 from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
                           halving_table, knob_table, order_table, ranked_knobs, schemes_table)
 
-MARKS = "osD^v<>ph*XP"
-PANEL = 2.5  # inches
-
 
 # --- figures ---
 
@@ -31,64 +28,34 @@ class PlainLog(LogFormatter):
         return f"{x:g}" if super().__call__(x, pos) else ""
 
 
-
-def groups_of(study, case):
-    """{group: [(knob, value)]} of the settings that the case has, in the order of the
-    definition."""
-    groups = {}
-    for knob, entry in study.knobs.items():
-        for value in entry["values"]:
-            if study.of(case, knob, value):
-                groups.setdefault(entry.get("group", "settings"), []).append((knob, value))
-    return groups or {"settings": []}
-
-
-def draw_line(axes, study, points, **style):
-    """Points of one setting in the order of resolution; those that did not finish stand as crosses
-    at the top, over the time that they took."""
+def draw_line(axes, study, points, colour, label, **style):
+    """Points of one setting in the order of resolution, named at the end of the line."""
     known = sorted((p for p in points if study.error(p)), key=lambda p: p["level"])
-    style.setdefault("markersize", 4.5)
     if known:
-        axes.loglog([cost(p) for p in known], [100 * study.error(p) for p in known], **style)
-    lost = [p for p in points if p["timing"] and not finished(p)]
-    if lost:
-        if not known:
-            axes.plot([], [], **dict(style, label=style["label"] + ": none finished"))
-        axes.plot([cost(p) for p in lost], [0.96] * len(lost), "x", color=style["color"],
-                  markersize=6,
-                  markeredgewidth=1.5, transform=axes.get_xaxis_transform(), clip_on=False)
-
-
-def draw_group(axes, study, case, group, settings):
-    front = study.front(case)
-    axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.85",
-                linewidth=7, solid_capstyle="round", zorder=1, label="Pareto front of all settings")
-    draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6,
-              zorder=4, label="defaults")
-    knobs = list(dict.fromkeys(knob for knob, _ in settings))
-    for number, (knob, value) in enumerate(settings):
-        draw_line(axes, study, study.of(case, knob, value), color=COLOURS[number % len(COLOURS)],
-                  linestyle=["-", "--", ":"][knobs.index(knob) % 3],
-                  marker=MARKS[1 + number % (len(MARKS) - 1)], linewidth=0.9, zorder=3,
-                  label=study.label(knob, value))
-    axes.set_title(group, loc="left")
-    axes.set_ylabel(f"{main_error(study.cases[case])} (%)", fontsize=7)
-    axes.grid(True, which="both", linewidth=0.3, alpha=0.5)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7)
+        x, y = [cost(p) for p in known], [100 * study.error(p) for p in known]
+        axes.loglog(x, y, "o-", color=colour, markersize=4, **style)
+        axes.annotate(label, (x[-1], y[-1]), xytext=(6, 0), textcoords="offset points",
+                      color=colour, va="center", fontsize=8)
 
 
 def draw_case(study, case, path):
-    groups = groups_of(study, case)
-    figure, panels = plt.subplots(len(groups), 1, figsize=(WIDTH, 0.4 + PANEL * len(groups)),
-                                  sharex=True, sharey=True, squeeze=False)
-    for axes, (group, settings) in zip(panels[:, 0], groups.items()):
-        draw_group(axes, study, case, group, settings)
-    panels[-1, 0].set_xlabel("CPU time (s)")
-    for axis in (panels[0, 0].xaxis, panels[0, 0].yaxis):  # all panels share them
+    """Error against cost of all settings; named are the defaults, the article's scheme, and the
+    points that no other one beats in both."""
+    figure, axes = plt.subplots(figsize=(0.75 * WIDTH, 2.8), layout="constrained")
+    known, front = study.known(case), study.front(case)
+    axes.loglog([cost(p) for p in known], [100 * study.error(p) for p in known], ".", color="0.7",
+                zorder=1)
+    axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.8",
+                lw=6, solid_capstyle="round", zorder=0)
+    draw_line(axes, study, study.of(case, "scheme", "paper"), COLOURS[0], "scheme = paper")
+    draw_line(axes, study, study.of(case, "base"), "black", "defaults", zorder=4)
+    axes.set(xlabel="CPU time (s)", ylabel=f"{main_error(study.cases[case])} (%)",
+             xlim=(None, 4 * max(cost(p) for p in known)))
+    axes.set_title(f"{study.cases[case].get('title', case)}. Grey: other settings; band: "
+                   "those that none beats", fontsize=8, loc="left")
+    for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(PlainLog(minor_thresholds=(1, 0.5)))
-    figure.suptitle(study.cases[case].get("title", case), fontsize=10)
-    figure.tight_layout()
     save(figure, path)
     shrink(path)
     plt.close(figure)
