@@ -216,7 +216,8 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
     for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
     for (int r = 0; r < d->count; r++)
         volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
-    for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
+    /* At rest, particles whose masses fit their density fill a cell at any depth: so do dummies. */
+    for (int r = 0; r < CLUSTER && !(fluid->effects & FX_MASSES); r++) volume[r] /= 1 + dens[r];
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);

@@ -213,7 +213,7 @@ static void test_accelerated_tank(void)
 }
 
 /* A tank that rolls the other way does the same, mirrored: the tip of the baffle, momentum, work;
- * nothing is lost, energy only dissipated, and the foot of the baffle stands where the roll has put
+ * nothing is lost, no energy gained, and the foot of the baffle stands where the roll has put
  * it. */
 static void test_rolling_tank(void)
 {
@@ -221,17 +221,14 @@ static void test_rolling_tank(void)
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {"dp=depth/8", k ? "roll=-4*pi/180" : "roll=4*pi/180"};
         open("cases/rolling_tank.cfg", 2, sets);
-        double least = 0;
         const double mass = simulation_ledger(&sim).mass;
-        for (int n = 1; n <= 8; n++) {
-            run(0.05 * n);
-            least = fmin(least, simulation_ledger(&sim).dissipated);
-        }
+        run(0.4);
         const struct ledger row = simulation_ledger(&sim);
         tip[k] = displacement(0, 0, 0.0574, false);
         momentum[k] = row.momentum_x;
         work[k] = sim.state.wall_work;
-        assert_at_most(1e-6 * fabs(work[k]), -least, "spurious energy");
+        /* Beyond what dummies hold and return (T-46). */
+        assert_at_most(1e-6, sim.state.gain_share, "spurious energy");
         TEST_ASSERT_EQUAL_INT64(0, sim.state.lost);
         assert_near(1e-12 * mass, mass, row.mass, "mass");
         assert_at_most(0.03, fmax(-sim.state.dens_low, sim.state.dens_high), "density");

@@ -326,6 +326,26 @@ static void test_a_turning_tank_holds_its_water(void)
                 "x of a wall particle");
 }
 
+/* A box of 0.2 m in water at rest is carried by the weight of what it displaces, to the error of
+ * the sums at its edges, also where the water is compressed by 1 %. */
+static void test_a_body_at_rest_is_carried(void)
+{
+    rig_open(&rig,
+             "dp = 10 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nh_over_dp = 2\n"
+             "[fluid w]\nshape = box 0, 0, 0.6, 0.6\nminus = box 0.2, 0.2, 0.4, 0.4\n"
+             "surface = 0.6\nsound_speed = 20\nparticle_mass = hydrostatic\n"
+             "[wall tank]\nshape = polyline: 0, 0.8; 0, 0; 0.6, 0; 0.6, 0.8\n"
+             "[wall box]\nshape = box 0.2, 0.2, 0.4, 0.4\n"
+             "[probe lift]\nquantity = force\nbody = box\npoint = 0.3, 0.3\n",
+             NULL);
+    rig_evaluate(&rig);
+    wall = &rig.sim.kind[KIND_WALL];
+    double force = 0;
+    for (int64_t i = 0; i < wall->n; i++)
+        if (wall->body[i] == 1) force += wall->fy[i];
+    assert_near(0.002 * 392.4, 392.4, force, "lift");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -342,5 +362,6 @@ int main(void)
     RUN_TEST(test_hydrostatic_pressure_continues_into_the_wall);
     RUN_TEST(test_moving_walls_follow_their_motion);
     RUN_TEST(test_a_turning_tank_holds_its_water);
+    RUN_TEST(test_a_body_at_rest_is_carried);
     return UNITY_END();
 }

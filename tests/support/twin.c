@@ -62,7 +62,8 @@ void twin_copy(struct twin *t, const struct simulation *sim)
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
                        .strained = f->diffusion_limiter == LIMITER_STRAIN,
-                       .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
+                       .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS,
+                       .filled = f->particle_mass == MASS_HYDROSTATIC};
     for (int axis = 0; axis < 2; axis++)
         if (scene->domain.periodic & 1 << axis)
             t->period[axis] = scene->domain.upper[axis] - scene->domain.lower[axis];
@@ -126,6 +127,7 @@ static void extrapolate(const struct twin *t, struct twin_point *s)
     if (!t->suction && s->p < 0) s->p = 0;
     s->size_p = sum_w > 0 ? size / sum_w : 0;
     s->rho = tait_inverse(t, s->p);
+    if (t->filled) s->m = t->mass * s->rho / t->rho0;
 }
 
 /* Antuono et al. 2010, Eqs. 4 and 5. */

@@ -34,6 +34,7 @@ struct twin {
     bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
     bool given_slopes; /* its gradients are given */
     bool hydrostatic;  /* the form of Fourtakas et al. 2019 for Eq. 6 */
+    bool filled;       /* walls and solids keep their volume (T-11a) */
     int64_t n[KIND_COUNT];
     struct twin_point *point[KIND_COUNT];
     double top_acceleration, top_approach; /* for Eqs. 28a and 28b */
