@@ -88,7 +88,7 @@ enum sphfsi_status sphfsi_create(struct sphfsi_simulation **created,
                                  const struct sphfsi_options *options)
 {
     struct call c;
-    if (!created) return call_without("create", "place of the result");
+    if (!created) return call_null_argument("create", "place of the result");
     *created = NULL;
     enum err e = call_begin(&c, "create", options);
     if (e) return call_end(&c, e);

@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
+enum evidence_column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
 
-/* Least and largest error of the study's cases of a kind, each at its finest resolution that is no
- * finer than n; `coarser`: n is less than all of a case. */
+/* Least and largest error of the study's cases of a kind. Each counts at its finest resolution that
+ * is no finer than n; `coarser`: n is less than all resolutions of a case. */
 struct band {
     double low, high;
     bool coarser;

@@ -13,9 +13,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static void say_scene(const struct session *x, const struct sphfsi_options *o)
+static void say_scene(const struct session *session, const struct sphfsi_options *o)
 {
-    const struct scene *scene = &x->scene;
+    const struct scene *scene = &session->scene;
     session_say(o, "%s: %s", scene->path, scene->top.title);
     session_say(o, "  dp %g m, h %g m, simulated time %g s", scene->top.dp, scene->h,
                 scene->top.end_time);
@@ -23,7 +23,7 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
         session_say(o, "  speed of sound %g m/s, density %g kg/m^3", scene->c0, scene->rho0);
     for (int k = 0; k < KIND_COUNT; k++)
         session_say(o, "  %-6s %10lld particles", kind_names[k],
-                    (long long)x->simulation.kind[k].n);
+                    (long long)session->simulation.kind[k].n);
 }
 
 /* How bodies are sampled where the lattice is not simply the common one. */
@@ -256,14 +256,14 @@ static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o
     return ERR_OK;
 }
 
-static enum err explain_text(struct session *x, const struct sphfsi_options *o, const char *unused,
-                             struct diag *d)
+static enum err explain_text(struct session *session, const struct sphfsi_options *o,
+                             const char *unused, struct diag *d)
 {
     (void)unused;
-    struct simulation *sim = &x->simulation;
-    say_scene(x, o);
-    say_lattices(&x->scene, o);
-    say_scheme(&x->scene, o);
+    struct simulation *sim = &session->simulation;
+    say_scene(session, o);
+    say_lattices(&session->scene, o);
+    say_scheme(&session->scene, o);
     say_effects(sim, o);
     say_fields(sim, o);
     say_output(sim, o);
@@ -280,15 +280,16 @@ static enum err explain_text(struct session *x, const struct sphfsi_options *o, 
 
 /* --- the same as JSON --- */
 
-static void write_scene(struct json *j, const struct session *x)
+static void write_scene(struct json *j, const struct session *session)
 {
-    const struct scene *const scene = &x->scene;
+    const struct scene *const scene = &session->scene;
     json_text(j, "title", scene->top.title);
     json_text(j, "case", scene->path);
     json_number(j, "dp", scene->top.dp);
     json_number(j, "end_time", scene->top.end_time);
     json_open(j, "particles", '{');
-    for (int k = 0; k < KIND_COUNT; k++) json_integer(j, kind_names[k], x->simulation.kind[k].n);
+    for (int k = 0; k < KIND_COUNT; k++)
+        json_integer(j, kind_names[k], session->simulation.kind[k].n);
     json_close(j, '}');
 }
 
@@ -336,13 +337,13 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
     json_close(j, '}');
 }
 
-static enum err write_all(struct json *j, void *session, struct diag *d)
+static enum err write_all(struct json *j, void *context, struct diag *d)
 {
-    struct session *const x = session;
-    struct simulation *const sim = &x->simulation;
+    struct session *const session = context;
+    struct simulation *const sim = &session->simulation;
     struct unit_costs c;
     json_open(j, NULL, '{');
-    write_scene(j, x);
+    write_scene(j, session);
     report_effects(j, sim);
     write_fields(j, sim);
     const enum err e = forecast_measure(&c, sim, d);
@@ -350,17 +351,17 @@ static enum err write_all(struct json *j, void *session, struct diag *d)
     TRY(e);
     write_bounds(j, sim);
     write_cost(j, sim, &c);
-    report_derived(j, &x->scene);
-    report_parameters(j, &x->scene);
+    report_derived(j, &session->scene);
+    report_parameters(j, &session->scene);
     json_close(j, '}');
     return ERR_OK;
 }
 
-static enum err explain_json(struct session *x, const struct sphfsi_options *o, const char *unused,
-                             struct diag *d)
+static enum err explain_json(struct session *session, const struct sphfsi_options *o,
+                             const char *unused, struct diag *d)
 {
     (void)unused;
-    return session_json(o, write_all, x, d);
+    return session_json(o, write_all, session, d);
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)

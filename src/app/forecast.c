@@ -10,16 +10,16 @@
 #include <string.h>
 
 enum { FIRST_STEPS = 20, ROWS_MEASURED = 5 };
-/* Wall time of the first steps, which are not measured, at most; of the measured steps; and of a
- * repeat, which is short, so that other work on the machine does not disturb all of them. */
+/* Wall time, s: of the first steps, which are not measured, at most; of all measured steps; of one
+ * repeat. Repeats are short, so that other work on the machine does not disturb all of them. */
 static const double first_seconds = 0.1, measured_seconds = 0.2, repeat_seconds = 0.005;
 
 /* --- measurement --- */
 
-/* The least wall time per step of all repeats, since other work on the machine can only add to it,
- * and the least time of each phase. Not every repeat sorts, so sorting counts with its mean,
- * limited to 5 % of a step. */
-struct least {
+/* Trial steps: the least wall time per step and per phase of all repeats, since other work on the
+ * machine can only add to it. Not every repeat sorts, so sorting counts with its mean, limited to
+ * 5 % of a step. */
+struct trial {
     double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
     int64_t n_start; /* fluid particles */
@@ -32,7 +32,7 @@ static bool has_fluid_of_start(const struct simulation *sim, int64_t n_start)
     return 2 * sim->kind[KIND_FLUID].n >= n_start;
 }
 
-static enum err take_steps(struct least *least, struct simulation *sim, struct diag *d)
+static enum err take_steps(struct trial *trial, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time, begin = wall_clock();
     const struct state before = sim->state;
@@ -42,44 +42,46 @@ static enum err take_steps(struct least *least, struct simulation *sim, struct d
         TRY(simulation_step(sim, (double)INFINITY, d));
         now = wall_clock();
     } while (sim->state.time < end && now - begin < repeat_seconds &&
-             has_fluid_of_start(sim, least->n_start));
+             has_fluid_of_start(sim, trial->n_start));
     const double steps = (double)(sim->state.steps - before.steps);
     const double each = (now - begin) / steps;
-    least->step = least->steps ? min2(least->step, each) : each;
+    trial->step = trial->steps ? min2(trial->step, each) : each;
     for (int k = 0; k < PHASE_COUNT; k++) {
         const double seconds = (sim->phase_seconds[k] - phase[k]) / steps;
-        least->phase[k] = least->steps ? min2(least->phase[k], seconds) : seconds;
+        trial->phase[k] = trial->steps ? min2(trial->phase[k], seconds) : seconds;
     }
-    least->sort_mean += sim->phase_seconds[PHASE_sort] - phase[PHASE_sort];
-    least->steps += sim->state.steps - before.steps;
-    least->substeps += sim->state.solid_substeps - before.solid_substeps;
-    least->evaluations += sim->state.evaluations - before.evaluations;
+    trial->sort_mean += sim->phase_seconds[PHASE_sort] - phase[PHASE_sort];
+    trial->steps += sim->state.steps - before.steps;
+    trial->substeps += sim->state.solid_substeps - before.solid_substeps;
+    trial->evaluations += sim->state.evaluations - before.evaluations;
     return ERR_OK;
 }
 
-static void set_costs(struct unit_costs *c, struct least *l, const struct simulation *sim)
+static void set_costs(struct unit_costs *c, struct trial *trial, const struct simulation *sim)
 {
     const double n_fluid = (double)sim->kind[KIND_FLUID].n;
-    const double n_solid = (double)sim->kind[KIND_SOLID].n, steps = (double)l->steps;
+    const double n_solid = (double)sim->kind[KIND_SOLID].n, steps = (double)trial->steps;
     double all = 0;
-    l->phase[PHASE_sort] = 0;
-    for (int k = 0; k < PHASE_COUNT; k++) all += l->phase[k];
-    l->phase[PHASE_sort] = min2(l->sort_mean / steps, 0.05 * all);
-    all += l->phase[PHASE_sort];
-    for (int k = 0; k < PHASE_COUNT; k++) c->phase_fraction[k] = all > 0 ? l->phase[k] / all : 0;
-    all = min2(all, l->step);
+    trial->phase[PHASE_sort] = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) all += trial->phase[k];
+    trial->phase[PHASE_sort] = min2(trial->sort_mean / steps, 0.05 * all);
+    all += trial->phase[PHASE_sort];
+    for (int k = 0; k < PHASE_COUNT; k++)
+        c->phase_fraction[k] = all > 0 ? trial->phase[k] / all : 0;
+    all = min2(all, trial->step);
     const double solid =
         n_fluid > 0 ? all * (c->phase_fraction[PHASE_solid] + c->phase_fraction[PHASE_contact])
                     : all;
-    c->evaluations = (double)l->evaluations / steps;
-    if (n_solid > 0 && l->substeps > 0) c->solid = solid * steps / (double)l->substeps / n_solid;
+    c->evaluations = (double)trial->evaluations / steps;
+    if (n_solid > 0 && trial->substeps > 0)
+        c->solid = solid * steps / (double)trial->substeps / n_solid;
     if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;
 }
 
 static enum err measure_steps(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time;
-    struct least least = {.n_start = sim->kind[KIND_FLUID].n};
+    struct trial trial = {.n_start = sim->kind[KIND_FLUID].n};
     /* The first steps include the first touch of memory and the first sort, and find the bounds of
      * the time step. A guard that stops the run in them is reported. */
     const double start = wall_clock();
@@ -87,16 +89,16 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
     } while (++first <= FIRST_STEPS && sim->state.time < end &&
-             has_fluid_of_start(sim, least.n_start) && wall_clock() - start < first_seconds);
+             has_fluid_of_start(sim, trial.n_start) && wall_clock() - start < first_seconds);
     const double begin = wall_clock();
     /* A guard that stops the run later is not: the run will report it. */
     struct diag ignored = {.code = ERR_OK};
     enum err e = ERR_OK;
     while (!e && sim->state.time < end && wall_clock() - begin < measured_seconds &&
-           has_fluid_of_start(sim, least.n_start))
-        e = take_steps(&least, sim, &ignored);
+           has_fluid_of_start(sim, trial.n_start))
+        e = take_steps(&trial, sim, &ignored);
     if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", ignored.text);
-    if (least.steps > 0) set_costs(c, &least, sim);
+    if (trial.steps > 0) set_costs(c, &trial, sim);
     return ERR_OK;
 }
 
@@ -111,8 +113,8 @@ static double expected_step(const struct simulation *sim)
         speed = max2(speed, sim->scene->fluid[k].max_speed);
     const double approach = max2(0.75 * speed, sim->fluid.extremes.approach);
     const double dt = limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
-    const bool together = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
-    return together ? min2(dt, sim->dt_solid) : dt;
+    const bool single_rate = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
+    return single_rate ? min2(dt, sim->dt_solid) : dt;
 }
 
 /* The time of all rows of the run by what reading a state takes now, the least of several. A row

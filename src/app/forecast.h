@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The cost of a run: the number of steps from the bounds of the time step, the time of a step from
- * a measurement of this scene on this machine. */
+ * The cost of a run. The bounds of the time step give the number of steps; trial steps of this
+ * scene on this machine give the time of each. */
 #ifndef SPHFSI_APP_FORECAST_H
 #define SPHFSI_APP_FORECAST_H
 
@@ -16,8 +16,8 @@ struct unit_costs {
 };
 
 struct forecast {
-    double dt;           /* of the fluid, or of a lone solid, s */
-    double steps;        /* of the fluid, or of a lone solid */
+    double dt;           /* of the fluid, or of a solid without fluid, s */
+    double steps;        /* of the fluid, or of a solid without fluid */
     double substeps;     /* of the solid */
     double evaluations;  /* of the fluid */
     double seconds;      /* wall time on an idle machine */

@@ -20,7 +20,7 @@ static void say_head(const char *path, const struct image *m, const struct sphfs
 /* Smallest and largest of a field, or the value of a scalar. */
 static void say_values(const struct block_info *b, char text[96])
 {
-    double low = INFINITY, high = -INFINITY;
+    double low = HUGE_VAL, high = -HUGE_VAL;
     int64_t odd = 0;
     for (int64_t i = 0; i < b->count; i++) {
         const unsigned char *at = (const unsigned char *)b->data + (size_t)i * b->item_bytes;
@@ -83,7 +83,7 @@ static enum err inspect_file(const char *path, const struct sphfsi_options *o, s
 enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
 {
     struct call c;
-    if (!file) return call_without("inspect", "file");
+    if (!file) return call_null_argument("inspect", "file");
     enum err e = call_begin(&c, "inspect", options);
     if (!e) e = inspect_file(file, &c.options, &c.diag);
     return call_end(&c, e);

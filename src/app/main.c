@@ -114,7 +114,7 @@ static void on_message(void *context, enum sphfsi_message kind, const char *text
     fflush(stdout);
 }
 
-static void remaining(double seconds, char text[32])
+static void text_of_remaining(double seconds, char text[32])
 {
     if (seconds < 0)
         snprintf(text, 32, "?");
@@ -142,7 +142,7 @@ static void on_progress(void *context, const struct sphfsi_progress *p)
         return;
     }
     char left[32];
-    remaining(p->seconds_left, left);
+    text_of_remaining(p->seconds_left, left);
     fprintf(stderr, "%s%5.1f %%  t %.5g s  dt %.3g s (%s)  %.3g M particle steps/s  %s left%s",
             c->terminal ? "\r" : "", 100 * fraction, p->time, p->dt, p->bound,
             1e-6 * p->particle_steps_per_second, left, c->terminal ? "\033[K" : "\n");
@@ -150,7 +150,7 @@ static void on_progress(void *context, const struct sphfsi_progress *p)
     c->line_open = c->terminal;
 }
 
-static int complain(const char *format, const char *a, const char *b)
+static int usage_error(const char *format, const char *a, const char *b)
 {
     fputs("sphfsi: ", stderr);
     fprintf(stderr, format, a, b);
@@ -163,7 +163,7 @@ static int read_threads(const char *text, int *threads)
     char *end;
     const double value = strtod(text, &end);
     if (end == text || *end || !(value >= 1 && value <= INT_MAX) || value != floor(value))
-        return complain("%s %s: give a whole number from 1 to 2147483647", "--threads", text);
+        return usage_error("%s %s: give a whole number from 1 to 2147483647", "--threads", text);
     *threads = (int)value;
     return 0;
 }
@@ -183,18 +183,18 @@ static int read_time(const char *text, double *seconds)
             *seconds = number * units[k].seconds;
             if (*seconds >= 1e-300 && *seconds <= 1e9) return 0;
         }
-    return complain("%s %s: give a time such as 0.5, 0.5s or 500ms, above 0 and at most 1e9 s",
-                    "--until", text);
+    return usage_error("%s %s: give a time such as 0.5, 0.5s or 500ms, above 0 and at most 1e9 s",
+                       "--until", text);
 }
 
-static int apply(struct command *c, const struct option *option, const char *operand)
+static int apply_option(struct command *c, const struct option *option, const char *operand)
 {
     struct sphfsi_options *o = &c->options;
     const char *const name = option->name;
     const char *const word = operand ? operand : ""; /* only --restart may go without */
     if (option->mode != RUN) {
         if (option->mode == KEYS_JSON && c->mode != KEYS)
-            return complain("%s follows --keys%s", name, "");
+            return usage_error("%s follows --keys%s", name, "");
         c->mode = option->mode;
         c->operand = operand;
     } else if (strcmp(name, "--out") == 0) {
@@ -205,7 +205,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
         return read_time(word, &o->until);
     } else if (strcmp(name, "--set") == 0) {
         if (!strchr(word, '='))
-            return complain("%s %s: give key=value or section.key=value", name, operand);
+            return usage_error("%s %s: give key=value or section.key=value", name, operand);
         ((const char **)(uintptr_t)o->sets)[o->n_sets++] = operand;
     } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
@@ -240,7 +240,7 @@ static int names_a_tool(const char *argument)
     for (size_t k = 0; k < sizeof moved / sizeof moved[0]; k++)
         if (strncmp(argument, moved[k][0], strcspn(argument, "=")) == 0 &&
             strlen(moved[k][0]) == strcspn(argument, "="))
-            return complain("%s is a tool now: %s", moved[k][0], moved[k][1]);
+            return usage_error("%s is a tool now: %s", moved[k][0], moved[k][1]);
     return 0;
 }
 
@@ -255,8 +255,9 @@ static int unknown_option(const char *argument)
     const char *near = sphfsi_nearest(word + strspn(word, "-"), names, OPTION_COUNT);
     for (int k = 0; near && k < OPTION_COUNT; k++)
         if (names[k] == near)
-            return complain("unknown option %s; the nearest one is %s", argument, options[k].name);
-    return complain("unknown option %s%s", argument, "");
+            return usage_error("unknown option %s; the nearest one is %s", argument,
+                               options[k].name);
+    return usage_error("unknown option %s%s", argument, "");
 }
 
 /* Whether the word after an option with an optional operand is its operand. After --restart it is
@@ -275,15 +276,15 @@ static int parse_option(struct command *c, const char *argument, const char *nex
     const struct option *option = find_option(argument, &operand);
     if (!option) return unknown_option(argument);
     if (option->takes == NOTHING && operand)
-        return complain("%s takes no value, but '%s' is given", option->name, operand);
+        return usage_error("%s takes no value, but '%s' is given", option->name, operand);
     if (option->takes == OPERAND && !operand && !next)
-        return complain("%s needs a value%s", option->name, "");
+        return usage_error("%s needs a value%s", option->name, "");
     *used_next = !operand && (option->takes == OPERAND ||
                               (option->takes == MAYBE && is_operand(c, option, next)));
-    return apply(c, option, *used_next ? next : operand);
+    return apply_option(c, option, *used_next ? next : operand);
 }
 
-static int parse(struct command *c, int argc, char **argv)
+static int parse_arguments(struct command *c, int argc, char **argv)
 {
     for (int k = 1; k < argc; k++) {
         int used_next = 0;
@@ -292,8 +293,8 @@ static int parse(struct command *c, int argc, char **argv)
             if (parse_option(c, argv[k], k + 1 < argc ? argv[k + 1] : NULL, &used_next)) return 1;
             if (c->mode == HELP || c->mode == VERSION) return 0;
         } else if (c->options.case_path) {
-            return complain("only one case can be given, not %s and %s", c->options.case_path,
-                            argv[k]);
+            return usage_error("only one case can be given, not %s and %s", c->options.case_path,
+                               argv[k]);
         } else {
             c->options.case_path = argv[k];
         }
@@ -301,7 +302,7 @@ static int parse(struct command *c, int argc, char **argv)
     }
     if (c->mode >= INSPECT || c->options.case_path) return 0;
     fputs(usage, stderr);
-    return complain("%s%s", "no case is given", "");
+    return usage_error("%s%s", "no case is given", "");
 }
 
 /* A template on the standard output, or the names of all. */
@@ -369,8 +370,8 @@ static int execute(struct command *c)
     return sphfsi_exit_status(status, requests.stop);
 }
 
-/* A result file must not get the number of a standard stream that the caller has closed: messages
- * would be written into it. /dev/null is opened for reading, so that writing to the stream still
+/* A result file must not get the number of a standard stream that the caller has closed, or it
+ * would receive messages. /dev/null is opened for reading, so that writing to the stream still
  * fails. */
 static void fill_standard_streams(void)
 {
@@ -385,9 +386,9 @@ int main(int argc, char **argv)
     fill_standard_streams();
     struct command c = {0};
     const char **sets = calloc((size_t)argc + 1, sizeof *sets);
-    if (!sets) return complain("%s%s", "no memory", "");
+    if (!sets) return usage_error("%s%s", "no memory", "");
     c.options.sets = sets;
-    int status = parse(&c, argc, argv);
+    int status = parse_arguments(&c, argc, argv);
     if (!status) status = execute(&c);
     free(sets);
     if (status != 2) return status;

@@ -219,7 +219,8 @@ static void say_section(enum section_id id, const struct sphfsi_options *o)
     char title[SCENE_NAME];
     snprintf(title, sizeof title, "### [%s%s]", info->word, info->named ? " NAME" : "");
     say_paragraph(o, id == SECTION_top ? "### Top of the file" : title);
-    if (section_meaning(id)) say_paragraph(o, section_meaning(id));
+    if (section_meaning((enum section_id)id))
+        say_paragraph(o, section_meaning((enum section_id)id));
     say_paragraph(o, "| key | type | unit | default | range | meaning | example |");
     session_say(o, "|---|---|---|---|---|---|---|");
     for (int k = 0; k < PARAM_COUNT; k++)
@@ -333,7 +334,8 @@ static enum err write_keys(struct json *j, void *unused, struct diag *d)
     json_open(j, NULL, '{');
     for (int id = 0; id < SECTION_COUNT; id++) {
         json_open(j, section_table[id].word, '{');
-        if (section_meaning(id)) json_text(j, "meaning", section_meaning(id));
+        if (section_meaning((enum section_id)id))
+            json_text(j, "meaning", section_meaning((enum section_id)id));
         json_integer(j, "named", section_table[id].named);
         json_open(j, "keys", '{');
         for (int k = 0; k < PARAM_COUNT; k++)
@@ -381,11 +383,11 @@ static void say_source(const char *key, const struct sphfsi_options *o)
     session_say(o, "%.*s", (int)strcspn(line, "\n"), line);
 }
 
-static enum err cite(struct session *x, const struct sphfsi_options *o, const char *path,
+static enum err cite(struct session *session, const struct sphfsi_options *o, const char *path,
                      struct diag *d)
 {
     (void)path, (void)d;
-    const struct scene *const scene = &x->scene;
+    const struct scene *const scene = &session->scene;
     const effect_set fx = effects_of_scene(scene);
     const bool contact = fx & (FX_CONTACT | FX_CONTACT_WALL);
     const int shifting = fx & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
@@ -459,7 +461,7 @@ const char *sphfsi_template(const char *name)
     struct diag d = {.code = ERR_OK};
     struct nearest near = {0};
     char list[256] = "";
-    if (!name) return call_without("template", "name"), NULL;
+    if (!name) return call_null_argument("template", "name"), NULL;
     for (const struct embedded_file *file = embedded_files; file->name; file++) {
         if (!is_template(file)) continue;
         if (strcmp(file->stem, name) == 0) return file->text;

@@ -229,11 +229,11 @@ static void put_head(const struct drawing *g)
     end_text(g);
 }
 
-static enum err draw(struct session *x, const struct sphfsi_options *o, const char *unused,
+static enum err draw(struct session *session, const struct sphfsi_options *o, const char *unused,
                      struct diag *d)
 {
     static const enum kind order[KIND_COUNT] = {KIND_WALL, KIND_FLUID, KIND_SOLID};
-    const struct scene *const scene = &x->scene;
+    const struct scene *const scene = &session->scene;
     char path[PATH_BYTES];
     int length;
     const char *const name = session_name(o, &length);

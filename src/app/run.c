@@ -24,8 +24,8 @@ struct run {
     const struct sphfsi_options *options;
     struct diag *diag;
     struct session session;
-    struct simulation *s; /* the session's */
-    struct run_dir folder;
+    struct simulation *sim; /* of the session */
+    struct run_dir dir;
     struct arena arena;
     struct probes probes;
     struct row_files rows;
@@ -46,8 +46,11 @@ static const double progress_seconds = 0.25;
 
 /* --- output --- */
 
-/* Whether there are rows already: a run that is stopped while it seeks rest has none. */
-static bool goes_on(const struct run *r) { return r->options->restart && !relax_due(r->s); }
+/* Whether a restart continues files of rows: a run stopped while it seeks rest has none. */
+static bool continues_rows(const struct run *r)
+{
+    return r->options->restart && !relax_due(r->sim);
+}
 
 /* A run begins with a snapshot, and without a checkpoint: that state is the case, or the checkpoint
  * of the fork. */
@@ -56,7 +59,7 @@ static void set_intervals(struct run *r, double time)
     const struct scene_output *out = &r->session.scene.output;
     r->due[OUT_SNAPSHOT].interval = out->snapshot_interval;
     r->due[OUT_CHECKPOINT].interval = out->checkpoint_interval;
-    if (goes_on(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
+    if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
     due_pass(&r->due[OUT_CHECKPOINT], time);
 }
 
@@ -80,14 +83,14 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
     r->record.message = message;
     r->record.snapshots_missed = r->image.snapshots_missed;
     r->record.wall_seconds = wall_clock() - r->wall_start;
-    r->record.last = simulation_ledger(r->s);
-    return report_summary(r->folder.path, r->s, &r->record, d);
+    r->record.last = simulation_ledger(r->sim);
+    return report_summary(r->dir.path, r->sim, &r->record, d);
 }
 
 static enum err capture(struct run *r, struct diag *d)
 {
     const double begin = wall_clock();
-    TRY(checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d));
+    TRY(checkpoint_capture(&r->image, r->sim, r->case_text, SPHFSI_VERSION, d));
     r->wall_image = wall_clock();
     r->image_cost = r->wall_image - begin;
     return ERR_OK;
@@ -97,7 +100,7 @@ static enum err capture(struct run *r, struct diag *d)
 static enum err store(struct run *r, struct diag *d)
 {
     TRY(rows_sync(&r->rows, d));
-    return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
+    return checkpoint_store(&r->image, r->dir.path, r->checkpoint, d);
 }
 
 /* [output] snapshot_failure says whether a failure stops the run. If not, the next snapshot is
@@ -105,11 +108,11 @@ static enum err store(struct run *r, struct diag *d)
 static enum err write_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);
-    const enum err e = snapshots_write(&r->snapshots, r->s, &why);
+    const enum err e = snapshots_write(&r->snapshots, r->sim, &why);
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
         return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
     r->image.snapshots_missed++;
-    diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->s->state.time,
+    diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->sim->state.time,
               why.text);
     return ERR_OK;
 }
@@ -127,8 +130,8 @@ static enum err write_checkpoint(struct run *r)
  * written. */
 static enum err write_due(struct run *r)
 {
-    const bool at_end = r->s->state.time >= r->session.scene.top.end_time;
-    const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
+    const bool at_end = r->sim->state.time >= r->session.scene.top.end_time;
+    const double begin = wall_clock(), before = phases_so_far(r->sim), time = r->sim->state.time;
     for (int k = 0; k < OUT_COUNT; k++) {
         const bool due = due_time(&r->due[k]) <= time, of_end = at_end && r->written[k] < time;
         if (k == OUT_SNAPSHOT) r->image.snapshot_of_end = of_end && !due;
@@ -140,7 +143,7 @@ static enum err write_due(struct run *r)
     if (!at_end && image_fraction * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
     /* Evaluations, which the next step uses, are counted in their own phases. */
-    r->s->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->s) - before);
+    r->sim->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->sim) - before);
     return ERR_OK;
 }
 
@@ -162,7 +165,7 @@ static void show_search(struct run *r)
     char text[RELAX_TEXT];
     if (since(&r->wall_progress) < EVERY) return;
     r->wall_progress = wall_clock();
-    relax_progress(r->s, text);
+    relax_progress(r->sim, text);
     session_say(r->options, "%s", text);
 }
 
@@ -174,15 +177,15 @@ static void show_progress(struct run *r, bool finished)
     const double end = r->session.scene.top.end_time, now = wall_clock();
     r->wall_progress = now;
     r->record.wall_seconds = now - r->wall_start;
-    const struct state *st = &r->s->state;
+    const struct state *st = &r->sim->state;
     const double done = st->time - r->record.start_time, left = max2(0, end - st->time);
     const struct sphfsi_progress p = {
         .time = st->time,
         .end_time = end,
         .start_time = r->record.start_time,
         .dt = st->dt,
-        .bound = bound_names[timestep_binding(r->s)],
-        .particle_steps_per_second = report_rate(r->s, &r->record),
+        .bound = bound_names[timestep_binding(r->sim)],
+        .particle_steps_per_second = report_rate(r->sim, &r->record),
         .wall_seconds = r->record.wall_seconds,
         .seconds_left = done > 0 ? r->record.wall_seconds * left / done : -1,
         .steps = st->steps,
@@ -201,9 +204,9 @@ static enum err between_steps(struct run *r)
         if (request) request->checkpoint = 0;
         const double begin = wall_clock();
         TRY(write_checkpoint(r));
-        r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
+        r->sim->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
-    if (relax_due(r->s))
+    if (relax_due(r->sim))
         show_search(r);
     else
         show_progress(r, false);
@@ -211,22 +214,22 @@ static enum err between_steps(struct run *r)
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,
                      "stopped by signal %d at %.6g s; --restart continues from %s",
-                     (int)request->stop, r->s->state.time, r->checkpoint);
+                     (int)request->stop, r->sim->state.time, r->checkpoint);
 }
 
 /* T-78. The rows begin with the state that is found. */
 static enum err relax(struct run *r)
 {
     char found[RELAX_TEXT];
-    if (!relax_due(r->s)) return ERR_OK;
+    if (!relax_due(r->sim)) return ERR_OK;
     session_say(r->options, "seeking a state of rest before t = 0");
-    while (relax_due(r->s)) {
-        TRY(relax_step(r->s, r->diag));
+    while (relax_due(r->sim)) {
+        TRY(relax_step(r->sim, r->diag));
         TRY(between_steps(r));
     }
-    relax_text(r->s, found);
+    relax_text(r->sim, found);
     session_say(r->options, "%s", found);
-    r->record.first = simulation_ledger(r->s);
+    r->record.first = simulation_ledger(r->sim);
     return ERR_OK;
 }
 
@@ -234,11 +237,11 @@ static enum err relax(struct run *r)
 static enum err advance(struct run *r)
 {
     TRY(relax(r));
-    rows_follow(&r->rows, r->s);
-    TRY(observe(r->s, r->s->state.time, r->diag));
+    rows_follow(&r->rows, r->sim);
+    TRY(observe(r->sim, r->sim->state.time, r->diag));
     TRY(write_due(r));
-    while (r->s->state.time < r->session.scene.top.end_time) {
-        TRY(simulation_step(r->s, (double)INFINITY, r->diag));
+    while (r->sim->state.time < r->session.scene.top.end_time) {
+        TRY(simulation_step(r->sim, (double)INFINITY, r->diag));
         TRY(write_due(r));
         TRY(between_steps(r));
     }
@@ -247,7 +250,7 @@ static enum err advance(struct run *r)
 
 /* --- end --- */
 
-/* What the user would otherwise have to look up: whether anything got lost. */
+/* Speed, energy gained, particles lost, and errors against references. */
 static void say_end(const struct sphfsi_options *o, const struct simulation *sim,
                     const struct record *r)
 {
@@ -276,8 +279,8 @@ static void say_end(const struct sphfsi_options *o, const struct simulation *sim
     }
 }
 
-/* How a stopped run continues: after a guard from the checkpoint with steps half as long, or, where
- * these would stop it again, what it takes once the case is changed; else a restart. */
+/* Says how a stopped run continues: by a restart; after a guard, by a fork with steps half as long.
+ * Where these would stop it again, the case must be changed first. */
 static void say_next(const struct sphfsi_options *o, const struct simulation *sim,
                      const char *checkpoint, bool guard)
 {
@@ -310,7 +313,7 @@ static void save_last_state(struct run *r, enum err why)
     if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
         diag_warn(&second, "the last valid state could not be saved: %s", second.text);
     second.code = ERR_OK;
-    if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->s, &second))
+    if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->sim, &second))
         diag_warn(&second, "the state at the stop could not be saved: %s", second.text);
     second.code = ERR_OK;
     const char *reason = why == ERR_GUARD       ? "guard"
@@ -323,7 +326,7 @@ static void save_last_state(struct run *r, enum err why)
         session_say(r->options, "last valid state, for a restart: %s; state at the stop: %s",
                     r->checkpoint, r->snapshots.path);
     if (r->checkpoint[0] && (why == ERR_GUARD || why == ERR_INTERRUPT))
-        say_next(r->options, r->s, r->checkpoint, why == ERR_GUARD);
+        say_next(r->options, r->sim, r->checkpoint, why == ERR_GUARD);
 }
 
 /* --- start --- */
@@ -355,7 +358,7 @@ static enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_B
 /* Writes case.cfg.part, and keeps its text in r->case_text. */
 static enum err write_case(struct run *r, char part[PATH_BYTES])
 {
-    TRY(path_join(part, r->folder.path, "case.cfg.part", r->diag));
+    TRY(path_join(part, r->dir.path, "case.cfg.part", r->diag));
     unlink(part); /* a killed run may have left one */
     TRY(scene_write(&r->session.scene, part, r->diag));
     size_t size;
@@ -364,37 +367,36 @@ static enum err write_case(struct run *r, char part[PATH_BYTES])
     return e;
 }
 
-static enum err put_case(struct run *r, const char *part)
+static enum err replace_case(struct run *r, const char *part)
 {
     char path[PATH_BYTES];
-    TRY(path_join(path, r->folder.path, "case.cfg", r->diag));
+    TRY(path_join(path, r->dir.path, "case.cfg", r->diag));
     if (rename(part, path) != 0)
         return diag_fail(r->diag, ERR_IO, "%s: cannot be replaced by %s: %s; nothing was started",
                          path, part, strerror(errno));
-    return directory_sync(r->folder.path, r->diag);
+    return directory_sync(r->dir.path, r->diag);
 }
 
 static enum err start_fresh(struct run *r)
 {
-    TRY(snapshots_create(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
-                         r->diag));
-    TRY(rows_start(&r->rows, r->folder.path, r->s->state.time, r->diag));
+    TRY(snapshots_create(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, r->diag));
+    TRY(rows_start(&r->rows, r->dir.path, r->sim->state.time, r->diag));
     for (int k = 0; k < OUT_COUNT; k++) r->written[k] = -1;
-    r->record.first = simulation_ledger(r->s);
+    r->record.first = simulation_ledger(r->sim);
     return ERR_OK;
 }
 
 static enum err start_restart(struct run *r)
 {
-    const double time = r->s->state.time;
+    const double time = r->sim->state.time;
     /* An uninterrupted run would not have the snapshot of an earlier end. */
     const double kept = r->image.snapshot_of_end ? nextafter(time, -1) : time;
     /* First, so that a kill in between leaves no checkpoint that is newer than the rows. */
-    TRY(checkpoint_remove_others(r->folder.path, r->s->state.steps, r->diag));
-    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, kept,
+    TRY(checkpoint_remove_others(r->dir.path, r->sim->state.steps, r->diag));
+    TRY(snapshots_resume(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, kept,
                          &r->written[OUT_SNAPSHOT], r->diag));
     r->written[OUT_CHECKPOINT] = time;
-    return rows_resume(&r->rows, r->folder.path, time, &r->record.first, r->diag);
+    return rows_resume(&r->rows, r->dir.path, time, &r->record.first, r->diag);
 }
 
 /* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in
@@ -403,7 +405,7 @@ static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
     const char *file = o->fork ? o->fork : o->restart_file;
-    if (!file) return checkpoint_newest(&r->image, r->folder.path, r->restarted_from, r->diag);
+    if (!file) return checkpoint_newest(&r->image, r->dir.path, r->restarted_from, r->diag);
     if (o->fork) return checkpoint_find(&r->image, file, r->restarted_from, r->diag);
     snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
     return checkpoint_read(&r->image, file, r->diag);
@@ -424,17 +426,17 @@ static enum err load_checkpoint(struct run *r)
                   "%s was written by version %s, but this is %s: results may differ "
                   "in their last digits",
                   r->restarted_from, info.version, SPHFSI_VERSION);
-    TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
-             : checkpoint_apply(&r->image, r->s, r->diag));
+    TRY(fork ? checkpoint_fork(&r->image, r->sim, r->diag)
+             : checkpoint_apply(&r->image, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
-    const double last = r->s->state.dt * (r->s->effects & FX_FLUID ? 1 : CHECK_INTERVAL);
-    if (r->s->state.time - last >= r->session.scene.top.end_time)
+    const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : CHECK_INTERVAL);
+    if (r->sim->state.time - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,
             "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
-            what, r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
+            what, r->restarted_from, r->sim->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
-                r->s->state.time, (long long)r->s->state.steps);
+                r->sim->state.time, (long long)r->sim->state.steps);
     return ERR_OK;
 }
 
@@ -447,19 +449,19 @@ static enum err begin_run(struct run *r)
     const enum err e = r->options->restart || r->options->fork ? load_checkpoint(r) : ERR_OK;
     if (e) {
         unlink(part);
-        run_dir_withdraw(&r->folder); /* nothing was started */
+        run_dir_withdraw(&r->dir); /* nothing was started */
         return e;
     }
-    TRY(put_case(r, part));
-    TRY(goes_on(r) ? start_restart(r) : start_fresh(r));
-    const double time = r->s->state.time;
+    TRY(replace_case(r, part));
+    TRY(continues_rows(r) ? start_restart(r) : start_fresh(r));
+    const double time = r->sim->state.time;
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
     r->record.restarted_from = r->options->fork ? "" : r->restarted_from;
     r->record.forked_from = r->options->fork ? r->restarted_from : "";
     r->record.threads = thread_count();
     r->record.start_time = time;
-    r->record.start_particle_steps = r->s->state.particle_steps;
+    r->record.start_particle_steps = r->sim->state.particle_steps;
     r->wall_start = r->wall_checkpoint = r->wall_progress = wall_clock();
     if (scene_given(&r->session.scene, SECTION_top, 0, "accuracy"))
         evidence_say(&r->session.scene, r->options);
@@ -476,12 +478,11 @@ static enum err simulate(struct run *r)
     score_references(r);
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
-    session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
-                r->folder.path, r->s->state.time, (long long)r->s->state.steps,
-                r->record.wall_seconds);
-    say_end(r->options, r->s, &r->record);
+    session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time", r->dir.path,
+                r->sim->state.time, (long long)r->sim->state.steps, r->record.wall_seconds);
+    say_end(r->options, r->sim, &r->record);
     if (r->session.scene.n_probe > 0)
-        session_say(r->options, "draw it with tools/plot_probes.py %s", r->folder.path);
+        session_say(r->options, "draw it with tools/plot_probes.py %s", r->dir.path);
     return ERR_OK;
 }
 
@@ -492,17 +493,17 @@ static void end_run(struct run *r)
     checkpoint_free(&r->image);
     arena_free(&r->arena);
     free(r->case_text);
-    run_dir_close(&r->folder);
+    run_dir_close(&r->dir);
 }
 
 static enum err run_session(struct run *r, const char *path, enum run_dir_use use)
 {
-    TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
-    TRY(rows_create(&r->rows, &r->probes, r->s, true, &r->arena, r->diag));
+    TRY(probes_create(&r->probes, r->sim, &r->arena, r->diag));
+    TRY(rows_create(&r->rows, &r->probes, r->sim, true, &r->arena, r->diag));
     TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
                         &r->arena, r->diag));
     r->record.references = &r->references;
-    TRY(run_dir_open(&r->folder, path, use, r->diag));
+    TRY(run_dir_open(&r->dir, path, use, r->diag));
     TRY(begin_run(r));
     return simulate(r);
 }
@@ -520,11 +521,11 @@ static enum err run_case(const struct sphfsi_options *o, struct diag *d)
     if (!r) return diag_fail(d, ERR_MEMORY, "run: no memory for %zu bytes", sizeof *r);
     r->options = o;
     r->diag = d;
-    r->s = &r->session.simulation;
-    r->folder.lock = -1;
+    r->sim = &r->session.simulation;
+    r->dir.lock = -1;
     enum err e = session_open(&r->session, o, d);
     if (!e) {
-        check_simulation(r->s, d);
+        check_simulation(r->sim, d);
         e = run_session(r, path, use);
         end_run(r);
         session_close(&r->session);

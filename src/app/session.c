@@ -69,7 +69,7 @@ enum sphfsi_status call_result(const struct diag *d, enum err e)
     return (enum sphfsi_status)e;
 }
 
-enum sphfsi_status call_without(const char *name, const char *what)
+enum sphfsi_status call_null_argument(const char *name, const char *what)
 {
     struct diag d = {.code = ERR_OK};
     return call_result(&d, diag_fail(&d, ERR_INPUT, "%s: the %s is NULL", name, what));
@@ -149,21 +149,21 @@ const char *session_name(const struct sphfsi_options *o, int *length)
     return name;
 }
 
-/* No run has more steps, nor a file more rows. */
-static const double most_counts = 1e10;
+/* Limit for the steps of a run and the rows of a file. */
+static const double max_count = 1e10;
 
-/* A key is a time between two of `what`; 0: none is set. */
+/* `between` is the value of a key: the time between two of `what`; 0: the key is not set. */
 static enum err check_count(const struct scene *scene, enum section_id section, int index,
                             const char *key, double between, const char *what, struct diag *d)
 {
     const double end = scene->top.end_time, n = end / between;
     char place[LOCATION_TEXT];
-    if (between == 0 || n <= most_counts) return ERR_OK;
+    if (between == 0 || n <= max_count) return ERR_OK;
     scene_location(scene, scene_line(scene, section, index, key), place);
     return diag_fail(d, ERR_INPUT,
                      "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose "
                      "at least %.3g s",
-                     place, key, between, n, what, end, most_counts, end / most_counts);
+                     place, key, between, n, what, end, max_count, end / max_count);
 }
 
 static enum err check_counts(const struct scene *scene, struct diag *d)
@@ -184,7 +184,7 @@ static enum err check_counts(const struct scene *scene, struct diag *d)
 
 /* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes
  * the same rows as the whole one. */
-static enum err settle_times(struct scene *scene, double until, struct diag *d)
+static enum err set_default_times(struct scene *scene, double until, struct diag *d)
 {
     struct scene_output *out = &scene->output;
     const double end = scene->top.end_time;
@@ -216,8 +216,9 @@ static int threads_asked(const struct sphfsi_options *o, int offered, const char
     return o->threads > 0 ? o->threads : variable && *variable ? offered : 0;
 }
 
-/* The number of threads for a scene, at most: what the options or OMP_NUM_THREADS ask for, within
- * what it can use, which is warned of; else `offered` or fewer, as its particles are. */
+/* The largest number of threads for a scene: what the options or OMP_NUM_THREADS ask for, reduced
+ * with a warning to what the scene can use. Without either: `offered`, or fewer for few particles.
+ */
 static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                           struct diag *d)
 {
@@ -234,45 +235,46 @@ static int choose_threads(const struct scene *scene, const struct sphfsi_options
     return limit;
 }
 
-enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err session_read(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     TRY(check_options(o, d));
-    const int most = THREADS_PER_CORE * thread_cores();
+    const int largest = THREADS_PER_CORE * thread_cores();
     const int asked = o->threads > 0 ? o->threads : thread_count();
-    thread_use(asked < most ? asked : most);
+    thread_use(asked < largest ? asked : largest);
     if (o->case_text)
-        TRY(scene_load_text(&x->scene, o->case_text, o->case_path ? o->case_path : "case",
+        TRY(scene_load_text(&session->scene, o->case_text, o->case_path ? o->case_path : "case",
                             o->n_sets, o->sets, d));
     else
-        TRY(scene_load(&x->scene, o->case_path, o->n_sets, o->sets, d));
-    enum err e = check_scene(&x->scene, d);
-    if (!e) e = settle_times(&x->scene, o->until, d);
-    if (e) scene_free(&x->scene);
+        TRY(scene_load(&session->scene, o->case_path, o->n_sets, o->sets, d));
+    enum err e = check_scene(&session->scene, d);
+    if (!e) e = set_default_times(&session->scene, o->until, d);
+    if (e) scene_free(&session->scene);
     return e;
 }
 
-void session_close(struct session *x)
+void session_close(struct session *session)
 {
-    simulation_free(&x->simulation);
-    scene_free(&x->scene);
+    simulation_free(&session->simulation);
+    scene_free(&session->scene);
 }
 
-/* The same limit for steps that the program chooses. */
-static enum err check_steps(const struct session *x, struct diag *d)
+/* The limit for steps that the program chooses. */
+static enum err check_steps(const struct session *session, struct diag *d)
 {
-    const struct simulation *const sim = &x->simulation;
+    const struct simulation *const sim = &session->simulation;
     const double step = timestep_longest(sim);
-    const double end = x->scene.top.end_time, n = end / step;
-    if (n <= most_counts) return ERR_OK;
+    const double end = session->scene.top.end_time, n = end / step;
+    if (n <= max_count) return ERR_OK;
     char place[LOCATION_TEXT];
-    scene_location(&x->scene, scene_line(&x->scene, SECTION_top, 0, "end_time"), place);
+    scene_location(&session->scene, scene_line(&session->scene, SECTION_top, 0, "end_time"), place);
     return diag_fail(d, ERR_INPUT,
                      "%s: the run needs about %.3g steps of %.3g s until end_time = %g s, more "
                      "than the limit of %g; choose at most %.3g s",
-                     place, n, step, end, most_counts, most_counts * step);
+                     place, n, step, end, max_count, max_count * step);
 }
 
-/* A problem that is found where no case file is known, such as in the cells of the domain. */
+/* Puts the name of the case before a message from code that does not know it, such as that of the
+ * cells of the domain. */
 static void name_case(const struct scene *scene, struct diag *d)
 {
     char place[LOCATION_TEXT], text[sizeof d->text];
@@ -284,19 +286,19 @@ static void name_case(const struct scene *scene, struct diag *d)
              text);
 }
 
-enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err session_open(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     const int offered = thread_count();
-    TRY(session_read(x, o, d));
-    thread_use(choose_threads(&x->scene, o, offered, d));
-    const enum err e = simulation_create(&x->simulation, &x->scene, d);
+    TRY(session_read(session, o, d));
+    thread_use(choose_threads(&session->scene, o, offered, d));
+    const enum err e = simulation_create(&session->simulation, &session->scene, d);
     if (e) {
-        name_case(&x->scene, d);
-        scene_free(&x->scene);
+        name_case(&session->scene, d);
+        scene_free(&session->scene);
         return e;
     }
-    const enum err counted = check_steps(x, d);
-    if (counted) session_close(x);
+    const enum err counted = check_steps(session, d);
+    if (counted) session_close(session);
     return counted;
 }
 
@@ -305,29 +307,29 @@ enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *g
 {
     struct call c;
     enum err e = call_begin(&c, name, given);
-    struct session *const x = e ? NULL : calloc(1, sizeof *x);
-    if (!e && !x) e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory", name);
+    struct session *const session = e ? NULL : calloc(1, sizeof *session);
+    if (!e && !session) e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory", name);
     if (!e)
-        e = simulation ? session_open(x, &c.options, &c.diag)
-                       : session_read(x, &c.options, &c.diag);
+        e = simulation ? session_open(session, &c.options, &c.diag)
+                       : session_read(session, &c.options, &c.diag);
     if (!e) {
-        e = act(x, &c.options, path, &c.diag);
-        session_close(x);
+        e = act(session, &c.options, path, &c.diag);
+        session_close(session);
     }
-    free(x);
+    free(session);
     return call_end(&c, e);
 }
 
-static enum err write_effective(struct session *x, const struct sphfsi_options *o, const char *path,
-                                struct diag *d)
+static enum err write_effective(struct session *session, const struct sphfsi_options *o,
+                                const char *path, struct diag *d)
 {
     (void)o;
-    return scene_write(&x->scene, path, d);
+    return scene_write(&session->scene, path, d);
 }
 
 enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
 {
-    if (!path) return call_without("effective", "path");
+    if (!path) return call_null_argument("effective", "path");
     return call_of_case("case", options, false, write_effective, path);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A call of the public header: its options with the callbacks guarded, what it borrowed of the
- * host's thread, its result and sentence; a scene and its simulation, opened with these options. */
+ * A call of the public header: its options, what it must give back to the calling program, its
+ * result and message. A session: a scene and its simulation, opened with these options. */
 #ifndef SPHFSI_APP_SESSION_H
 #define SPHFSI_APP_SESSION_H
 
@@ -11,10 +11,9 @@
 #include "time/simulation.h"
 
 struct call {
-    struct sphfsi_options
-        options; /* the host's; callbacks go through guards that have its settings */
-    const struct sphfsi_options *given; /* by the host */
-    struct host host;
+    const struct sphfsi_options *given; /* by the calling program */
+    struct sphfsi_options options;      /* the same with callbacks that restore its settings */
+    struct host host;                   /* its settings: floating point, threads */
     struct diag diag;
 };
 
@@ -22,14 +21,14 @@ struct call {
 enum err call_begin(struct call *c, const char *name, const struct sphfsi_options *given)
     SPHFSI_CHECKED;
 
-/* Gives the host its settings back. */
+/* Gives the calling program its settings back. */
 enum sphfsi_status call_end(struct call *c, enum err e);
 
 /* The result of a failure or success, its sentence kept for sphfsi_error. */
 enum sphfsi_status call_result(const struct diag *d, enum err e);
 
 /* The failure of a function that was handed NULL. */
-enum sphfsi_status call_without(const char *name, const char *what);
+enum sphfsi_status call_null_argument(const char *name, const char *what);
 
 struct session {
     struct scene scene;
@@ -38,13 +37,13 @@ struct session {
 
 /* Reads the case, sets default intervals of [output], applies --until. On failure
  * nothing remains to be freed. */
-enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err session_read(struct session *session, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
 /* session_read, the number of threads, and the simulation at time zero. */
-enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err session_open(struct session *session, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
-void session_close(struct session *x);
+void session_close(struct session *session);
 
 /* The name of the case: that of its file without folder and ending, `length` characters. */
 const char *session_name(const struct sphfsi_options *o, int *length);
@@ -63,8 +62,8 @@ enum err session_json(const struct sphfsi_options *o, json_writer *write, void *
                       struct diag *d) SPHFSI_CHECKED;
 
 /* An action on the scene of a case, or on its simulation; `path` is where to write, or NULL. */
-typedef enum err case_action(struct session *x, const struct sphfsi_options *o, const char *path,
-                             struct diag *d);
+typedef enum err case_action(struct session *session, const struct sphfsi_options *o,
+                             const char *path, struct diag *d);
 
 /* A whole call of the public header that does something with a case: with its scene, or with the
  * simulation at time zero. */

@@ -161,7 +161,8 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
     const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h,
                  largest = scene_open_range(scene, open).largest,
                  stiffness = scene->rho0 * square(scene->c0);
-    const int line = scene_line(scene, open->common->section, open->common->index, "absorb");
+    const int line =
+        scene_line(scene, (enum section_id)open->common->section, open->common->index, "absorb");
     if (open->kind == OPEN_VELOCITY) {
         warn_of_speed(check, open->common->line, largest, "[%s %s] gives the fluid", open->word,
                       open->common->name);
