@@ -1,9 +1,38 @@
 /* SPDX-License-Identifier: MIT
- * The advance of fluid and structure, which all integrators share. */
+ * The state at time zero, and what a step consists of: evaluation of the rates, advance of fluid
+ * and structure, sorting into cells. All integrators share it. */
 #ifndef SPHFSI_TIME_ADVANCE_H
 #define SPHFSI_TIME_ADVANCE_H
 
 #include "time/state.h"
+
+/* --- initial.c --- */
+
+/* Builds all particles and models of sim->scene; sim->effects and the integrator are set. */
+enum err initial_state(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* --- evaluation.c --- */
+
+/* One evaluation of the fluid's rates and of the fluid's force on the solid, with walls at their
+ * positions at `time`. */
+void evaluate_fluid(struct simulation *sim, double time);
+
+/* The same for the state at the start of a step. Not repeated if output has just evaluated it. The
+ * acoustic damper's density then follows, once a step (T-9b); an evaluation for output changes
+ * nothing. */
+void evaluate_start(struct simulation *sim);
+
+/* Calls the accelerations of the program that uses the library, for a kind at a time. */
+void find_external(struct simulation *sim, enum kind kind, double time);
+
+/* Sets position, velocity and acceleration of moving walls at a time. */
+void move_walls(struct simulation *sim, double time);
+
+/* Brings DERIVED fields that output uses (pressure of wall and solid; displacement gradient) up to
+ * date without changing the state. */
+void simulation_refresh(struct simulation *sim);
+
+/* --- advance.c --- */
 
 /* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end
  * - 1; `by` holds its parameters. Finds their extremes while they are in the caches. */
@@ -22,7 +51,43 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 void update_extremes(struct simulation *sim);
 void find_speed(struct simulation *sim);
 
-/* The integrators, each in a file of its own. */
+/* --- sorting.c --- */
+
+/* Sorts fluid, structure and moving walls into cells; removes fluid outside the domain. */
+enum err sort_particles(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Whether the cells may miss a pair at the next evaluations. */
+bool sorting_due(struct simulation *sim);
+
+/* Measures the skin that is left. */
+void find_skin_left(struct simulation *sim);
+
+/* Subtracts the largest distance that two particles can have moved in the last step from the
+ * skin that is left; `speed2_before`: of the fluid before it. */
+void use_skin_left(struct simulation *sim, double speed2_before);
+
+/* Clears what the fluid has given to particles of walls or structures. Evaluations skip those
+ * without fluid nearby, so this is done before the cells change. */
+void clear_fluid_sums(struct particles *particles);
+
+/* T-45: removes the tension of fluid particles far below the reference density with almost no
+ * neighbours. To be called after a step, while cells are valid. */
+void limit_isolated_tension(struct simulation *sim);
+
+/* Particles of all kinds within the kernel's reach of a point. */
+int particles_near(const struct simulation *sim, double x, double y);
+
+/* --- solid_steps.c --- */
+
+/* Up to 16 steps of solids without fluid, which end at t_limit at the latest. The observer sees the
+ * state before them, and within them the states on both sides of the time that it waits for. */
+enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
+/* One step of rigid bodies without fluid and solids. */
+enum err rigid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
+/* --- the integrators, each in a file of its own --- */
+
 extern const struct integrator integrator_symplectic; /* Eqs. 22-24 */
 extern const struct integrator integrator_verlet;     /* Eqs. 25-27 */
 extern const struct integrator integrator_leapfrog;   /* T-32a, T-32b */

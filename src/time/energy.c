@@ -8,7 +8,7 @@
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
-#include "time/evaluation.h"
+#include "time/advance.h"
 
 /* --- energies --- */
 

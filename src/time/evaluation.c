@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Evaluations of the rates, with moving walls, forces of the program and open boundaries. */
-#include "time/evaluation.h"
+#include "time/advance.h"
 
 #include <float.h>
 #include <math.h>

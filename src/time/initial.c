@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "time/initial.h"
+#include "time/advance.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,9 +7,6 @@
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
-#include "time/advance.h"
-#include "time/evaluation.h"
-#include "time/sorting.h"
 #include "time/timestep.h"
 
 static unsigned groups_of(const struct simulation *sim, enum kind kind)

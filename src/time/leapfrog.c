@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "time/advance.h"
-#include "time/evaluation.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "implicit/equilibrium.h"
-#include "time/evaluation.h"
+#include "time/advance.h"
 #include "time/simulation.h"
 #include "time/timestep.h"
 #include "time/energy.h"

@@ -6,12 +6,7 @@
 #include <string.h>
 
 #include "implicit/implicit.h"
-#include "time/advance.h"
 #include "time/guards.h"
-#include "time/initial.h"
-#include "time/solid_steps.h"
-#include "time/sorting.h"
-#include "time/tension.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

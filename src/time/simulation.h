@@ -4,7 +4,7 @@
 #ifndef SPHFSI_TIME_SIMULATION_H
 #define SPHFSI_TIME_SIMULATION_H
 
-#include "time/evaluation.h"
+#include "time/advance.h"
 #include "time/state.h"
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the

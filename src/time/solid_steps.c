@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Steps of a solid without fluid. */
-#include "time/solid_steps.h"
+#include "time/advance.h"
 
 #include <math.h>
 
 #include "implicit/implicit.h"
-#include "time/advance.h"
-#include "time/evaluation.h"
 #include "time/guards.h"
 #include "time/timestep.h"
 #include "time/energy.h"

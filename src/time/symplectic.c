@@ -4,7 +4,6 @@
  * sides over the whole step. */
 #include "coupling/motion.h"
 #include "time/advance.h"
-#include "time/evaluation.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

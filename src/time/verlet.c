@@ -2,7 +2,6 @@
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
 #include "time/advance.h"
-#include "time/evaluation.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

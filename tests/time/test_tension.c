@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Drops of a few particles, which tension would bind to each other for ever (T-45). */
-#include "time/tension.h"
+#include "time/advance.h"
 
 #include "output/checkpoint.h"
 #include "time/energy.h"
-#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 
