@@ -1,4 +1,5 @@
 # Tests and short runs under checkers, and tests that take long. ARGS='...' goes to the tool.
+# QUICK=1: one target for five seconds (fuzz), one effect (absence).
 #
 #   make test-sanitize   tests with gcc's address and undefined-behaviour sanitizers
 #   make test-thread     short runs and tests with clang's thread sanitizer
@@ -52,13 +53,13 @@ faults: $(PROGRAM)
 	   agree/test_restart_cases; do bash tests/$$t.sh; done
 
 absence:
-	@SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py --each
+	@SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py --each $(if $(QUICK),TENSILE)
 
 random-cases: $(PROGRAM)
 	@$(PROJECT_PYTHON) tests/fault/random_cases.py --all-builds $(ARGS)
 
 fuzz:
-	@tests/fuzz/fuzz.sh $(ARGS)
+	@tests/fuzz/fuzz.sh $(or $(ARGS),$(if $(QUICK),5 expr))
 
 mutants:
 	@$(PROJECT_PYTHON) tests/mutants/mutants.py $(ARGS)

@@ -26,8 +26,10 @@ UNITS = {"s": 1, "min": 60, "h": 3600}
 
 def arguments():
     parser = options(__doc__)
-    parser.add_argument("cases", nargs="*", help="beginnings of names; all without")
-    parser.add_argument("--seconds", type=float, default=6, help="aimed at for a run, as foreseen")
+    parser.add_argument("cases", nargs="*", default=["gate"] if QUICK else [],
+                        help="beginnings of names; all without")
+    parser.add_argument("--seconds", type=float, default=1 if QUICK else 6,
+                        help="aimed at for a run, as foreseen")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
     parser.add_argument("--data", type=Path, default=OUT / "forecast.json")
     parser.add_argument("--no-report", action="store_true", help="only the data")

@@ -24,7 +24,7 @@
 validate_TOOL            := tools/report/validation.py
 accuracy_TOOL            := tools/report/accuracy.py
 forecast_TOOL            := tools/report/forecast.py
-stability_TOOL           := tools/report/stability.py --report --keep
+stability_TOOL           := tools/report/stability.py --report $(if $(QUICK),--quick,--keep)
 stability-map_TOOL       := tools/report/stability_map.py
 stability-substeps_TOOL  := tools/report/stability_substeps.py
 verify-fluid_TOOL        := tools/report/verify_fluid.py
@@ -55,7 +55,10 @@ help-reports:
 	@sed -n '/^#/!q; s/^# \{0,1\}//p' tools/report/report.mk
 
 # Those that the documents show.
+GALLERY := $(if $(QUICK),build/quick,runs)/elastic_valve
 gallery: $(PROGRAM)
-	@[ -e runs/elastic_valve/summary.json ] || ./$(PROGRAM) cases/elastic_valve.cfg --quiet
-	@$(PROJECT_PYTHON) tools/plot_fields.py runs/elastic_valve --time 0.75 --field velocity \
-	  --out docs/img/elastic_valve.png
+	@mkdir -p $(dir $(GALLERY))
+	@[ -e $(GALLERY)/summary.json ] || ./$(PROGRAM) cases/elastic_valve.cfg --quiet \
+	  --out $(GALLERY) $(if $(QUICK),--set 'dp=4 mm' --until 0.05)
+	@$(PROJECT_PYTHON) tools/plot_fields.py $(GALLERY) --time $(if $(QUICK),0.05,0.75) --field velocity \
+	  --out $(if $(QUICK),build/quick,docs/img)/elastic_valve.png

@@ -228,7 +228,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--draw", action="store_true", help="only draw the results that are kept")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
-    parser.add_argument("--most", type=int, help="at most so many plates in this call")
+    parser.add_argument("--most", type=int, default=10 if QUICK else None,
+                        help="at most so many plates in this call")
     args = parser.parse_args()
     if not args.draw:
         os.nice(10)

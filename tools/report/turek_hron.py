@@ -23,7 +23,7 @@ from palette import shrink
 from runs import Job
 
 CASES = ROOT / "cases" / "turek_hron"
-KEPT = OUT / "turek_hron.json"
+KEPT = ROOT / "docs" / "results" / "turek_hron.json"
 PAGE = OUT / "turek_hron.md"
 
 # Mean, amplitude and frequency (Hz) in mm and N/m; amplitude and frequency None: steady. Turek and
