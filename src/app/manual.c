@@ -27,6 +27,7 @@ static const char *const section_meanings[][2] = {
      "their other values must be equal."},
     {"wall", "Rigid bodies, at rest or with a prescribed motion."},
     {"rigid", "Rigid bodies that move freely."},
+    {"damping", "A zone in which the fluid is damped, so that waves leave."},
     {"spring", "Springs, dampers and mooring lines between rigid bodies, or from one to a place."},
     {"solid", "Elastic bodies."},
     {"contact", "Parameters of contact between bodies, or no contact."},

@@ -283,6 +283,14 @@ static enum err check_motion(struct reader *r, const void *section)
 
 /* --- probes --- */
 
+static enum err check_damping(struct reader *r, const void *section)
+{
+    const struct scene_damping *const zone = section;
+    if (zone->from[0] == zone->to[0] && zone->from[1] == zone->to[1])
+        return bad_section(r, "has no length, because `from` and `to` are the same point");
+    return ERR_OK;
+}
+
 /* Each body once: a force that counts twice is a mistake. A reaction is that of clamps
  * and hinges. */
 static enum err check_body(struct reader *r, const struct scene_probe *p)
@@ -506,21 +514,14 @@ enum err case_check(struct reader *r)
         enum section_id section;
         enum err (*check)(struct reader *r, const void *section);
     } checks[] = {
-        {SECTION_top, check_top},
-        {SECTION_numerics, check_numerics},
-        {SECTION_output, check_output},
-        {SECTION_relax, check_relax},
-        {SECTION_fluid, check_fluid},
-        {SECTION_solid, check_solid},
-        {SECTION_rigid, case_check_rigid},
-        {SECTION_spring, case_check_spring},
-        {SECTION_motion, check_motion},
-        {SECTION_inflow, case_check_open},
-        {SECTION_outflow, case_check_open},
-        {SECTION_probe, check_probe},
-        {SECTION_contact, check_contact},
-        {SECTION_load, check_load},
-        {SECTION_reference, check_reference},
+        {SECTION_top, check_top},          {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},    {SECTION_relax, check_relax},
+        {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
+        {SECTION_rigid, case_check_rigid}, {SECTION_spring, case_check_spring},
+        {SECTION_damping, check_damping},  {SECTION_motion, check_motion},
+        {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
+        {SECTION_probe, check_probe},      {SECTION_contact, check_contact},
+        {SECTION_load, check_load},        {SECTION_reference, check_reference},
     };
     if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)
         return bad_line(r, 1,

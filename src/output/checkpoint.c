@@ -108,6 +108,7 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
     struct open *const open = &sim->open;
     const unsigned run = OWNER_STATE;
     const size_t n_open = (size_t)open->n, n_carried = (size_t)sim->carried.n;
+    const size_t zones = (size_t)sim->damping.n, n_rigid = (size_t)sim->rigid.n * RIGID_NUMBERS;
     add(list,
         (struct part){"snapshots_missed", run, ITEM_INT64, &m->snapshots_missed, 1, FORK_SKIPS});
     add(list,
@@ -127,9 +128,10 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
                                 FORK_LOADS});
         add(list, (struct part){"open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS});
     }
-    if (sim->rigid.n > 0)
-        add(list, (struct part){"rigid", run, ITEM_DOUBLE, sim->rigid.state,
-                                (size_t)sim->rigid.n * RIGID_NUMBERS, FORK_LOADS});
+    if (zones > 0)
+        add(list, (struct part){"zones", run, ITEM_DOUBLE, sim->damping.taken, zones, FORK_LOADS});
+    if (n_rigid > 0)
+        add(list, (struct part){"rigid", run, ITEM_DOUBLE, sim->rigid.state, n_rigid, FORK_LOADS});
     if (n_carried > 0)
         add(list,
             (struct part){"rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS});

@@ -91,6 +91,8 @@ enum err ranges_check(const struct simulation *sim, struct diag *d)
         TRY(check_fields(&sim->kind[k], (enum kind)k, d));
     }
     TRY(check_open(&sim->open, d));
+    for (int k = 0; k < sim->damping.n; k++)
+        TRY(range_check("damping", sim->damping.taken[k], 0, FINITE, d));
     for (int k = 0; k < sim->rigid.n * RIGID_NUMBERS; k++)
         TRY(range_check("rigid", ((const double *)sim->rigid.state)[k], -FINITE, FINITE, d));
     TRY(check_state(sim, d));

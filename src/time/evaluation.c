@@ -71,6 +71,8 @@ void evaluate_fluid(struct simulation *sim, double time)
     coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
     phase_add(sim, PHASE_wall, clock);
     if (sim->effects & FX_OPEN) open_hold(&sim->open, &sim->fluid.k, &sim->kind[KIND_FLUID]);
+    if (sim->effects & FX_DAMPING_ZONE)
+        damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->kind[KIND_FLUID]);
     if (sim->external[KIND_FLUID].at) add_external(sim, time);
     if (sim->external[KIND_SOLID].at) find_external(sim, KIND_SOLID, time);
 }

@@ -159,7 +159,8 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
         if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&sim->cells, axis, reach, d));
     TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->effects, sim->kind, &sim->cells, d));
     start_fluid(sim);
-    return ERR_OK;
+    if (!(sim->effects & FX_DAMPING_ZONE)) return ERR_OK;
+    return damping_create(&sim->damping, &sim->arena, scene, sim->kind[KIND_FLUID].capacity, d);
 }
 
 static enum err create_solid(struct simulation *sim, struct diag *d)

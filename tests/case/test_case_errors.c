@@ -41,8 +41,8 @@ static const struct {
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
-     "fluid, "
-     "wall, solid, rigid, spring, contact, load, motion, inflow, outflow, probe, reference"},
+     "fluid, wall, solid, rigid, spring, damping, contact, load, motion, inflow, outflow, probe, "
+     "reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
      "`laminar_viscosity`?"},

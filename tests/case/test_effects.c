@@ -74,6 +74,8 @@ static const struct {
      EFFECT_MOTION, "line 8: [wall bed] motion"},
     {TOP FLUID "[rigid r]\nshape = box 0, 0.2, 0.1, 0.3\ndensity = 500\n",
      FX_FLUID | FX_WALL | FX_MOTION | FX_RIGID, EFFECT_RIGID, "line 6: [rigid r]"},
+    {TOP FLUID "[damping d]\nto = 1, 0\nrate = 5\n", FX_FLUID | FX_DAMPING_ZONE,
+     EFFECT_DAMPING_ZONE, "line 6: [damping d]"},
     {TOP PLAIN_SOLID, FX_SOLID | FX_CONTACT, EFFECT_SOLID, "line 3: [solid s]"},
     {TOP SOLID "artificial_viscosity = 0\n", FX_SOLID | FX_CONTACT | FX_HOURGLASS, EFFECT_HOURGLASS,
      "line 3: [solid s] hourglass"},
