@@ -18,6 +18,8 @@ struct energies {
     double dummies;   /* compression energy of dummies by their pressure */
     double repulsion; /* of walls and structures, by L-7b */
     double damper;    /* that the acoustic damper holds and has yet to dissipate (T-9a) */
+    double waiting; /* work that the fluid has still to receive from a body: the impulse that waits
+                       (T-35b) at the velocity that the fluid uses */
     double term[ENERGY_TERMS];
     double tolerance; /* below which a gain is an error of the sums */
 };
@@ -39,20 +41,25 @@ static void add_energies(struct energies *sum, const struct energies *e)
     for (size_t k = 0; k < sizeof *e / sizeof *from; k++) to[k] += from[k];
 }
 
+static void add_particle(struct ledger *row, const struct particles *particles, int64_t i, double m,
+                         const double g[2])
+{
+    row->kinetic += 0.5 * m * (square(particles->vx[i]) + square(particles->vy[i]));
+    row->potential -= m * (g[0] * particles->x[i] + g[1] * particles->y[i]);
+    row->momentum_x += m * particles->vx[i];
+    row->momentum_y += m * particles->vy[i];
+    row->mass += m;
+}
+
 static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
     const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
-    const double *const g = sim->scene->top.gravity;
     for (int64_t i = 0; i < particles->n; i++) {
         struct energies *const e = &of[energy_entry(KIND_FLUID, particles->body[i])];
         const double m = particle_mass(k, particles, i);
-        e->row.kinetic += 0.5 * m * (square(particles->vx[i]) + square(particles->vy[i]));
-        e->row.potential -= m * (g[0] * particles->x[i] + g[1] * particles->y[i]);
+        add_particle(&e->row, particles, i, m, sim->scene->top.gravity);
         e->row.internal += m * eos_energy(particles->dens[i], k->c0);
-        e->row.momentum_x += m * particles->vx[i];
-        e->row.momentum_y += m * particles->vy[i];
-        e->row.mass += m;
         e->tolerance += m * square(ROUND_OFF * k->c0);
         if (particles->dens_slow)
             e->damper += 0.5 * m * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
@@ -65,19 +72,15 @@ static double add_solids(struct simulation *sim, struct energies *solid)
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     double lowest = 1;
     for (int64_t i = 0; i < particles->n; i++) {
-        struct ledger *const row = &solid[particles->body[i]].row;
+        struct energies *const e = &solid[particles->body[i]];
         const struct solid_body *const b = &sim->solid.body[particles->body[i]];
-        row->kinetic += 0.5 * b->mass * (square(particles->vx[i]) + square(particles->vy[i]));
-        row->potential -=
-            b->mass * (b->gravity[0] * particles->x[i] + b->gravity[1] * particles->y[i]);
-        row->momentum_x += b->mass * particles->vx[i];
-        row->momentum_y += b->mass * particles->vy[i];
-        row->mass += b->mass;
-        solid[particles->body[i]].tolerance += b->young * square(ROUND_OFF * b->dp);
-        if (!particles->interface_impulse_x)
-            continue; /* the fluid has not received that yet (T-35b) */
-        row->momentum_x -= particles->interface_impulse_x[i];
-        row->momentum_y -= particles->interface_impulse_y[i];
+        add_particle(&e->row, particles, i, b->mass, b->gravity);
+        e->tolerance += b->young * square(ROUND_OFF * b->dp);
+        if (!particles->interface_impulse_x) continue;
+        const double x = particles->interface_impulse_x[i], y = particles->interface_impulse_y[i];
+        e->row.momentum_x -= x;
+        e->row.momentum_y -= y;
+        e->waiting += x * particles->wx[i] + y * particles->wy[i];
     }
     for (int k = 0; k < sim->scene->n_solid; k++) {
         double det;
@@ -94,13 +97,14 @@ static void add_rigid(const struct simulation *sim, struct energies *wall)
 {
     for (int k = 0; k < sim->rigid.n; k++) {
         const struct rigid_energy e = rigid_energy(&sim->rigid, k, sim->state.dt);
-        struct ledger *const row = &wall[scene_rigid_wall(sim->scene, k)].row;
-        row->kinetic += e.kinetic;
-        row->potential += e.potential;
-        row->elastic += e.elastic;
-        row->momentum_x += e.momentum[0];
-        row->momentum_y += e.momentum[1];
-        row->mass += e.mass;
+        wall[scene_rigid_wall(sim->scene, k)] =
+            (struct energies){.row = {.kinetic = e.kinetic,
+                                      .potential = e.potential,
+                                      .elastic = e.elastic,
+                                      .momentum_x = e.momentum[0],
+                                      .momentum_y = e.momentum[1],
+                                      .mass = e.mass},
+                              .waiting = e.waiting};
     }
 }
 
@@ -246,8 +250,9 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 /* Work in dt by the last evaluation: on the fluid by a program, by gravity beyond its value at
  * t = 0, by the constraint at open boundaries and by moving walls; on structures by the fluid's
  * force, at the velocity that the fluid uses. */
-static void add_work(struct simulation *sim, double dt)
+void energy_of_evaluation(struct simulation *sim, double dt)
 {
+    if (!keeps_account(sim)) return;
     const struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid =
                                                                       &sim->kind[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_FLUID];
@@ -280,16 +285,10 @@ static void add_work(struct simulation *sim, double dt)
 void energy_of_step(struct simulation *sim, double dt)
 {
     struct energy_account *const account = &sim->state.energy;
-    if (!keeps_account(sim)) return;
-    add_work(sim, account->pending);
+    energy_of_evaluation(sim, account->pending);
     energy_test_due(sim);
     account->pending = 0.5 * dt;
-    add_work(sim, account->pending);
-}
-
-void energy_of_midpoint(struct simulation *sim, double dt)
-{
-    if (keeps_account(sim)) add_work(sim, dt);
+    energy_of_evaluation(sim, account->pending);
 }
 
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
@@ -439,26 +438,9 @@ void energy_after_step(struct simulation *sim)
 
 /* --- terms --- */
 
-/* Work that the fluid has still to receive from a body: the impulse that waits (T-35b) at the
- * velocity that the fluid uses. */
-static void find_waiting_work(const struct simulation *sim, double of[ENERGY_ENTRIES])
-{
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
-    memset(of, 0, ENERGY_ENTRIES * sizeof *of);
-    for (int k = 0; k < sim->rigid.n; k++)
-        of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k))] =
-            rigid_energy(&sim->rigid, k, sim->state.dt).waiting;
-    for (int64_t i = 0; i < particles->n && particles->interface_impulse_x; i++)
-        of[energy_entry(KIND_SOLID, particles->body[i])] +=
-            particles->interface_impulse_x[i] * particles->wx[i] +
-            particles->interface_impulse_y[i] * particles->wy[i];
-}
-
 static void find_terms(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
     const int first_wall = energy_entry(KIND_WALL, 0);
-    double waiting[ENERGY_ENTRIES];
-    find_waiting_work(sim, waiting);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         const struct energy_entry *const e = &sim->state.energy.entry[k];
         const double gained = without_potential(&of[k]) + of[k].row.potential - e->supplied;
@@ -466,7 +448,7 @@ static void find_terms(const struct simulation *sim, struct energies of[ENERGY_E
         const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
         term[body ? TERM_SOLID : TERM_FLUID] = gained;
         if (body) term[TERM_FLUID] = e->given;
-        if (body) term[TERM_INTERFACE] = e->received - e->given - waiting[k];
+        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].waiting;
         term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
         of[k].tolerance +=
             e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
@@ -477,20 +459,18 @@ void energy_begin(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES];
-    double waiting[ENERGY_ENTRIES];
     const int sections[] = {sim->scene->n_fluid, 0, sim->scene->n_solid};
     memset(account, 0, sizeof *account);
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
     if (!keeps_account(sim)) return;
     find_all_energies(sim, of);
-    find_waiting_work(sim, waiting);
     account->open = sim->effects & FX_OPEN ? open_energy(&sim->open) : 0;
     account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         struct energy_entry *const e = &account->entry[k];
         e->region = k % SCENE_MAX_SECTIONS < sections[k / SCENE_MAX_SECTIONS] ? k : -1;
-        e->received = waiting[k];
+        e->received = of[k].waiting;
         e->supplied = e->noted = without_potential(&of[k]) + of[k].row.potential;
         e->lowest_potential = of[k].row.potential;
         e->lowest[TERM_FLUID] = e->lowest[TERM_ALL] = of[k].dummies;

@@ -24,8 +24,8 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
  * due. */
 void energy_of_step(struct simulation *sim, double dt);
 
-/* After an evaluation in the middle of a step of dt: counts the work of its forces. */
-void energy_of_midpoint(struct simulation *sim, double dt);
+/* After an evaluation: counts the work of its forces over dt. */
+void energy_of_evaluation(struct simulation *sim, double dt);
 
 /* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work of the fluid, of the
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */

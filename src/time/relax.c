@@ -3,6 +3,7 @@
  * maximum, all velocities are set to zero. Forces are those at t = 0, because each step begins
  * before that and the clock is set back after it. */
 #include "time/relax.h"
+#include "base/box2.h"
 #include "base/elementary.h"
 
 #include <math.h>
@@ -103,16 +104,12 @@ static void judge(struct simulation *sim, double elapsed)
 /* The largest distance between walls and bodies at the start, m. */
 static double extent(const struct simulation *sim)
 {
-    const struct particles *const w = &sim->kind[KIND_WALL], *const particles =
-                                                                 &sim->kind[KIND_SOLID];
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (int64_t i = 0; i < w->n + particles->n; i++) {
-        const double x = i < w->n ? w->x[i] : particles->X[i - w->n];
-        const double y = i < w->n ? w->y[i] : particles->Y[i - w->n];
-        low[0] = min2(low[0], x), high[0] = max2(high[0], x);
-        low[1] = min2(low[1], y), high[1] = max2(high[1], y);
-    }
-    return sqrt(square(high[0] - low[0]) + square(high[1] - low[1]));
+    const struct particles *const wall = &sim->kind[KIND_WALL], *const solid =
+                                                                    &sim->kind[KIND_SOLID];
+    struct box2 box = box2_empty();
+    for (int64_t i = 0; i < wall->n; i++) box2_include(&box, wall->x[i], wall->y[i]);
+    for (int64_t i = 0; i < solid->n; i++) box2_include(&box, solid->X[i], solid->Y[i]);
+    return elementary_hypot(box.high[0] - box.low[0], box.high[1] - box.low[1]);
 }
 
 /* A body whose particles have all moved further than that will meet nothing that could hold it. */

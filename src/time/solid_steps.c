@@ -100,13 +100,8 @@ static void external_for_step(struct simulation *sim, double dt)
 
 static void book_lone(struct simulation *sim, double dt, int n)
 {
-    struct state *const st = &sim->state;
-    st->dt_max = max2(st->dt_max, dt);
-    st->dt = dt;
-    st->steps += n;
-    st->solid_substeps += n;
-    st->particle_steps += n * sim->kind[KIND_SOLID].n;
-    st->bound_steps[timestep_binding(sim)] += n;
+    timestep_count(sim, dt, n);
+    sim->state.solid_substeps += n;
     if (!sim->solid.implicit) sim->substeps = 1;
 }
 

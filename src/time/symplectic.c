@@ -98,7 +98,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     phase_add(sim, PHASE_update, clock);
 
     evaluate_fluid(sim, time + 0.5 * dt);
-    energy_of_midpoint(sim, dt);
+    energy_of_evaluation(sim, dt);
     clock = wall_clock();
     if (coupled && multirate) advance_structure(sim, dt, dt);
     if (coupled && !multirate) rates_of_solid(sim);

@@ -90,16 +90,6 @@ double timestep_longest(const struct simulation *sim)
     return sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : fixed > 0 ? fixed : sim->dt_solid;
 }
 
-double timestep_courant(const struct simulation *sim)
-{
-    return timestep_fluid_limit(sim) * sim->fluid.k.c0 / sim->fluid.k.h;
-}
-
-bool timestep_beyond(const struct simulation *sim, double cfl)
-{
-    return sim->effects & FX_FLUID && timestep_courant(sim) > cfl * (1 + 1e-9);
-}
-
 /* The step that the bounds allow now, s; INFINITY before the first step. */
 static double usual_step(const struct simulation *sim)
 {
@@ -230,15 +220,21 @@ void timestep_recheck_solid(struct simulation *sim)
     timestep_set_solid(sim);
 }
 
+void timestep_count(struct simulation *sim, double dt, int n)
+{
+    struct state *const st = &sim->state;
+    st->dt = dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->steps += n;
+    st->particle_steps += n * (sim->kind[KIND_FLUID].n + sim->kind[KIND_SOLID].n);
+    st->bound_steps[timestep_binding(sim)] += n;
+}
+
 void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits)
 {
     struct state *const st = &sim->state;
     st->time = hits ? t_limit : st->time + dt;
     st->dt_old = st->dt;
-    st->dt = dt;
     st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
-    st->dt_max = max2(st->dt_max, dt);
-    st->steps++;
-    st->particle_steps += sim->kind[KIND_FLUID].n + sim->kind[KIND_SOLID].n;
-    st->bound_steps[timestep_binding(sim)]++;
+    timestep_count(sim, dt, 1);
 }

@@ -12,11 +12,6 @@ double timestep_longest(const struct simulation *sim);
 /* The bound that limits the step now. */
 enum bound timestep_binding(const struct simulation *sim);
 
-/* C_CFL of Eq. 28b at rest for the largest step, whatever bound sets it; whether another bound
- * makes it longer. */
-double timestep_courant(const struct simulation *sim);
-bool timestep_beyond(const struct simulation *sim, double cfl);
-
 /* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step,
  * with half of the last step, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *sim, double *half);
@@ -40,7 +35,10 @@ void timestep_set_solid(struct simulation *sim);
  * gradients that are up to date. The state decides, so that a restart does the same. */
 void timestep_recheck_solid(struct simulation *sim);
 
-/* Counts a completed step: time, counters, statistics. */
+/* Counts n completed steps of dt. */
+void timestep_count(struct simulation *sim, double dt, int n);
+
+/* The end of a step with fluid: its time and what is counted. */
 void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits);
 
 /* Whether contact can matter in the coming `steps` from `time` on. Stores its effect on their
