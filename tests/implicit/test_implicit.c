@@ -284,6 +284,40 @@ static void test_damping_is_that_of_explicit_steps(void)
     }
 }
 
+/* A plate between waters rings at its wet frequency, whatever its steps. */
+static void test_frequency_under_water(void)
+{
+    static const char plate[] =
+        "scheme = paper\ndp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[fluid left]\n"
+        "shape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nsurface = 0.1\n"
+        "artificial_viscosity = 0.1\ndensity_diffusion = 0.1\ndiffusion_form = fourtakas\n"
+        "[fluid right]\nlike = left\nshape = box 0.12, 0, 0.22, 0.1\n[wall tank]\n"
+        "shape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.1, 0\n"
+        "shape = polyline thickness -0.02: 0.12, 0; 0.22, 0; 0.22, 0.2\n[solid plate]\n"
+        "shape = box 0.1, -0.02, 0.12, 0.12\nclamp = box 0.1, -0.02, 0.12, 0\n"
+        "density = 2700\nyoung = 4e8\npoisson = 0.3\nvelocity = 0.2*(max(y, 0)/0.12)^2, 0\n";
+    double period[2];
+    for (int k = 0; k < 2; k++) {
+        double passed[4], before = 0, last = 0;
+        int n = 0;
+        RIG_OPEN_SOLID(plate,
+                       k ? "numerics.solid_steps=implicit" : "numerics.solid_steps=explicit");
+        while (n < 4) {
+            double now = 0;
+            rig_steps(&rig, 1, 1);
+            for (int64_t i = 0; i < p->n; i++)
+                if (p->X[i] < 0.105 && p->Y[i] > 0.115) now = p->ux[i];
+            if (before < 0 && now >= 0)
+                passed[n++] = last + (rig.sim.state.time - last) * before / (before - now);
+            before = now;
+            last = rig.sim.state.time;
+        }
+        period[k] = (passed[3] - passed[0]) / 3;
+        TEST_ASSERT_TRUE(k ? rig.sim.substeps == 1 : rig.sim.substeps > 30);
+    }
+    assert_near(0.002 * period[0], period[0], period[1], "period");
+}
+
 /* Bodies of different stiffness that are joined keep energy and momentum as one does. */
 static void test_joined_bodies(void)
 {
@@ -428,6 +462,7 @@ int main(void)
     RUN_TEST(test_period_of_a_free_bar);
     RUN_TEST(test_work_closes_the_account);
     RUN_TEST(test_damping_is_that_of_explicit_steps);
+    RUN_TEST(test_frequency_under_water);
     RUN_TEST(test_joined_bodies);
     RUN_TEST(test_double_pendulum);
     RUN_TEST(test_hinge_on_a_moving_wall);

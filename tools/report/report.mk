@@ -13,6 +13,7 @@
 #   make verify-contact  restitution, pressure, friction, stacks, folds: docs/results/contact_verification.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/results/open_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/results/manufactured.md
+#   make exact-fsi       a wave through the interface of bar and fluid: docs/results/exact_fsi.md
 #   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
 #   make energy-account  what the account of energy finds: docs/results/energy_account.md
 #   make performance     the bench, longest steps and the gate: docs/performance.md
@@ -31,6 +32,7 @@ verify-fluid_TOOL        := tools/report/verify_fluid.py
 verify-contact_TOOL      := tools/report/verify_contact.py
 verify-open_TOOL         := tools/report/verify_open.py
 verify-manufactured_TOOL := tools/report/manufactured.py
+exact-fsi_TOOL           := tools/report/exact_fsi.py
 turek-hron_TOOL          := tools/report/turek_hron.py
 energy-account_TOOL      := tools/report/energy_account.py
 performance_TOOL         := tools/report/performance.py
@@ -47,7 +49,7 @@ $(REPORTS): $(PROGRAM)
 
 # What a report runs beside the program. Several runs at a time must not spin while they wait.
 validate stability-map: export OMP_WAIT_POLICY := passive
-verify-manufactured: $(SHARED)
+verify-manufactured exact-fsi: $(SHARED)
 bench performance: $(BENCHES)
 reliability: $(TESTS)
 
