@@ -98,17 +98,13 @@ def report(studies):
             for medium, errors, slope in found if of == kind else ():
                 rows.append([f"{density:g}", steps, medium, *(f"{e:.2g}" for e in errors),
                              f"{slope:.2f}"])
-                slopes.setdefault((kind, slope >= 0.95 * ASKED[kind]), []).append(
-                    (slope, f"{medium}, r = {density:g}, {steps} ({slope:.2f})"))
+                slopes.setdefault(kind, []).append(slope)
         head = [f"L/dp = {n}" for n in sizes] if kind == "space" else \
             [f"{n}n steps".removeprefix("1") for n in sizes]
         tables.append(table(["r", "steps of the bar", "in", *head, "order"], rows))
-    words = []
-    for kind in ASKED:
-        met, missed = slopes.get((kind, True), []), slopes.get((kind, False), [])
-        words.append(f"{kind.capitalize()}: {len(met)} of {len(met) + len(missed)} orders are at "
-                     f"least {0.95 * ASKED[kind]:.3g}" +
-                     (f", not {'; '.join(text for _, text in missed)}." if missed else "."))
+    words = [f"{kind.capitalize()}: orders of {min(slopes[kind]):.2f} to {max(slopes[kind]):.2f}, "
+             f"asked: {asked:g}; {sum(slope >= 0.95 * asked for slope in slopes[kind])} of "
+             f"{len(slopes[kind])} are within 5 % of that." for kind, asked in ASKED.items()]
     return {"answer": " ".join(words), "version": program_version(), "space": tables[0],
             "time": tables[1], "at": AT, "finest": FINEST,
             "least": ", ".join(f"{least(r)} for r = {r:g}" for r in DENSITIES)}
