@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_LINES = 1000000 };
+enum { CSV_MAX_LINES = 1000000 };
 
 const char *csv_next_line(const char *at)
 {
@@ -37,9 +37,9 @@ enum err csv_open(struct csv *c, const char *file)
     c->lines = !*c->text;
     c->begun = false;
     for (const char *at = c->text; *at; at++) c->lines += *at == '\n' || !at[1];
-    if (c->lines > MAX_LINES)
+    if (c->lines > CSV_MAX_LINES)
         return diag_add(c->diag, ERR_INPUT, "%s: more than %d lines; use fewer rows", c->path,
-                        MAX_LINES);
+                        CSV_MAX_LINES);
     return ERR_OK;
 }
 

@@ -5,47 +5,47 @@
 
 #include <math.h>
 
-/* The number hi + lo, hi being its nearest double (Dekker 1971). Operations on pairs have
- * relative errors of some 2^-104. */
-struct pair {
+/* A double-double: the number hi + lo, hi being its nearest double (Dekker 1971). Operations on
+ * them have relative errors of some 2^-104. */
+struct dd {
     double hi, lo;
 };
 
-static const struct pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-static const struct pair ln_2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
+static const struct dd half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+static const struct dd ln_2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 static const double half_pi_rest = -0x1.f1976b7ed8fbcp-110;
 
 /* Of two doubles, without rounding. */
-static struct pair sum(double a, double b)
+static struct dd sum(double a, double b)
 {
     const double s = a + b, b_in_s = s - a;
-    return (struct pair){s, (a - (s - b_in_s)) + (b - b_in_s)};
+    return (struct dd){s, (a - (s - b_in_s)) + (b - b_in_s)};
 }
-static struct pair product(double a, double b)
+static struct dd product(double a, double b)
 {
     const double p = a * b;
-    return (struct pair){p, __builtin_fma(a, b, -p)};
+    return (struct dd){p, __builtin_fma(a, b, -p)};
 }
 
-static struct pair add(struct pair a, struct pair b)
+static struct dd add(struct dd a, struct dd b)
 {
-    const struct pair high = sum(a.hi, b.hi), low = sum(a.lo, b.lo);
-    const struct pair middle = sum(high.hi, high.lo + low.hi);
+    const struct dd high = sum(a.hi, b.hi), low = sum(a.lo, b.lo);
+    const struct dd middle = sum(high.hi, high.lo + low.hi);
     return sum(middle.hi, middle.lo + low.lo);
 }
-static struct pair scaled(struct pair a, double b) { return (struct pair){a.hi * b, a.lo * b}; }
-static struct pair times(struct pair a, struct pair b)
+static struct dd scaled(struct dd a, double b) { return (struct dd){a.hi * b, a.lo * b}; }
+static struct dd times(struct dd a, struct dd b)
 {
-    const struct pair p = product(a.hi, b.hi);
+    const struct dd p = product(a.hi, b.hi);
     return sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
-static struct pair over(struct pair a, struct pair b)
+static struct dd over(struct dd a, struct dd b)
 {
     const double q = a.hi / b.hi;
-    const struct pair rest = add(a, scaled(times((struct pair){q, 0}, b), -1));
+    const struct dd rest = add(a, scaled(times((struct dd){q, 0}, b), -1));
     return sum(q, (rest.hi + rest.lo) / b.hi);
 }
-static struct pair by(struct pair a, double b)
+static struct dd by(struct dd a, double b)
 {
     const double q = a.hi / b;
     return sum(q, (__builtin_fma(-q, b, a.hi) + a.lo) / b);
@@ -53,11 +53,11 @@ static struct pair by(struct pair a, double b)
 
 /* 1 + s z/(n + 1)(n + 2) (1 + s z/(n + 3)(n + 4) (1 + ...)), z = x^2, |x| < 1. With s = -1 that
  * is cos x for n = 0 and sin x/x for n = 1, with s = 1 it is cosh x and sinh x/x. */
-static struct pair series(struct pair x, int n, double s)
+static struct dd series(struct dd x, int n, double s)
 {
     enum { TERMS = 11 };
-    const struct pair z = scaled(times(x, x), s), one = {1, 0};
-    struct pair value = one;
+    const struct dd z = scaled(times(x, x), s), one = {1, 0};
+    struct dd value = one;
     for (int k = 2 * TERMS + n; k > n; k -= 2) value = add(one, by(times(z, value), k * (k - 1)));
     return value;
 }
@@ -68,14 +68,14 @@ static struct pair series(struct pair x, int n, double s)
 static bool too_large(double x) { return !(fabs(x) < 0x1p50); }
 
 /* sin(x + quarters pi/2). */
-static struct pair turned_sine(double x, int quarters)
+static struct dd turned_sine(double x, int quarters)
 {
     const double n = nearbyint(x / half_pi.hi);
-    struct pair r = add((struct pair){x, 0}, scaled(product(n, half_pi.hi), -1));
+    struct dd r = add((struct dd){x, 0}, scaled(product(n, half_pi.hi), -1));
     r = add(r, scaled(product(n, half_pi.lo), -1));
-    r = add(r, (struct pair){-n * half_pi_rest, 0});
+    r = add(r, (struct dd){-n * half_pi_rest, 0});
     const int quadrant = (int)(n - 4 * floor(n / 4)) + quarters;
-    const struct pair value = quadrant & 1 ? series(r, 0, -1) : times(r, series(r, 1, -1));
+    const struct dd value = quadrant & 1 ? series(r, 0, -1) : times(r, series(r, 1, -1));
     return quadrant & 2 ? scaled(value, -1) : value;
 }
 
@@ -96,21 +96,21 @@ double elementary_tan(double x)
 /* --- exponential and logarithm --- */
 
 /* e^x = 2^n (1 + r/m + ...)^m with m = 2^HALVINGS, |x| < 800. The power n is kept apart. */
-static struct pair exponential(struct pair x, int *n)
+static struct dd exponential(struct dd x, int *n)
 {
     enum { HALVINGS = 8, TERMS = 10 };
-    const struct pair one = {1, 0};
+    const struct dd one = {1, 0};
     const double power = nearbyint(x.hi / ln_2.hi);
-    const struct pair whole = times((struct pair){power, 0}, ln_2);
-    const struct pair r = scaled(add(x, scaled(whole, -1)), 1.0 / (1 << HALVINGS));
-    struct pair value = one;
+    const struct dd whole = times((struct dd){power, 0}, ln_2);
+    const struct dd r = scaled(add(x, scaled(whole, -1)), 1.0 / (1 << HALVINGS));
+    struct dd value = one;
     for (int k = TERMS; k > 0; k--) value = add(one, by(times(r, value), k));
     for (int k = 0; k < HALVINGS; k++) value = times(value, value);
     *n = (int)power;
     return value;
 }
 
-static double exponential_of(struct pair x)
+static double exponential_of(struct dd x)
 {
     int n;
     if (!(fabs(x.hi) < 800)) return exp(x.hi); /* 0, infinity or not a number */
@@ -118,20 +118,20 @@ static double exponential_of(struct pair x)
     return ldexp(value, n);
 }
 
-double elementary_exp(double x) { return exponential_of((struct pair){x, 0}); }
+double elementary_exp(double x) { return exponential_of((struct dd){x, 0}); }
 
 /* x = 2^n m, log m = 2 artanh z with z = (m - 1)/(m + 1), |z| < 0.172; x > 0 and finite. */
-static struct pair logarithm(double x)
+static struct dd logarithm(double x)
 {
     enum { TERMS = 15 };
-    const struct pair one = {1, 0};
+    const struct dd one = {1, 0};
     int n;
     double m = frexp(x, &n);
     if (m < 0.70710678118654752) m *= 2, n--;
-    const struct pair z = over((struct pair){m - 1, 0}, sum(m, 1)), z2 = times(z, z);
-    struct pair value = {0, 0};
+    const struct dd z = over((struct dd){m - 1, 0}, sum(m, 1)), z2 = times(z, z);
+    struct dd value = {0, 0};
     for (int k = TERMS; k >= 0; k--) value = add(by(one, 2 * k + 1), times(z2, value));
-    return add(times((struct pair){n, 0}, ln_2), scaled(times(z, value), 2));
+    return add(times((struct dd){n, 0}, ln_2), scaled(times(z, value), 2));
 }
 
 double elementary_log(double x) { return x > 0 && isfinite(x) ? logarithm(x).hi : log(x); }
@@ -140,25 +140,25 @@ double elementary_pow(double x, double y)
 {
     const bool whole = y == floor(y), odd = whole && fmod(y, 2) != 0;
     if (y == 0 || x == 0 || !isfinite(x) || !isfinite(y) || (x < 0 && !whole)) return pow(x, y);
-    const double value = exponential_of(times((struct pair){y, 0}, logarithm(fabs(x))));
+    const double value = exponential_of(times((struct dd){y, 0}, logarithm(fabs(x))));
     return x < 0 && odd ? -value : value;
 }
 
 /* --- hyperbolic functions --- */
 
-static struct pair hyperbolic_sine(double x)
+static struct dd hyperbolic_sine(double x)
 {
     int n;
-    if (fabs(x) < 0.5) return times((struct pair){x, 0}, series((struct pair){x, 0}, 1, 1));
-    const struct pair e = exponential((struct pair){x, 0}, &n), one = {1, 0};
-    const struct pair less = scaled(over(one, e), ldexp(1, -2 * n));
+    if (fabs(x) < 0.5) return times((struct dd){x, 0}, series((struct dd){x, 0}, 1, 1));
+    const struct dd e = exponential((struct dd){x, 0}, &n), one = {1, 0};
+    const struct dd less = scaled(over(one, e), ldexp(1, -2 * n));
     return scaled(add(e, scaled(less, -1)), ldexp(0.5, n));
 }
 
-static struct pair hyperbolic_cosine(double x)
+static struct dd hyperbolic_cosine(double x)
 {
     int n;
-    const struct pair e = exponential((struct pair){x, 0}, &n), one = {1, 0};
+    const struct dd e = exponential((struct dd){x, 0}, &n), one = {1, 0};
     return scaled(add(e, scaled(over(one, e), ldexp(1, -2 * n))), ldexp(0.5, n));
 }
 
@@ -185,19 +185,18 @@ double elementary_tanh(double x)
 
 /* --- geometry --- */
 
-/* The angle of (x, y), 0 < y <= x. A guess by a polynomial is mended three times: it lacks e -
- * e^3/3 + ..., where e = (y cos t - x sin t)/(x cos t + y sin t). */
-static struct pair angle_below_45(double y, double x)
+/* The angle of (x, y), 0 < y <= x. A polynomial gives a first value t, which is corrected three
+ * times: it lacks e - e^3/3 + ..., with e = (y cos t - x sin t)/(x cos t + y sin t). */
+static struct dd angle_below_45(double y, double x)
 {
     const double q = y / x;
-    struct pair t = {q * (1 - q * q * (0.31 - 0.1 * q * q)), 0};
+    struct dd t = {q * (1 - q * q * (0.31 - 0.1 * q * q)), 0};
     for (int k = 0; k < 3; k++) {
-        const struct pair c = turned_sine(t.hi, 1), s = turned_sine(t.hi, 0);
-        const struct pair across =
-            add(times((struct pair){y, 0}, c), times((struct pair){-x, 0}, s));
-        const struct pair along = add(times((struct pair){x, 0}, c), times((struct pair){y, 0}, s));
-        const struct pair e = over(across, along), cubic = {-e.hi * e.hi * e.hi / 3, 0};
-        t = add((struct pair){t.hi, 0}, add(e, cubic));
+        const struct dd c = turned_sine(t.hi, 1), s = turned_sine(t.hi, 0);
+        const struct dd across = add(times((struct dd){y, 0}, c), times((struct dd){-x, 0}, s));
+        const struct dd along = add(times((struct dd){x, 0}, c), times((struct dd){y, 0}, s));
+        const struct dd e = over(across, along), cubic = {-e.hi * e.hi * e.hi / 3, 0};
+        t = add((struct dd){t.hi, 0}, add(e, cubic));
     }
     return t;
 }
@@ -206,7 +205,7 @@ double elementary_atan2(double y, double x)
 {
     const double a = fabs(y), b = fabs(x);
     if (y == 0 || x == 0 || !isfinite(x) || !isfinite(y)) return atan2(y, x);
-    struct pair t = a <= b ? angle_below_45(a, b) : add(half_pi, scaled(angle_below_45(b, a), -1));
+    struct dd t = a <= b ? angle_below_45(a, b) : add(half_pi, scaled(angle_below_45(b, a), -1));
     if (x < 0) t = add(scaled(half_pi, 2), scaled(t, -1));
     return copysign(t.hi, y);
 }
@@ -217,8 +216,8 @@ double elementary_hypot(double x, double y)
     if (!isfinite(x) || !isfinite(y) || top == 0) return hypot(x, y);
     const int n = ilogb(top);
     const double a = ldexp(x, -n), b = ldexp(y, -n);
-    const struct pair square = add(product(a, a), product(b, b));
+    const struct dd square = add(product(a, a), product(b, b));
     const double root = sqrt(square.hi);
-    const struct pair rest = add(square, scaled(product(root, root), -1));
+    const struct dd rest = add(square, scaled(product(root, root), -1));
     return ldexp(root + (rest.hi + rest.lo) / (2 * root), n);
 }

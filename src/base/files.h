@@ -14,8 +14,8 @@ enum { PATH_BYTES = 4096 };
 enum err path_join(char path[PATH_BYTES], const char *folder, const char *name, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Opens a file for writing, as open() does, but fails with ELOOP on a symbolic link: a link in
- * the folder of a run must not redirect output to another place. */
+/* As open(), but fails with ELOOP on a symbolic link: a link in the folder of a run must not
+ * redirect output to another place. */
 int file_open_no_follow(const char *path, int flags);
 
 /* strerror(), except that ELOOP is explained as file_open_no_follow means it. */

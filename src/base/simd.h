@@ -106,8 +106,8 @@ SPHFSI_INLINE void vwiden_float(double *p, vfloat a, int n)
                     n < LANES_DOUBLE ? n : LANES_DOUBLE);
 }
 
-/* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a
- * : b. */
+/* vfma(a, b, c) = a b + c with one rounding.
+ * vmin(a, b) = a < b ? a : b, vmax(a, b) = a > b ? a : b. */
 #ifdef SIMD_AVX2
 #ifdef SIMD_AVX512
 #define X86(op) _mm512_##op

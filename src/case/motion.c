@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What a case prescribes as a function of time: tables of a time and two values, gravity (T-70),
- * and motion: a velocity, a polynomial, a table, a sine, a rotation, or expressions in time. */
+ * What a case prescribes as a function of time: gravity (T-70), motions, and the tables that both
+ * may use. */
 #include "case/case.h"
 #include "base/csv.h"
 #include "base/elementary.h"
@@ -113,7 +113,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
     t = max2(t, 0); /* while rest is sought (T-78) */
     for (int c = 0; c < 2; c++) {
         const struct expr *const e = scene->top.gravity_in_time.e[c];
-        g[c] = e ? scene_expr_at(e, t, 0) : scene->top.gravity[c];
+        g[c] = e ? expr_at(e, t, 0) : scene->top.gravity[c];
     }
     if (table->n == 0) return;
     const int k = table_row(table, t);

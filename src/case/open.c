@@ -30,8 +30,8 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
         .sense = inflow ? 1 : -1,
     };
     o.length = elementary_hypot(o.along[0], o.along[1]);
-    /* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
-     * buffer, and one of the buffer that has entered and is not yet relabelled. */
+    /* Whole spacings: the kernel's reach; one particle that has left and is not yet part of the
+     * buffer; one of the buffer that has entered and is not yet relabelled. */
     o.depth = ceil((2 * scene->numerics.h_over_dp + 1) * (1 - 1e-9)) * scene->top.dp;
     o.along[0] /= o.length;
     o.along[1] /= o.length;
@@ -42,10 +42,9 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
 
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2])
 {
-    const double along = o->speed ? o->sense * scene_expr_at_time(o->speed, x[0], x[1], time) : 0;
+    const double along = o->speed ? o->sense * expr_at_time(o->speed, x[0], x[1], time) : 0;
     for (int c = 0; c < 2; c++)
-        v[c] =
-            o->speed ? along * o->inward[c] : scene_expr_at_time(o->velocity[c], x[0], x[1], time);
+        v[c] = o->speed ? along * o->inward[c] : expr_at_time(o->velocity[c], x[0], x[1], time);
 }
 
 enum { LINE_POINTS = 33, LINE_TIMES = 65 };
@@ -102,7 +101,7 @@ struct scene_open_range scene_open_range(const struct scene *scene, const struct
             double x[2], v[2] = {0, 0};
             line_point(o, k, x);
             if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
-            if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
+            if (o->pressure) v[0] = expr_at_time(o->pressure, x[0], x[1], time);
             const double along = o->sense * (v[0] * o->inward[0] + v[1] * o->inward[1]);
             range.forth = max2(range.forth, along);
             range.back = max2(range.back, -along);

@@ -131,9 +131,9 @@ const char *nearest_hint(struct nearest *near);
 /* Whether other programs or textbooks call a key or a section by this word. */
 bool has_usual_name(const char *key, const char *word);
 
-/* What an unknown key of a section may mean, for the end of a message: the keys of which the word
- * is a part, as viscosity of artificial_viscosity, or a usual name; the section it belongs to; or
- * the nearest, to which `near` may bring other candidates. Returns `hint`, which may be "". */
+/* Writes what an unknown key of a section may mean, for the end of a message; returns `hint`, which
+ * may be "". Candidates: keys that contain the word, as artificial_viscosity contains viscosity;
+ * usual names; keys of other sections; the nearest key, or one that `near` brings. */
 enum { PARAM_HINT = 300 };
 const char *param_hint(enum section_id section, const char *word, struct nearest *near,
                        char hint[PARAM_HINT]);

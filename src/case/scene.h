@@ -128,15 +128,14 @@ enum probe_quantity {
     PROBE_SURFACE_PRESSURE,
     PROBE_QUANTITIES
 };
-/* Target of a quantity: a material point of a solid, a point in the fluid, either (depending on
- * `body`), a solid, a solid or wall, all fluid, a line in the fluid. */
+/* What a quantity is measured of. */
 enum probe_target {
-    TARGET_SOLID_POINT,
+    TARGET_SOLID_POINT, /* a material point of a solid */
     TARGET_FLUID_POINT,
-    TARGET_ANY_POINT,
+    TARGET_ANY_POINT, /* one of these, depending on `body` */
     TARGET_SOLID,
-    TARGET_BODY,
-    TARGET_FLUID,
+    TARGET_BODY,  /* solids and walls */
+    TARGET_FLUID, /* all of it */
     TARGET_FLUID_LINE
 };
 extern const enum probe_target probe_targets[PROBE_QUANTITIES];
@@ -294,11 +293,12 @@ SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2
 /* The given velocity at a point of the line and a time, m/s. */
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2]);
 
-/* The velocity or pressure that a boundary gives, over its line and the run: the largest part along
- * `sense` and against it, m/s; the largest amount, m/s or Pa; where and when it is infinite. */
+/* Extremes over its line and the run of the velocity or pressure that a boundary gives. */
 struct scene_open_range {
-    double forth, back, largest, x[2], time;
+    double forth, back; /* m/s: largest part of a velocity along `sense` and against it */
+    double largest;     /* amount, m/s or Pa */
     bool infinite;
+    double x[2], time; /* where and when */
 };
 struct scene_open_range scene_open_range(const struct scene *scene, const struct scene_open *o);
 

@@ -8,9 +8,9 @@
 
 #include <stdio.h>
 
-/* Up to its largest cfl, a falling column of water (tests/stability/column.cfg) was found stable
- * with an integrator; for leapfrog the analysis of docs/theory.md gives the same. fixed_step is
- * used unchanged, even if the run then becomes unstable. */
+/* The largest cfl of an integrator is that up to which a falling column of water was found stable
+ * (tests/stability/column.cfg); the analysis in docs/theory.md gives the same for leapfrog.
+ * fixed_step is used unchanged, even if the run then becomes unstable. */
 static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;

@@ -108,9 +108,8 @@ static void warn_of_surface(struct check *check, int f)
 /* --- density, weight --- */
 
 /* Probable errors of units: a density in g/cm^3, as of water with 1 instead of 1000 kg/m^3. A
- * weakly compressible fluid stays within 1 % of its density (Monaghan 1994); its own weight
- * compresses it by g H/c0^2, unless gravity is along a periodic side, where it carries no
- * weight. */
+ * weakly compressible fluid stays within 1 % of its density (Monaghan 1994). Its own weight
+ * compresses it by g H/c0^2, unless gravity is along a periodic side. */
 static void warn_of_density(struct check *check, int f)
 {
     enum {
@@ -487,7 +486,7 @@ static void warn_of_turning(struct check *check)
 
 /* Without a free surface the volume is given, and nothing takes back the pressure that a shift
  * makes. In a channel, periodic in x, it rose by 0.4, 0.75 and 1.1 % of rho c0^2 with `shifting`
- * 0.5, 2 and 8; without walls, where L-9 holds for all particles, it did not. */
+ * 0.5, 2 and 8. Without walls, where L-9 holds for all particles, it did not rise. */
 static void warn_of_drift(struct check *check)
 {
     const struct scene *const scene = check->scene;

@@ -94,7 +94,7 @@ double start_speed(const struct scene *scene, enum kind kind, int section,
         if (p->body[k] != section) continue;
         double v[2];
         for (int c = 0; c < 2; c++)
-            v[c] = velocity->e[c] ? scene_expr_at(velocity->e[c], p->x[k], p->y[k]) : 0;
+            v[c] = velocity->e[c] ? expr_at(velocity->e[c], p->x[k], p->y[k]) : 0;
         most = max2(most, elementary_hypot(v[0], v[1]));
     }
     return most;

@@ -25,35 +25,34 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
 {
     const struct scene_lattice *const l = &region->lattice;
     const int line = region->list->item[shape].line;
-    bool told[2] = {false, false};
+    const double dp = l->dp, round_off = l->angle == 0 ? 0 : 1e-9 * dp;
+    bool warned[2] = {false, false};
     for (int k = 0; k < region->add.n; k++) {
         const struct outline *o = &region->add.item[k];
         if (region->add.shape[k] != shape) continue;
         for (int j = 0; j < o->n; j++) {
             const double *a = o->pt[j], *b = o->pt[(j + 1) % o->n];
-            const double round_off = l->angle == 0 ? 0 : 1e-9 * l->dp;
             const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
             const double cells = cells_to(region, c, a[c]);
-            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || told[c]) continue;
+            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || warned[c]) continue;
             const double fit = l->origin[c] + round(cells) * l->spacing[c];
-            check->scene->off_lattice = told[c] = true;
+            check->scene->off_lattice = warned[c] = true;
             if (l->angle == 0)
                 warn_at(check->diag, check->scene, line,
                         "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
                         "%c = %g m would fit",
-                        region->word, region->name, "xy"[c], a[c], l -> dp, "xy"[c], fit);
+                        region->word, region->name, "xy"[c], a[c], dp, "xy"[c], fit);
             else
                 warn_at(check->diag, check->scene, line,
                         "an edge of [%s %s] is %.2g dp off the lattice, which is rotated by "
                         "%.4g degrees; move the edge or choose another dp",
-                        region->word, region->name, fabs(a[c] - fit) / l->dp,
-                        l->angle * (180 / PI));
+                        region->word, region->name, fabs(a[c] - fit) / dp, l->angle * (180 / PI));
         }
     }
 }
 
 /* The bending stiffness of a thin body is proportional to the third power of its thickness, hence
- * of its area. What a clamp holds does not bend. */
+ * of its area. Clamped parts do not bend. */
 static void warn_of_area(struct check *check, const struct region *region)
 {
     const struct scene_lattice *const l = &check->scene->solid_lattice[region->body];
@@ -85,14 +84,14 @@ static double thickness(const struct shape *shape)
 }
 
 /* Whether anything lies in a direction from a place, as far as the domain goes. */
-static bool anything_beyond(const struct check *check, const double from[2], const double way[2],
+static bool anything_beyond(const struct check *check, const double from[2], const double toward[2],
                             double first)
 {
     const struct scene *const scene = check->scene;
     const double *const low = scene->domain_lower, *const high = scene->domain_upper,
                         dp = scene->top.dp, longest = high[0] - low[0] + high[1] - low[1];
     for (double path = first; path < longest; path += 0.5 * dp) {
-        const double at[2] = {from[0] + path * way[0], from[1] + path * way[1]};
+        const double at[2] = {from[0] + path * toward[0], from[1] + path * toward[1]};
         for (int c = 0; c < 2; c++)
             if (!scene_periodic(scene, c) && (at[c] < low[c] || at[c] > high[c])) return false;
         if (point_at(check, at, 0.5 * dp, POINT_ANY) >= 0) return true;
@@ -230,29 +229,30 @@ static void warn_of_cuts(struct check *check, const struct region *region)
 /* --- gaps as wide as a particle --- */
 
 /* Gaps up to `widest` dp may hold a single row of particles, or none. One below `joint` is meant as
- * a joint. Faces are looked along in steps of `along`, gaps are measured in steps of `step`. */
+ * a joint. Faces are followed in steps of `along`, gaps are measured in steps of `step`. */
 static const double widest = 2, joint = 0.04, along = 0.25, step = 0.02;
 
-/* Walls and solids as drawn, and which pairs of them have been told: open gaps, closed ones. */
+/* Gaps between walls and solids as drawn. */
 struct gaps {
     struct check *check;
     int n;
-    bool *told;
+    bool *warned; /* [n][n][2]: by a pair of regions, of an open gap, of a closed one */
 };
 
 /* How far from a place, in dp and up to a limit, the next wall or solid is in a direction; and its
  * region, or -1. */
-static double free_path(const struct check *check, const double at[2], const double way[2],
+static double free_path(const struct check *check, const double at[2], const double toward[2],
                         double limit, int *region)
 {
     const double dp = check->scene->top.dp;
     for (double path = 0.5 * step; path < limit; path += step) {
-        *region = drawn_at(check, at[0] + path * dp * way[0], at[1] + path * dp * way[1]);
+        *region = drawn_at(check, at[0] + path * dp * toward[0], at[1] + path * dp * toward[1]);
         if (*region < 0) continue;
         for (double half = 0.5 * step; half > 1e-3 * step; half *= 0.5) {
             const double mid = path - half;
-            path = drawn_at(check, at[0] + mid * dp * way[0], at[1] + mid * dp * way[1]) < 0 ? path
-                                                                                             : mid;
+            path = drawn_at(check, at[0] + mid * dp * toward[0], at[1] + mid * dp * toward[1]) < 0
+                       ? path
+                       : mid;
         }
         return path;
     }
@@ -265,12 +265,12 @@ static double free_path(const struct check *check, const double at[2], const dou
 static bool is_passage(const struct check *check, const double middle[2], const double across[2])
 {
     const double dp = check->scene->top.dp, back[2] = {-across[0], -across[1]};
-    for (int way = -1; way <= 1; way += 2) {
+    for (int sign = -1; sign <= 1; sign += 2) {
         double at[2] = {middle[0], middle[1]}, width = 0;
         int64_t steps = 20 * check->points.n; /* a ring has no end */
         for (int region; width < widest && steps > 0; steps--) {
-            at[0] -= way * 5 * step * dp * across[1];
-            at[1] += way * 5 * step * dp * across[0];
+            at[0] -= sign * 5 * step * dp * across[1];
+            at[1] += sign * 5 * step * dp * across[0];
             if (drawn_at(check, at[0], at[1]) >= 0) return false;
             const double ahead = free_path(check, at, across, widest, &region),
                          behind = free_path(check, at, back, widest, &region);
@@ -300,9 +300,9 @@ static double row_distance(const struct check *check, const double at[2], const 
 }
 
 /* The gap in front of a face, if there is one: from a place on it to that opposite. Rows of
- * particles two spacings apart leave space for one between them. Measured under a sluice, 20 to 80
- * particles of water above it: a gap of one particle passed 0.2 to 0.8 of what theory has, and the
- * account found a gain; two passed 0.84 to 1.16, three 0.93 to 1.08. */
+ * particles two spacings apart leave space for one between them. Measured under a sluice with 20 to
+ * 80 particles of water above it: a gap of one particle passed 0.2 to 0.8 of the theoretical flow,
+ * and energy was gained. Two passed 0.84 to 1.16, three 0.93 to 1.08. */
 static void warn_of_gap(struct gaps *g, int region, int line, const double face[2],
                         const double across[2])
 {
@@ -316,11 +316,11 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
     const double rows = row_distance(check, at, across);
     const bool closed = rows < 1.5;
     const int a = region < other ? region : other, b = region < other ? other : region;
-    bool *const told = &g->told[2 * (a * g->n + b) + closed];
-    if (*told || rows > 2.5 || !is_passage(check, at, across)) return;
+    bool *const warned = &g->warned[2 * (a * g->n + b) + closed];
+    if (*warned || rows > 2.5 || !is_passage(check, at, across)) return;
     const struct region *const p = &check->shapes.regions[a], *const q = &check->shapes.regions[b];
     char between[2 * SCENE_NAME + 32] = "in";
-    *told = true;
+    *warned = true;
     if (a != b) snprintf(between, sizeof between, "between [%s %s] and", p->word, p->name);
     warn_at(check->diag, check->scene, line,
             "the gap %s [%s %s] at (%.4g, %.4g) m is %.2g m wide, %s; use dp = %.2g m or less, or "
@@ -332,9 +332,9 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
             0.5 * width * dp);
 }
 
-/* Looks along an edge, given in the axes of its region. */
-static void look_along(struct gaps *g, int region, int line, const double from[2],
-                       const double to[2])
+/* Finds gaps beside an edge, given in the axes of its region. */
+static void warn_beside_edge(struct gaps *g, int region, int line, const double from[2],
+                             const double to[2])
 {
     const struct check *const check = g->check;
     const struct scene_lattice *const l = &check->shapes.regions[region].lattice;
@@ -347,20 +347,20 @@ static void look_along(struct gaps *g, int region, int line, const double from[2
     for (int64_t k = 0; k < parts && length > 0; k++)
         for (int side = -1; side <= 1; side += 2) {
             const double s = ((double)k + 0.5) / (double)parts,
-                         way[2] = {side * (a[1] - b[1]) / length, side * (b[0] - a[0]) / length},
+                         toward[2] = {side * (a[1] - b[1]) / length, side * (b[0] - a[0]) / length},
                          at[2] = {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])},
-                         front[2] = {at[0] + aside * way[0], at[1] + aside * way[1]},
-                         far[2] = {at[0] + 1.3 * dp * way[0], at[1] + 1.3 * dp * way[1]};
+                         front[2] = {at[0] + aside * toward[0], at[1] + aside * toward[1]},
+                         far[2] = {at[0] + 1.3 * dp * toward[0], at[1] + 1.3 * dp * toward[1]};
             /* Behind a gap there are particles further from the face than its own. */
             if (point_at(check, far, 1.5 * dp, POINT_BODY) < 0 ||
-                drawn_at(check, at[0] - aside * way[0], at[1] - aside * way[1]) != region ||
+                drawn_at(check, at[0] - aside * toward[0], at[1] - aside * toward[1]) != region ||
                 drawn_at(check, front[0], front[1]) >= 0)
                 continue;
-            warn_of_gap(g, region, line, front, way);
+            warn_of_gap(g, region, line, front, toward);
         }
 }
 
-static void look_around(struct gaps *g, int region, int line, const struct outline *o)
+static void warn_around_outline(struct gaps *g, int region, int line, const struct outline *o)
 {
     const int n = o->n ? o->n : 8 + (int)min2(1e7, 2 * PI * o->radius / (along * o->radius));
     for (int k = 0; k < n; k++) {
@@ -370,7 +370,8 @@ static void look_around(struct gaps *g, int region, int line, const struct outli
             end[j][0] = o->centre[0] + o->radius * elementary_cos(angle);
             end[j][1] = o->centre[1] + o->radius * elementary_sin(angle);
         }
-        look_along(g, region, line, o->n ? o->pt[k] : end[0], o->n ? o->pt[(k + 1) % n] : end[1]);
+        warn_beside_edge(g, region, line, o->n ? o->pt[k] : end[0],
+                         o->n ? o->pt[(k + 1) % n] : end[1]);
     }
 }
 
@@ -378,15 +379,16 @@ static enum err warn_of_gaps(struct check *check)
 {
     struct gaps g = {.check = check, .n = check->scene->n_solid + check->scene->n_wall};
     const size_t n = (size_t)g.n;
-    g.told = arena_alloc(&check->shapes.temp, 2 * n * n, sizeof *g.told, "gaps", check->diag);
-    if (!g.told) return ERR_MEMORY;
+    g.warned = arena_alloc(&check->shapes.temp, 2 * n * n, sizeof *g.warned, "gaps", check->diag);
+    if (!g.warned) return ERR_MEMORY;
     for (int r = g.n - 1; r >= 0; r--) {
         const struct region *const region = &check->shapes.regions[r];
         for (int k = region->add.n - 1; k >= 0; k--)
-            look_around(&g, r, region->list->item[region->add.shape[k]].line, &region->add.item[k]);
+            warn_around_outline(&g, r, region->list->item[region->add.shape[k]].line,
+                                &region->add.item[k]);
         for (int k = 0; k < region->minus.n; k++)
-            look_around(&g, r, region->minus_list->item[region->minus.shape[k]].line,
-                        &region->minus.item[k]);
+            warn_around_outline(&g, r, region->minus_list->item[region->minus.shape[k]].line,
+                                &region->minus.item[k]);
     }
     return ERR_OK;
 }

@@ -11,10 +11,10 @@
 
 /* --- what holds a body --- */
 
-enum hold { LOOSE, STANDS, HELD };
+enum support { LOOSE, STANDS, HELD };
 
 /* Whether a particle of a body has a wall, or a body that does not fall itself, next below it. */
-static bool stands_on(const struct check *check, const char *hold, int body)
+static bool stands_on(const struct check *check, const char *support, int body)
 {
     const struct points *const p = &check->points;
     const double *const gravity = check->scene->top.gravity;
@@ -25,7 +25,7 @@ static bool stands_on(const struct check *check, const char *hold, int body)
         const int64_t below = point_beside(check, k, down, 0.9, POINT_BODY);
         if (below < 0) continue;
         if (p->kind[below] == KIND_WALL) return true;
-        if (p->section[below] != body && hold[p->section[below]] != LOOSE) return true;
+        if (p->section[below] != body && support[p->section[below]] != LOOSE) return true;
     }
     return false;
 }
@@ -40,43 +40,44 @@ static bool hinge_to(const struct scene *scene, int body, int other)
 }
 
 /* A body without a clamp moves away, which is seldom intended in a case with gravity or a load,
- * unless it begins with a velocity. Clamps hold bodies, and bonds those that are joined to them.
+ * unless it begins with a velocity. Clamps support bodies, and bonds those that are joined to them.
  * Others stand on walls and on bodies that do not fall. */
 static enum err warn_of_loose_bodies(struct check *check)
 {
     const struct scene *const scene = check->scene;
     const effect_set effects = effects_of_scene(scene);
-    char *const hold = arena_alloc(&check->shapes.temp, (size_t)scene->n_solid, sizeof *hold,
-                                   "check", check->diag);
-    if (!hold) return ERR_MEMORY;
+    char *const support = arena_alloc(&check->shapes.temp, (size_t)scene->n_solid, sizeof *support,
+                                      "check", check->diag);
+    if (!support) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++)
-        hold[k] = scene->solid[k].clamp.n || hinge_to(scene, k, -1) ? HELD : LOOSE;
+        support[k] = scene->solid[k].clamp.n || hinge_to(scene, k, -1) ? HELD : LOOSE;
     for (int round = 0; round < scene->n_solid; round++)
         for (int k = 0; k < scene->n_solid; k++) {
-            if (hold[k] == LOOSE && effects & FX_CONTACT && stands_on(check, hold, k))
-                hold[k] = STANDS;
+            if (support[k] == LOOSE && effects & FX_CONTACT && stands_on(check, support, k))
+                support[k] = STANDS;
             const int joined = scene_find_solid(scene, scene->solid[k].joined);
             for (int to = 0; to < scene->n_solid; to++)
                 if (to == joined || hinge_to(scene, k, to))
-                    hold[k] = hold[to] = hold[k] > hold[to] ? hold[k] : hold[to];
+                    support[k] = support[to] = support[k] > support[to] ? support[k] : support[to];
         }
     for (int k = 0; k < scene->n_solid; k++) {
         const struct scene_solid *const b = &scene->solid[k];
         const bool falls = b->gravity && effects & FX_GRAVITY;
         bool loaded = false, lost = false; /* `like` copies no regions */
-        if (hold[k] == HELD || b->joined[0]) continue;
+        if (support[k] == HELD || b->joined[0]) continue;
         for (int m = 0; m < k; m++)
             lost |=
                 strcmp(scene->solid[m].common.name, b->like) == 0 && scene->solid[m].clamp.n > 0;
         for (int m = 0; m < scene->n_load; m++)
             loaded |= scene_find_solid(scene, scene->load[m].body) == k;
         const char *const why =
-            lost                        ? "`like` does not copy one, so it moves freely"
-            : b->velocity.e[0]          ? NULL
-            : falls && hold[k] == LOOSE ? "gravity acts on it, so it falls unless fluid carries it"
+            lost               ? "`like` does not copy one, so it moves freely"
+            : b->velocity.e[0] ? NULL
+            : falls && support[k] == LOOSE
+                ? "gravity acts on it, so it falls unless fluid carries it"
             : falls && scene->n_fluid > 0
                 ? "it only stands on what is below it, so fluid may move it"
-            : loaded && hold[k] == LOOSE
+            : loaded && support[k] == LOOSE
                 ? "a [load] acts on it, so it is driven away unless something stops it"
                 : NULL;
         if (why)
@@ -141,7 +142,7 @@ static enum err warn_of_full_clamps(struct check *check)
     return ERR_OK;
 }
 
-/* A small circle is meant as a hinge, but two particles that are held also hold the angle. */
+/* A small circle is meant as a hinge, but two clamped particles fix the angle, too. */
 static void warn_of_hinge(struct check *check, int body)
 {
     const struct scene *const scene = check->scene;

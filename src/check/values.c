@@ -152,8 +152,8 @@ void warn_of_speed(struct check *check, int line, double speed, const char *form
                 what, speed, SPEED_WARNING, scene->c0, 10 * speed);
 }
 
-/* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs:
- * a pressure P changes the density by P/(rho0 c0^2) in Eq. 2. T-53 lets sound out up to a
+/* Where the guards would warn of the flow itself (time/guards.c), the user is warned before the
+ * run: a pressure P changes the density by P/(rho0 c0^2) in Eq. 2. T-53 lets sound out up to a
  * wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
 static void warn_of_open(struct check *check, const struct scene_open *open)
 {

@@ -61,15 +61,15 @@ struct expr;
 bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
                 char why[EXPR_WHY]);
 
-/* Compiles for scene_expr_at. ERR_INPUT: `why` has the error; ERR_MEMORY: in d. */
+/* Compiles for expr_at. ERR_INPUT: `why` has the error; ERR_MEMORY: in d. */
 enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
 
 /* Value of an expression at a point; of one in t at x = t. */
-double scene_expr_at(const struct expr *e, double x, double y);
+double expr_at(const struct expr *e, double x, double y);
 /* Value of an expression in x, y and t. */
-double scene_expr_at_time(const struct expr *e, double x, double y, double t);
+double expr_at_time(const struct expr *e, double x, double y, double t);
 
 /* The value of an expression in t with its exact first two derivatives. At a kink or step of min,
  * max, abs and round they are one-sided. */

@@ -34,12 +34,9 @@ double expr_operate(enum op_code code, double a, double b)
     }
 }
 
-double scene_expr_at(const struct expr *e, double x, double y)
-{
-    return scene_expr_at_time(e, x, y, 0);
-}
+double expr_at(const struct expr *e, double x, double y) { return expr_at_time(e, x, y, 0); }
 
-double scene_expr_at_time(const struct expr *e, double x, double y, double t)
+double expr_at_time(const struct expr *e, double x, double y, double t)
 {
     double stack[MAX_STACK] = {0};
     int top = -1;

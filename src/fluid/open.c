@@ -246,7 +246,7 @@ static void mirror_fields(const struct open *o, struct open_member *m,
 static double given_pressure(const struct scene_open *b, const struct fluid_constants *k,
                              const double on_line[2], double time)
 {
-    if (b->pressure) return scene_expr_at_time(b->pressure, on_line[0], on_line[1], time);
+    if (b->pressure) return expr_at_time(b->pressure, on_line[0], on_line[1], time);
     return max2(0, -k->rho0 * k->gravity[1] * (b->level - on_line[1]));
 }
 

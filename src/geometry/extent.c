@@ -191,8 +191,7 @@ static enum err check_field(struct sampler *sampler, const struct scene_expr *fi
     const struct scene_points *p = &sampler->scene->points[kind];
     for (int c = 0; c < 2 && field->e[c]; c++) {
         for (int64_t k = 0; k < p->n; k++) {
-            if (p->body[k] != body || isfinite(scene_expr_at(field->e[c], p->x[k], p->y[k])))
-                continue;
+            if (p->body[k] != body || isfinite(expr_at(field->e[c], p->x[k], p->y[k]))) continue;
             return geometry_refuse(sampler, common->line,
                                    "[%s %s] %s is not finite at (%g, %g) m; change the expression",
                                    kind_names[kind], common->name, key, p->x[k], p->y[k]);

@@ -15,7 +15,7 @@
 static const double same_direction = 1e-6, on_lattice = 1e-6;
 
 /* Sampling lines at right angles to an axis, per spacing, which find the edges along it. */
-enum { LINES_PER_DP = 4, MAX_LINES = 20000, MAX_EDGES = 24, MAX_CROSSINGS = 1 << 30 };
+enum { LINES_PER_DP = 4, MAX_SCAN_LINES = 20000, MAX_EDGES = 24, MAX_CROSSINGS = 1 << 30 };
 
 /* --- direction --- */
 
@@ -176,7 +176,8 @@ static enum err turned_outlines(struct outlines *o, const struct outlines *from,
 
 /* Whether the previous line has a crossing of the same kind at nearly the same position: then the
  * boundary is at right angles to the axis, and not slanted. */
-static bool goes_on(const struct crossing *before, int n, const struct crossing *c, double dp)
+static bool continues_edge(const struct crossing *before, int n, const struct crossing *c,
+                           double dp)
 {
     for (int k = 0; k < n; k++)
         if (before[k].clamp == c->clamp && fabs(before[k].at - c->at) < 0.1 * dp) return true;
@@ -205,7 +206,7 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
     const double low = body.box.low[1], high = body.box.high[1];
     const int capacity = outlines_ends(&body) + outlines_ends(&minus) + outlines_ends(&clamp) + 4;
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
-    const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
+    const int lines = wanted < 1 ? 1 : wanted > MAX_SCAN_LINES ? MAX_SCAN_LINES : (int)wanted;
     const double step = (high - low) / lines;
     double *const buffer = geometry_alloc(sampler, 3 * (size_t)capacity, sizeof *buffer);
     struct crossing *const two_lines =
@@ -218,7 +219,7 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
         const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL, low + (k + 0.5) * step,
                                     dp, buffer, capacity, line);
         for (int j = 0; j < found; j++) {
-            if (!goes_on(last, before, &line[j], dp) || to->n == MAX_CROSSINGS) continue;
+            if (!continues_edge(last, before, &line[j], dp) || to->n == MAX_CROSSINGS) continue;
             to->item = arena_grow(&sampler->temp, to->item, (size_t)to->n, sizeof *to->item,
                                   "sampling", sampler->diag);
             if (!to->item) return ERR_MEMORY;

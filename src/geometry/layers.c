@@ -9,10 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Parts per spacing that faces are divided into. */
-enum { PARTS = 8 };
 /* Two points of a wall nearer than this many dp count as one. */
-static const double too_near = 0.65;
+static const double coincident = 0.65;
 
 /* --- choice of pieces --- */
 
@@ -64,7 +62,7 @@ static int edges_of(const struct loop *o) { return o->open ? o->n - 1 : o->n; }
 static enum err loop_of_circle(const struct outline *o, double dp, struct loop *to,
                                struct sampler *sampler)
 {
-    const double wanted = 2 * PI * o->radius / dp * PARTS;
+    const double wanted = 2 * PI * o->radius / dp * EDGE_PARTS;
     to->n = wanted < 32 ? 32 : wanted > 1e6 ? 1000000 : (int)wanted;
     to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
     if (!to->pt) return ERR_MEMORY;
@@ -122,7 +120,7 @@ static struct edge edge_of(const struct loop *o, int k, double dp)
     e.along[1] = (b[1] - a[1]) / length;
     e.in[0] = -e.along[1];
     e.in[1] = e.along[0];
-    e.parts = 1 + (int)min2(1e8, length / dp * PARTS);
+    e.parts = 1 + (int)min2(1e8, length / dp * EDGE_PARTS);
     return e;
 }
 
@@ -186,7 +184,7 @@ static enum err trace_corner(struct layers *l, struct trace *t, const struct edg
         elementary_atan2(e->along[0] * next->along[1] - e->along[1] * next->along[0],
                          e->along[0] * next->along[0] + e->along[1] * next->along[1]);
     if (!(turn < 0) || !exposed(l, e, e->parts - 1) || !exposed(l, next, 0)) return ERR_OK;
-    const int parts = 1 + (int)(-turn * depth / l->dp * PARTS);
+    const int parts = 1 + (int)(-turn * depth / l->dp * EDGE_PARTS);
     for (int k = 0; k < parts; k++) {
         const double angle = turn * (k + 0.5) / parts, c = elementary_cos(angle),
                      s = elementary_sin(angle);
@@ -223,7 +221,7 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
 /* Adds a point unless there is already one at its place. */
 static enum err offer(struct layers *l, double x, double y)
 {
-    if (point_grid_any(&l->points, x, y, too_near * l->dp)) return ERR_OK;
+    if (point_grid_any(&l->points, x, y, coincident * l->dp)) return ERR_OK;
     return point_grid_add(&l->points, x, y, &l->g->temp, l->g->diag);
 }
 

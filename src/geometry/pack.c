@@ -13,15 +13,14 @@
 
 #include <math.h>
 
-/* Parts per spacing that edges are divided into; lines through a cell, for its area in the
- * shape. */
-enum { PARTS = 8, LINES = 16 };
+/* Lines through a cell, for its area in the shape. */
+enum { LINES = 16 };
 /* Slope of an edge that counts as one along the lattice. */
 static const double along_lattice = 1e-6;
 /* A shift is this times h^2 grad C, below the limit of 0.5 of Lind et al. 2012, and at most
  * `longest` dp. The shifts end when all are below `still` dp. */
 static const double shift_factor = 0.2, longest = 0.1, still = 1e-4;
-static const int most_shifts = 1000;
+static const int max_shifts = 1000;
 
 /* The cells that slanted edges of a region cut, in the order of the edges; in cells of the
  * lattice. */
@@ -64,7 +63,7 @@ static enum err visit_edge(struct cut_cells *c, struct sampler *sampler, const d
     const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
     if (min2(fabs(dx), fabs(dy)) <= along_lattice * length) return ERR_OK;
     const double normal[2] = {-dy / length, dx / length};
-    const int parts = 1 + (int)min2(1e8, length / c->region->lattice.dp * PARTS);
+    const int parts = 1 + (int)min2(1e8, length / c->region->lattice.dp * EDGE_PARTS);
     for (int k = 0; k < parts; k++) {
         const double s = (k + 0.5) / parts, at[2] = {a[0] + s * dx, a[1] + s * dy};
         TRY(visit(c, sampler, at, normal));
@@ -74,7 +73,7 @@ static enum err visit_edge(struct cut_cells *c, struct sampler *sampler, const d
 
 static enum err visit_circle(struct cut_cells *c, struct sampler *sampler, const struct outline *o)
 {
-    const int parts = 1 + (int)min2(1e8, 2 * PI * o->radius / c->region->lattice.dp * PARTS);
+    const int parts = 1 + (int)min2(1e8, 2 * PI * o->radius / c->region->lattice.dp * EDGE_PARTS);
     for (int k = 0; k < parts; k++) {
         const double angle = 2 * PI * k / parts,
                      normal[2] = {elementary_cos(angle), elementary_sin(angle)},
@@ -320,7 +319,7 @@ static enum err settle(struct packing *packing)
     double(*move)[2] = geometry_alloc(packing->g, (size_t)packing->n_free + 1, sizeof *move);
     if (!move) return ERR_MEMORY;
     double largest = HUGE_VAL;
-    for (int step = 0; step < most_shifts && largest > still * dp; step++) {
+    for (int step = 0; step < max_shifts && largest > still * dp; step++) {
         largest = 0;
         point_grid_clear(&t);
         for (int64_t k = 0; k < packing->n; k++) point_grid_insert(&t, k);

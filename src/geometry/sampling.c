@@ -214,7 +214,7 @@ static enum err lay_layers(struct sampler *sampler, struct region *region)
     return ERR_OK;
 }
 
-/* Shapes without particles are told together, before anything needs their particles. */
+/* Shapes without particles are reported together, before anything needs their particles. */
 static enum err count_points(struct sampler *sampler, struct region *region)
 {
     int64_t *per_shape = geometry_alloc(sampler, (size_t)region->list->n, sizeof *per_shape);

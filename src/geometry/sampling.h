@@ -14,6 +14,9 @@
 #define NUDGE_X 1e-6
 #define NUDGE_Y 0.618e-6
 
+/* Parts per spacing that edges are divided into, to place points beside them. */
+enum { EDGE_PARTS = 8 };
+
 /* The region of one section. Its shapes are in the axes of its lattice. */
 struct region {
     enum kind kind;
@@ -28,8 +31,8 @@ struct region {
     int64_t n, n_clamped;       /* points inside, and those that a clamp holds */
     int64_t n_hinged;           /* of the latter those in a hinge */
     struct outlines clamps;     /* of a solid */
-    bool *layered,
-        has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
+    bool *layered; /* [add.n]: whether a piece is sampled in layers (geometry/layers.h) */
+    bool has_layers;
     int64_t n_layered;
     double *layer_x, *layer_y; /* those of the layers, after the lattice's */
 };
@@ -67,9 +70,9 @@ SPHFSI_INLINE void *geometry_alloc(struct sampler *sampler, size_t n, size_t siz
     return arena_alloc(&sampler->temp, n, size, "sampling", sampler->diag);
 }
 
-/* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next
- * section; the error itself after CASE_MAX_PROBLEMS of them and of the case's values.
- * geometry_problems then ends what needs sound input. */
+/* Turns ERR_INPUT, whose message is in the diag, into ERR_OK, so that the next section is checked
+ * too; not after CASE_MAX_PROBLEMS of them, with those of values. geometry_problems returns the
+ * error before code that needs valid input. */
 SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 {
     sampler->problems += e == ERR_INPUT;

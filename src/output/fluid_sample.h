@@ -29,8 +29,8 @@ double fluid_front(const struct simulation *sim, int direction);
 
 /* Flow through the line from a to b, positive to the right of that direction, m^2/s per depth. */
 double fluid_flux(const struct simulation *sim, const double a[2], const double b[2]);
-/* Mean pressure along the line from a to b, Pa, and its force on a surface with the fluid to
- * the left of the line, N/m: the midpoint rule over pieces of at most dp. */
+/* Mean pressure along the line from a to b, Pa, by the midpoint rule over pieces of at most dp; and
+ * its force on a surface with the fluid to the left of the line, N/m. */
 void fluid_pressure_on(const struct simulation *sim, const double a[2], const double b[2],
                        double out[3]);
 

@@ -77,22 +77,22 @@ static int find_near(const struct particles *particles, int body, const double a
 }
 
 /* Place of the k-th particle from the probe in units of the reach, and its weight. */
-static double offset(const struct probe *pr, const struct particles *particles, int k, double reach,
-                     double *x, double *y)
+static double offset(const struct probe *probe, const struct particles *particles, int k,
+                     double reach, double *x, double *y)
 {
-    *x = (particles->X[pr->particle[k]] - pr->point[0]) / reach;
-    *y = (particles->Y[pr->particle[k]] - pr->point[1]) / reach;
+    *x = (particles->X[probe->particle[k]] - probe->point[0]) / reach;
+    *y = (particles->Y[probe->particle[k]] - probe->point[1]) / reach;
     return weight_at(*x * *x + *y * *y);
 }
 
 /* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of
  * the plane fitted to the particles. Particles on one line determine no plane: then the weighted
  * mean. */
-static void weigh(struct probe *pr, const struct particles *particles, double reach)
+static void find_weights(struct probe *probe, const struct particles *particles, double reach)
 {
     double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, x, y;
-    for (int k = 0; k < pr->n; k++) {
-        const double w = offset(pr, particles, k, reach, &x, &y);
+    for (int k = 0; k < probe->n; k++) {
+        const double w = offset(probe, particles, k, reach, &x, &y);
         m00 += w, m10 += w * x, m01 += w * y;
         m20 += w * x * x, m11 += w * x * y, m02 += w * y * y;
     }
@@ -101,34 +101,35 @@ static void weigh(struct probe *pr, const struct particles *particles, double re
     const double c01 = m10 * m11 - m20 * m01;
     const double det = m00 * c00 + m10 * c10 + m01 * c01;
     const bool collinear = !(det > 1e-9 * m00 * m00 * m00);
-    for (int k = 0; k < pr->n; k++) {
-        const double w = offset(pr, particles, k, reach, &x, &y);
-        pr->weight[k] = collinear ? w / m00 : w * (c00 + c10 * x + c01 * y) / det;
+    for (int k = 0; k < probe->n; k++) {
+        const double w = offset(probe, particles, k, reach, &x, &y);
+        probe->weight[k] = collinear ? w / m00 : w * (c00 + c10 * x + c01 * y) / det;
     }
 }
 
 /* A corner of a body is 0.71 dp from its nearest particle; a point further than h is a mistake. */
-static enum err attach(struct probe *pr, const struct scene_probe *sp, const struct simulation *sim,
-                       struct arena *a, struct diag *d)
+static enum err attach(struct probe *probe, const struct scene_probe *sp,
+                       const struct simulation *sim, struct arena *a, struct diag *d)
 {
-    const int body = pr->body;
+    const int body = probe->body;
     const struct particles *particles = &sim->kind[KIND_SOLID];
     const char *const name = sim->scene->solid[body].common.name;
     const double h = scene_solid_h(sim->scene, body), reach = 2 * h;
     double distance;
-    pr->n = find_near(particles, body, pr->point, reach, NULL, &distance);
+    probe->n = find_near(particles, body, probe->point, reach, NULL, &distance);
     char place[LOCATION_TEXT];
     scene_location(sim->scene, sp->common.line, place);
     if (!(distance < h))
         return diag_fail(d, ERR_INPUT,
                          "%s: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
                          "[solid %s]; move it to h = %.3g m or less",
-                         place, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
-    pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
-    pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);
-    if (!pr->particle || !pr->weight) return ERR_MEMORY;
-    find_near(particles, body, pr->point, reach, pr->particle, &distance);
-    weigh(pr, particles, reach);
+                         place, sp->common.name, probe->point[0], probe->point[1], distance, name,
+                         h);
+    probe->particle = arena_alloc(a, (size_t)probe->n, sizeof *probe->particle, "probe", d);
+    probe->weight = arena_alloc(a, (size_t)probe->n, sizeof *probe->weight, "probe", d);
+    if (!probe->particle || !probe->weight) return ERR_MEMORY;
+    find_near(particles, body, probe->point, reach, probe->particle, &distance);
+    find_weights(probe, particles, reach);
     return ERR_OK;
 }
 
@@ -156,53 +157,53 @@ static struct probe_body find_body(const struct scene *scene, const char *name)
 }
 
 /* The bodies of a force. */
-static enum err find_bodies(struct probe *pr, const struct scene *scene, const char *list,
+static enum err find_bodies(struct probe *probe, const struct scene *scene, const char *list,
                             struct arena *a, struct diag *d)
 {
     char name[SCENE_TEXT];
-    while (scene_listed(list, pr->n_bodies, name)) pr->n_bodies++;
-    pr->bodies = arena_alloc(a, (size_t)pr->n_bodies, sizeof *pr->bodies, "probe", d);
-    if (!pr->bodies) return ERR_MEMORY;
-    for (int k = 0; k < pr->n_bodies && scene_listed(list, k, name); k++)
-        pr->bodies[k] = find_body(scene, name);
+    while (scene_listed(list, probe->n_bodies, name)) probe->n_bodies++;
+    probe->bodies = arena_alloc(a, (size_t)probe->n_bodies, sizeof *probe->bodies, "probe", d);
+    if (!probe->bodies) return ERR_MEMORY;
+    for (int k = 0; k < probe->n_bodies && scene_listed(list, k, name); k++)
+        probe->bodies[k] = find_body(scene, name);
     return ERR_OK;
 }
 
 /* The body that carries a point or a line of the fluid. */
-static enum err ride(struct probe *pr, const struct scene_probe *sp, const struct simulation *sim,
-                     struct arena *a, struct diag *d)
+static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp,
+                               const struct simulation *sim, struct arena *a, struct diag *d)
 {
     const struct probe_body on = find_body(sim->scene, sp->on);
     if (on.kind == KIND_WALL) {
-        pr->motion = scene_find_motion(sim->scene, sim->scene->wall[on.body].motion);
+        probe->motion = scene_find_motion(sim->scene, sim->scene->wall[on.body].motion);
         return ERR_OK;
     }
-    pr->body = on.body;
-    return attach(pr, sp, sim, a, d);
+    probe->body = on.body;
+    return attach(probe, sp, sim, a, d);
 }
 
-static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
+static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                              const struct simulation *sim, struct arena *a, struct diag *d)
 {
-    *pr = (struct probe){.quantity = sp->quantity,
-                         .target = scene_probe_target(sp),
-                         .direction = sp->direction,
-                         .columns = quantity_columns(sp->quantity),
-                         .average = sp->average,
-                         .motion = -1,
-                         .kind = KIND_SOLID,
-                         .body = scene_find_solid(sim->scene, sp->body)};
-    memcpy(pr->point, sp->point, sizeof pr->point);
-    memcpy(pr->to, sp->to, sizeof pr->to);
-    if (pr->target == TARGET_SOLID && pr->body < 0) {
-        pr->kind = KIND_WALL;
-        pr->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
-        pr->spring = scene_find_spring(sim->scene, sp->body);
+    *probe = (struct probe){.quantity = sp->quantity,
+                            .target = scene_probe_target(sp),
+                            .direction = sp->direction,
+                            .columns = quantity_columns(sp->quantity),
+                            .average = sp->average,
+                            .motion = -1,
+                            .kind = KIND_SOLID,
+                            .body = scene_find_solid(sim->scene, sp->body)};
+    memcpy(probe->point, sp->point, sizeof probe->point);
+    memcpy(probe->to, sp->to, sizeof probe->to);
+    if (probe->target == TARGET_SOLID && probe->body < 0) {
+        probe->kind = KIND_WALL;
+        probe->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
+        probe->spring = scene_find_spring(sim->scene, sp->body);
         return ERR_OK;
     }
-    if (pr->target == TARGET_BODY) return find_bodies(pr, sim->scene, sp->body, a, d);
-    if (*sp->on) return ride(pr, sp, sim, a, d);
-    return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, sim, a, d) : ERR_OK;
+    if (probe->target == TARGET_BODY) return find_bodies(probe, sim->scene, sp->body, a, d);
+    if (*sp->on) return attach_to_body(probe, sp, sim, a, d);
+    return probe->target == TARGET_SOLID_POINT ? attach(probe, sp, sim, a, d) : ERR_OK;
 }
 
 /* --- files --- */
@@ -230,114 +231,116 @@ static size_t name_columns(char *header, size_t size, size_t at, const struct sc
 
 /* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`.
  */
-static enum err create_file(struct probes *p, const struct scene *scene, int only, struct arena *a,
-                            struct diag *d)
+static enum err create_file(struct probes *probes, const struct scene *scene, int only,
+                            struct arena *a, struct diag *d)
 {
-    struct probe_file *const f = &p->file[p->n_files];
-    const size_t size = 8 + (size_t)p->n * PROBE_MAX_COLUMNS * PROBE_COLUMN_TEXT;
+    struct probe_file *const f = &probes->file[probes->n_files];
+    const size_t size = 8 + (size_t)probes->n * PROBE_MAX_COLUMNS * PROBE_COLUMN_TEXT;
     char *const header = arena_alloc(a, size, 1, "header of probes.csv", d);
     if (!header) return ERR_MEMORY;
     size_t at = (size_t)snprintf(header, size, "time_s");
     *f = (struct probe_file){.header = header, .columns = 1};
-    for (int k = 0; k < p->n; k++) {
+    for (int k = 0; k < probes->n; k++) {
         const struct scene_probe *const sp = &scene->probe[k];
         if (only >= 0 ? k != only : sp->interval > 0) continue;
-        p->probe[k].file = p->n_files;
-        p->probe[k].column = f->columns;
+        probes->probe[k].file = probes->n_files;
+        probes->probe[k].column = f->columns;
         at = name_columns(header, size, at, sp);
-        f->columns += p->probe[k].columns;
+        f->columns += probes->probe[k].columns;
         f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;
     }
     if (f->columns == 1) return ERR_OK;
     snprintf(f->name, sizeof f->name, only >= 0 ? "probes_%s.csv" : "probes.csv",
              only >= 0 ? scene->probe[only].common.name : "");
-    p->n_files++;
+    probes->n_files++;
     return ERR_OK;
 }
 
-enum err probes_create(struct probes *p, const struct simulation *sim, struct arena *a,
+enum err probes_create(struct probes *probes, const struct simulation *sim, struct arena *a,
                        struct diag *d)
 {
     const struct scene *scene = sim->scene;
-    *p = (struct probes){.n = scene->n_probe};
-    p->probe = arena_alloc(a, (size_t)p->n, sizeof *p->probe, "probes", d);
-    p->file = arena_alloc(a, (size_t)p->n + 1, sizeof *p->file, "probes", d);
-    if (!p->probe || !p->file) return ERR_MEMORY;
-    for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], sim, a, d));
-    TRY(create_file(p, scene, -1, a, d));
-    for (int k = 0; k < p->n; k++)
-        if (scene->probe[k].interval > 0) TRY(create_file(p, scene, k, a, d));
+    *probes = (struct probes){.n = scene->n_probe};
+    probes->probe = arena_alloc(a, (size_t)probes->n, sizeof *probes->probe, "probes", d);
+    probes->file = arena_alloc(a, (size_t)probes->n + 1, sizeof *probes->file, "probes", d);
+    if (!probes->probe || !probes->file) return ERR_MEMORY;
+    for (int k = 0; k < probes->n; k++)
+        TRY(create_probe(&probes->probe[k], &scene->probe[k], sim, a, d));
+    TRY(create_file(probes, scene, -1, a, d));
+    for (int k = 0; k < probes->n; k++)
+        if (scene->probe[k].interval > 0) TRY(create_file(probes, scene, k, a, d));
     return ERR_OK;
 }
 
 /* --- values --- */
 
-static void weighted_sum(const struct probe *pr, const double *fx, const double *fy, double out[2])
+static void weighted_sum(const struct probe *probe, const double *fx, const double *fy,
+                         double out[2])
 {
     out[0] = out[1] = 0;
-    for (int k = 0; k < pr->n; k++) {
-        out[0] += pr->weight[k] * fx[pr->particle[k]];
-        out[1] += pr->weight[k] * fy[pr->particle[k]];
+    for (int k = 0; k < probe->n; k++) {
+        out[0] += probe->weight[k] * fx[probe->particle[k]];
+        out[1] += probe->weight[k] * fy[probe->particle[k]];
     }
 }
 
-static void stress(const struct probe *pr, const struct simulation *sim, double out[5])
+static void stress(const struct probe *probe, const struct simulation *sim, double out[5])
 {
     double mean[4] = {0};
-    for (int k = 0; k < pr->n; k++) {
+    for (int k = 0; k < probe->n; k++) {
         double sigma[4], det;
-        solid_cauchy(&sim->solid, &sim->kind[KIND_SOLID], pr->particle[k], sigma, &det);
-        for (int c = 0; c < 4; c++) mean[c] += pr->weight[k] * sigma[c];
+        solid_cauchy(&sim->solid, &sim->kind[KIND_SOLID], probe->particle[k], sigma, &det);
+        for (int c = 0; c < 4; c++) mean[c] += probe->weight[k] * sigma[c];
     }
     out[0] = mean[0], out[1] = mean[1], out[2] = mean[3], out[3] = mean[2];
     out[4] = solid_von_mises(mean);
 }
 
-static void strain(const struct probe *pr, const struct simulation *sim, double out[3])
+static void strain(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     out[0] = out[1] = out[2] = 0;
-    for (int k = 0; k < pr->n; k++) {
-        const int32_t i = pr->particle[k];
+    for (int k = 0; k < probe->n; k++) {
+        const int32_t i = probe->particle[k];
         const double xx = particles->Uxx[i], xy = particles->Uxy[i], yx = particles->Uyx[i],
                      yy = particles->Uyy[i];
-        out[0] += pr->weight[k] * (xx + 0.5 * (xx * xx + yx * yx));
-        out[1] += pr->weight[k] * (yy + 0.5 * (xy * xy + yy * yy));
-        out[2] += pr->weight[k] * 0.5 * (xy + yx + xx * xy + yx * yy);
+        out[0] += probe->weight[k] * (xx + 0.5 * (xx * xx + yx * yx));
+        out[1] += probe->weight[k] * (yy + 0.5 * (xy * xy + yy * yy));
+        out[2] += probe->weight[k] * 0.5 * (xy + yx + xx * xy + yx * yy);
     }
 }
 
 /* Adds the forces fx, fy on the particles of a body, and their moment about the probe's point. */
-static void add_forces(const struct probe *pr, const struct particles *particles, int body,
+static void add_forces(const struct probe *probe, const struct particles *particles, int body,
                        const double *fx, const double *fy, double out[3])
 {
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->body[i] != body) continue;
         out[0] += fx[i];
         out[1] += fy[i];
-        out[2] +=
-            (particles->x[i] - pr->point[0]) * fy[i] - (particles->y[i] - pr->point[1]) * fx[i];
+        out[2] += (particles->x[i] - probe->point[0]) * fy[i] -
+                  (particles->y[i] - probe->point[1]) * fx[i];
     }
 }
 
-static void force(const struct probe *pr, const struct simulation *sim, double out[3])
+static void force(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     out[0] = out[1] = out[2] = 0;
-    for (int k = 0; k < pr->n_bodies; k++) {
-        const struct particles *const particles = &sim->kind[pr->bodies[k].kind];
-        add_forces(pr, particles, pr->bodies[k].body, particles->fx, particles->fy, out);
+    for (int k = 0; k < probe->n_bodies; k++) {
+        const struct particles *const particles = &sim->kind[probe->bodies[k].kind];
+        add_forces(probe, particles, probe->bodies[k].body, particles->fx, particles->fy, out);
     }
 }
 
 /* T-75: the particles of a body have equal masses. Pose and its rate. */
-static void pose(const struct probe *pr, const struct simulation *sim, double out[3],
+static void pose(const struct probe *probe, const struct simulation *sim, double out[3],
                  double rate[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     double X = 0, Y = 0, ux = 0, uy = 0, vx = 0, vy = 0, n = 0;
     double across = 0, along = 0, to_across = 0, to_along = 0;
     for (int64_t i = 0; i < particles->n; i++) {
-        if (particles->body[i] != pr->body) continue;
+        if (particles->body[i] != probe->body) continue;
         n++;
         X += particles->X[i];
         Y += particles->Y[i];
@@ -348,7 +351,7 @@ static void pose(const struct probe *pr, const struct simulation *sim, double ou
     }
     X /= n, Y /= n, ux /= n, uy /= n, vx /= n, vy /= n;
     for (int64_t i = 0; i < particles->n; i++) {
-        if (particles->body[i] != pr->body) continue;
+        if (particles->body[i] != probe->body) continue;
         const double a = particles->X[i] - X, b = particles->Y[i] - Y;
         const double x = a + (particles->ux[i] - ux), y = b + (particles->uy[i] - uy);
         across += a * y - b * x;
@@ -365,11 +368,11 @@ static void pose(const struct probe *pr, const struct simulation *sim, double ou
 }
 
 /* Of a rigid body: the angle counts turns. */
-static void rigid_pose(const struct probe *pr, const struct simulation *sim, double out[3],
+static void rigid_pose(const struct probe *probe, const struct simulation *sim, double out[3],
                        double rate[3])
 {
     const struct motion_state m =
-        motion_at(sim->scene, scene_rigid_motion(sim->scene, pr->body), sim->state.time);
+        motion_at(sim->scene, scene_rigid_motion(sim->scene, probe->body), sim->state.time);
     for (int c = 0; c < 2; c++) {
         out[c] = m.centre[c] + m.d[c];
         rate[c] = m.v[c];
@@ -380,76 +383,76 @@ static void rigid_pose(const struct probe *pr, const struct simulation *sim, dou
 
 /* Of its hinge or guide on a rigid body in the last step; of a spring on what its end `to` is fixed
  * to. */
-static void rigid_reaction(const struct probe *pr, const struct simulation *sim, double out[3])
+static void rigid_reaction(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     double at[2];
-    if (pr->body >= 0) {
-        const struct rigid_state *const s = &sim->rigid.state[pr->body];
-        for (int c = 0; c < 2; c++) at[c] = sim->rigid.body[pr->body].centre[c] + s->x[c];
+    if (probe->body >= 0) {
+        const struct rigid_state *const s = &sim->rigid.state[probe->body];
+        for (int c = 0; c < 2; c++) at[c] = sim->rigid.body[probe->body].centre[c] + s->x[c];
         memcpy(out, s->reaction, sizeof s->reaction);
     } else {
-        rigid_spring_force(&sim->rigid, pr->spring, out, at);
+        rigid_spring_force(&sim->rigid, probe->spring, out, at);
         out[2] = 0;
     }
-    out[2] += (at[0] - pr->point[0]) * out[1] - (at[1] - pr->point[1]) * out[0];
+    out[2] += (at[0] - probe->point[0]) * out[1] - (at[1] - probe->point[1]) * out[0];
 }
 
-static void energy(const struct probe *pr, const struct simulation *sim, double out[3])
+static void energy(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     double det, sum = 0;
     for (int64_t i = 0; i < particles->n; i++)
-        if (particles->body[i] == pr->body)
+        if (particles->body[i] == probe->body)
             sum += square(particles->vx[i]) + square(particles->vy[i]);
-    out[0] = 0.5 * sim->solid.body[pr->body].mass * sum;
-    solid_energy(&sim->solid, particles, pr->body, &out[1], &out[2], &det);
+    out[0] = 0.5 * sim->solid.body[probe->body].mass * sum;
+    solid_energy(&sim->solid, particles, probe->body, &out[1], &out[2], &det);
 }
 
 /* Where a point of a wall is now. */
-static void move_with_wall(const struct probe *pr, const struct simulation *sim, double at[2])
+static void move_with_wall(const struct probe *probe, const struct simulation *sim, double at[2])
 {
-    if (pr->motion < 0) return;
-    const struct motion_state m = motion_at(sim->scene, pr->motion, sim->state.time);
+    if (probe->motion < 0) return;
+    const struct motion_state m = motion_at(sim->scene, probe->motion, sim->state.time);
     memcpy(at, motion_of_point(&m, at[0], at[1]).x, 2 * sizeof *at);
 }
 
 /* Where a point of the fluid is now. */
-static void place(const struct probe *pr, const struct simulation *sim, double at[2])
+static void present_point(const struct probe *probe, const struct simulation *sim, double at[2])
 {
-    memcpy(at, pr->point, sizeof pr->point);
-    move_with_wall(pr, sim, at);
-    if (pr->n > 0) {
+    memcpy(at, probe->point, sizeof probe->point);
+    move_with_wall(probe, sim, at);
+    if (probe->n > 0) {
         const struct particles *const particles = &sim->kind[KIND_SOLID];
         double u[2];
-        weighted_sum(pr, particles->ux, particles->uy, u);
+        weighted_sum(probe, particles->ux, particles->uy, u);
         at[0] += u[0];
         at[1] += u[1];
     }
 }
 
-static void surface_pressure(const struct probe *pr, const struct simulation *sim, double out[3])
+static void surface_pressure(const struct probe *probe, const struct simulation *sim, double out[3])
 {
-    double from[2] = {pr->point[0], pr->point[1]}, to[2] = {pr->to[0], pr->to[1]};
-    move_with_wall(pr, sim, from);
-    move_with_wall(pr, sim, to);
+    double from[2] = {probe->point[0], probe->point[1]}, to[2] = {probe->to[0], probe->to[1]};
+    move_with_wall(probe, sim, from);
+    move_with_wall(probe, sim, to);
     fluid_pressure_on(sim, from, to, out);
 }
 
 /* Values, and their rates where these are known. */
-static void values(const struct probe *pr, struct simulation *sim, double *row, double *rate)
+static void evaluate(const struct probe *probe, struct simulation *sim, double *row, double *rate)
 {
     struct particles *const solid = &sim->kind[KIND_SOLID];
     struct solid_forces_now now;
     double at[2] = {0};
-    if (pr->target == TARGET_FLUID_POINT) place(pr, sim, at);
-    switch ((enum probe_quantity)pr->quantity) {
+    if (probe->target == TARGET_FLUID_POINT) present_point(probe, sim, at);
+    switch ((enum probe_quantity)probe->quantity) {
     case PROBE_DISPLACEMENT:
-        weighted_sum(pr, solid->ux, solid->uy, row);
-        weighted_sum(pr, solid->vx, solid->vy, rate);
+        weighted_sum(probe, solid->ux, solid->uy, row);
+        weighted_sum(probe, solid->vx, solid->vy, rate);
         break;
     case PROBE_VELOCITY:
-        if (pr->target == TARGET_SOLID_POINT) {
-            weighted_sum(pr, solid->vx, solid->vy, row);
+        if (probe->target == TARGET_SOLID_POINT) {
+            weighted_sum(probe, solid->vx, solid->vy, row);
         } else {
             const struct sample here = fluid_sample(sim, at[0], at[1]);
             row[0] = here.vx, row[1] = here.vy;
@@ -457,56 +460,56 @@ static void values(const struct probe *pr, struct simulation *sim, double *row, 
         break;
     case PROBE_ACCELERATION:
         now = solid_forces_now(&sim->solid, solid, sim->state.time);
-        weighted_sum(pr, now.ax, now.ay, row);
+        weighted_sum(probe, now.ax, now.ay, row);
         break;
     case PROBE_REACTION:
-        if (pr->kind == KIND_WALL) {
-            rigid_reaction(pr, sim, row);
+        if (probe->kind == KIND_WALL) {
+            rigid_reaction(probe, sim, row);
             break;
         }
         now = solid_forces_now(&sim->solid, solid, sim->state.time);
         row[0] = row[1] = row[2] = 0;
-        add_forces(pr, solid, pr->body, now.held_x, now.held_y, row);
+        add_forces(probe, solid, probe->body, now.held_x, now.held_y, row);
         break;
     case PROBE_PRESSURE: *row = fluid_pressure_at(sim, at[0], at[1]); break;
-    case PROBE_STRESS: stress(pr, sim, row); break;
+    case PROBE_STRESS: stress(probe, sim, row); break;
     case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
-    case PROBE_FORCE: force(pr, sim, row); break;
-    case PROBE_FRONT: *row = fluid_front(sim, pr->direction); break;
-    case PROBE_ENERGY: energy(pr, sim, row); break;
-    case PROBE_FLUX: *row = fluid_flux(sim, pr->point, pr->to); break;
-    case PROBE_STRAIN: strain(pr, sim, row); break;
-    case PROBE_POSE: (pr->kind == KIND_WALL ? rigid_pose : pose)(pr, sim, row, rate); break;
-    case PROBE_SURFACE_PRESSURE: surface_pressure(pr, sim, row); break;
+    case PROBE_FORCE: force(probe, sim, row); break;
+    case PROBE_FRONT: *row = fluid_front(sim, probe->direction); break;
+    case PROBE_ENERGY: energy(probe, sim, row); break;
+    case PROBE_FLUX: *row = fluid_flux(sim, probe->point, probe->to); break;
+    case PROBE_STRAIN: strain(probe, sim, row); break;
+    case PROBE_POSE: (probe->kind == KIND_WALL ? rigid_pose : pose)(probe, sim, row, rate); break;
+    case PROBE_SURFACE_PRESSURE: surface_pressure(probe, sim, row); break;
     case PROBE_QUANTITIES: break;
     }
 }
 
-void probes_sample(const struct probes *p, struct simulation *sim, int file, bool means,
+void probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
                    double *row, double *rate)
 {
     bool refresh = false;
-    for (int k = 0; k < p->n; k++)
-        refresh |= p->probe[k].file == file && (!means || p->probe[k].mean) &&
-                   needs_refresh(p->probe[k].quantity);
+    for (int k = 0; k < probes->n; k++)
+        refresh |= probes->probe[k].file == file && (!means || probes->probe[k].mean) &&
+                   needs_refresh(probes->probe[k].quantity);
     if (refresh) simulation_refresh(sim);
     row[0] = sim->state.time;
-    for (int k = 0; k < p->n; k++) {
-        const struct probe *const probe = &p->probe[k];
+    for (int k = 0; k < probes->n; k++) {
+        const struct probe *const probe = &probes->probe[k];
         if (probe->file != file || (means && !probe->mean)) continue;
-        values(probe, sim, row + probe->column, rate + probe->column);
+        evaluate(probe, sim, row + probe->column, rate + probe->column);
     }
 }
 
-void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row)
+void probes_values(const struct probes *probes, struct simulation *sim, int k, double *row)
 {
-    const struct probe *const pr = &p->probe[probe];
-    const struct probe_mean *const m = pr->mean;
+    const struct probe *const probe = &probes->probe[k];
+    const struct probe_mean *const m = probe->mean;
     if (m && m->row >= 0 && m->time == sim->state.time) {
-        for (int c = 0; c < pr->columns; c++) row[c] = m->sum[c] / m->covered;
+        for (int c = 0; c < probe->columns; c++) row[c] = m->sum[c] / m->covered;
         return;
     }
-    if (needs_refresh(pr->quantity)) simulation_refresh(sim);
+    if (needs_refresh(probe->quantity)) simulation_refresh(sim);
     double rate[PROBE_MAX_COLUMNS];
-    values(pr, sim, row, rate);
+    evaluate(probe, sim, row, rate);
 }

@@ -65,18 +65,18 @@ enum { PROBE_MAX_COLUMNS = 5, PROBE_COLUMN_TEXT = SCENE_NAME + 24 };
 
 /* Finds the particles and weights of each probe, and the columns of each file; the arena owns the
  * memory. ERR_INPUT: a probe is too far from its body. */
-enum err probes_create(struct probes *p, const struct simulation *sim, struct arena *a,
+enum err probes_create(struct probes *probes, const struct simulation *sim, struct arena *a,
                        struct diag *d) SPHFSI_CHECKED;
 
 /* The present time, and values of the probes of a file, or of those with means only, in its
  * columns; their rates where these are known. */
-void probes_sample(const struct probes *p, struct simulation *sim, int file, bool means,
+void probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
                    double *row, double *rate);
 
 /* Name of a column of a probe, <probe>_<quantity>_<unit>; false: it has no such column. */
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size);
 
-/* The values of one probe now, as many as it has columns; its mean so far, if it has one. */
-void probes_values(const struct probes *p, struct simulation *sim, int probe, double *row);
+/* The values of probe k now, as many as it has columns; its mean so far, if it has one. */
+void probes_values(const struct probes *probes, struct simulation *sim, int k, double *row);
 
 #endif

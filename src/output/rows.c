@@ -120,8 +120,8 @@ static enum err write_rows(const struct row_files *r, struct rows *f, struct dia
     return ERR_OK;
 }
 
-static enum err look_for(const struct row_files *r, struct rows *f, struct simulation *sim,
-                         double until, struct diag *d)
+static enum err follow_file(const struct row_files *r, struct rows *f, struct simulation *sim,
+                            double until, struct diag *d)
 {
     const bool whole = f->series.fd >= 0 && f->next <= until;
     const size_t bytes = (size_t)f->columns * sizeof(double);
@@ -138,13 +138,13 @@ static enum err look_for(const struct row_files *r, struct rows *f, struct simul
     return write_rows(r, f, d);
 }
 
-static enum err look(void *context, struct simulation *sim, double until, struct diag *d)
+static enum err follow(void *context, struct simulation *sim, double until, struct diag *d)
 {
     const struct row_files *const r = context;
     sim->observer.next = (double)INFINITY;
     for (int k = 0; k < r->n; k++) {
         struct rows *const f = &r->file[k];
-        TRY(look_for(r, f, sim, until, d));
+        TRY(follow_file(r, f, sim, until, d));
         sim->observer.next = min2(sim->observer.next, f->next - f->window);
     }
     return ERR_OK;
@@ -152,7 +152,7 @@ static enum err look(void *context, struct simulation *sim, double until, struct
 
 void rows_follow(struct row_files *r, struct simulation *sim)
 {
-    if (r->n > 0) sim->observer = (struct observer){look, r, -(double)INFINITY};
+    if (r->n > 0) sim->observer = (struct observer){follow, r, -(double)INFINITY};
 }
 
 /* --- files --- */

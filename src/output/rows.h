@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Rows of probes and of the ledger at uniform times, between the states of a run on both sides of
- * these times; and the means of probes over time. No step depends on them. */
+ * Rows of probes and of the ledger at uniform times, interpolated between the states of a run on
+ * both sides of each time; means of probes over time. No step depends on them. */
 #ifndef SPHFSI_OUTPUT_ROWS_H
 #define SPHFSI_OUTPUT_ROWS_H
 

@@ -149,8 +149,8 @@ static bool reserve_space(const struct snapshots *w, int64_t points)
 #endif
 }
 
-/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they
- * are missing there; then appends a snapshot of `s`, unless that is NULL. */
+/* Copies to the spare what it lacks of the first `steps` snapshots of the named file (negative: of
+ * all), then appends a snapshot of `sim`, unless that is NULL. */
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *sim)
 {
     const int64_t points = sim ? count_points(sim) : 0, most = sim ? count_capacity(sim) : 0;

@@ -8,14 +8,14 @@
 /* Rows that a snapshot of n points adds to a dataset: 1, n, n + 1. */
 enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
-enum item { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
+enum number_type { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
 
 /* The datasets. In memory their values are double (floating types) or int64; HDF5
  * converts. */
 static const struct column {
     const char *name;
     enum growth growth;
-    enum item item;
+    enum number_type item;
     int width;
 } columns[D_COUNT] = {
     [D_POINTS_COUNT] = {"VTKHDF/NumberOfPoints", BY_STEP, I64, 1},
@@ -43,7 +43,7 @@ enum {
     METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
 };
 
-static hid_t file_type(enum item item, bool doubles)
+static hid_t file_type(enum number_type item, bool doubles)
 {
     switch (item) {
     case F64: return H5T_IEEE_F64LE;
@@ -56,7 +56,7 @@ static hid_t file_type(enum item item, bool doubles)
     return H5T_STD_U8LE;
 }
 
-static bool is_real(enum item item) { return item == F64 || item == REAL; }
+static bool is_real(enum number_type item) { return item == F64 || item == REAL; }
 
 static int rank_of(const struct column *c) { return c->width > 1 ? 2 : 1; }
 
@@ -197,7 +197,8 @@ static bool put_text(hid_t group, const char *name, const char *text)
     return ok;
 }
 
-static bool put_numbers(hid_t group, const char *name, enum item item, const void *values, int n)
+static bool put_numbers(hid_t group, const char *name, enum number_type item, const void *values,
+                        int n)
 {
     const hsize_t size = (hsize_t)n;
     const hid_t space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR);

@@ -10,7 +10,7 @@
 #include "base/simd.h"
 
 /* Positions and ids of the particles of a cell. */
-struct points {
+struct cell_points {
     double at[2][CELL_CAPACITY];
     int64_t key[2][CELL_CAPACITY]; /* `at` as integers with the same order; NaN has one too */
     int64_t id[CELL_CAPACITY];
@@ -29,7 +29,7 @@ static int64_t split_key(double x)
 
 /* Sorts points by one coordinate, then the other, then by id. A point's rank is the number of
  * points before it: n^2 comparisons, but no branches. */
-static void sort_points(const struct points *s, uint16_t *point, int n, int axis)
+static void sort_points(const struct cell_points *s, uint16_t *point, int n, int axis)
 {
     _Alignas(64) int64_t first[CELL_CAPACITY], second[CELL_CAPACITY], id[CELL_CAPACITY];
     uint16_t sorted[CELL_CAPACITY];
@@ -55,7 +55,7 @@ static void sort_points(const struct points *s, uint16_t *point, int n, int axis
 }
 
 /* The axis along which the particles extend further. */
-static int longer_axis(const struct points *s, const uint16_t *point, int n)
+static int longer_axis(const struct cell_points *s, const uint16_t *point, int n)
 {
     double low[] = {INFINITY, INFINITY}, high[] = {-INFINITY, -INFINITY};
     for (int k = 0; k < n; k++)
@@ -67,7 +67,7 @@ static int longer_axis(const struct points *s, const uint16_t *point, int n)
 }
 
 /* Halves the points along the longer axis, into whole clusters, until each part is one cluster. */
-static void split(const struct points *s, uint16_t *point, int n)
+static void split(const struct cell_points *s, uint16_t *point, int n)
 {
     if (n <= CLUSTER) return;
     sort_points(s, point, n, longer_axis(s, point, n));
@@ -79,7 +79,7 @@ static void split(const struct points *s, uint16_t *point, int n)
 /* Orders the n particles of one cell. */
 static void order_cell(uint64_t *pair, int n, const struct particles *particles)
 {
-    struct points s;
+    struct cell_points s;
     uint16_t point[CELL_CAPACITY];
     uint32_t particle[CELL_CAPACITY];
     const double *const x = particles->X ? particles->X : particles->x;

@@ -85,10 +85,8 @@ static void set_forces(struct loads *v, const struct load_region *load,
     const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
     for (int64_t k = load->first; k < load->end; k++) {
         const int32_t i = v->loaded[k];
-        v->fx[k] =
-            load->share * scene_expr_at_time(value->e[0], particles->X[i], particles->Y[i], time);
-        v->fy[k] =
-            load->share * scene_expr_at_time(value->e[1], particles->X[i], particles->Y[i], time);
+        v->fx[k] = load->share * expr_at_time(value->e[0], particles->X[i], particles->Y[i], time);
+        v->fy[k] = load->share * expr_at_time(value->e[1], particles->X[i], particles->Y[i], time);
     }
 }
 
@@ -167,7 +165,7 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
 {
     for (int n = 0; n < v->n_loads; n++) {
         const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
-        const double factor = v->factor[n] = history ? scene_expr_at(history, max2(time, 0), 0) : 1;
+        const double factor = v->factor[n] = history ? expr_at(history, max2(time, 0), 0) : 1;
         if (v->load[n].varies) set_forces(v, &v->load[n], particles, max2(time, 0));
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];

@@ -41,7 +41,7 @@ static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_
 
 static double expr_or(const struct expr *e, double x, double y, double otherwise)
 {
-    return e ? scene_expr_at(e, x, y) : otherwise;
+    return e ? expr_at(e, x, y) : otherwise;
 }
 
 static void start_fluid(struct simulation *sim)

@@ -69,7 +69,7 @@ static void test_constants_in_any_order(void)
     TEST_ASSERT_EQUAL_DOUBLE(-9.81, scene.top.gravity[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2 * sqrt(0.016 / 9.81), scene.top.end_time);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.5 * 0.001 / sqrt(0.016 / 9.81),
-                              scene_expr_at(scene.solid[0].velocity.e[1], 0.008, 0));
+                              expr_at(scene.solid[0].velocity.e[1], 0.008, 0));
 }
 
 /* A length that was written without its unit is a length in other expressions, too. */
@@ -248,8 +248,8 @@ static void same_expressions(const struct scene_expr *a, const struct scene_expr
     for (int c = 0; c < 2; c++) {
         TEST_ASSERT_EQUAL_INT(a->e[c] != NULL, b->e[c] != NULL);
         for (int k = 0; a->e[c] && k < 20; k++)
-            TEST_ASSERT_TRUE(scene_expr_at(a->e[c], 0.01 * k, 0.02 * k) ==
-                             scene_expr_at(b->e[c], 0.01 * k, 0.02 * k));
+            TEST_ASSERT_TRUE(expr_at(a->e[c], 0.01 * k, 0.02 * k) ==
+                             expr_at(b->e[c], 0.01 * k, 0.02 * k));
     }
 }
 

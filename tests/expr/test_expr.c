@@ -159,7 +159,7 @@ static double at(const char *text, double x, double y)
                                                &arena, why, &d),
                                   why);
     TEST_ASSERT_EQUAL_STRING(text, expr_source(e));
-    return scene_expr_at(e, x, y);
+    return expr_at(e, x, y);
 }
 
 static void test_fields(void)
@@ -223,8 +223,8 @@ static void test_at_a_fixed_time(void)
             const double x = 0.1 * (n % 5), y = 0.07 * (n % 7) - 0.1, t = 0.031 * n;
             expr_fix_time(fixed, e, t);
             TEST_ASSERT_FALSE(expr_varies(fixed));
-            const double want = scene_expr_at_time(e, x, y, t);
-            const double got = scene_expr_at_time(fixed, x, y, 1e9);
+            const double want = expr_at_time(e, x, y, t);
+            const double got = expr_at_time(fixed, x, y, 1e9);
             TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&want, &got, sizeof want, texts[k]);
         }
         const bool local = strchr(texts[k], 'y') || (strchr(texts[k], 'x') && k > 0);

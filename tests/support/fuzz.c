@@ -62,7 +62,7 @@ int fuzz_expr(const uint8_t *data, size_t size)
     char why[EXPR_WHY] = "", *text = text_of(data, size);
     const struct slice slice = {text, size};
     if (expr_compile(&e, slice, &names, &dim, &a, why, &d) == ERR_OK)
-        scene_expr_at(e, 0.25, -3);
+        expr_at(e, 0.25, -3);
     else if (!why[0])
         abort();
     why[0] = '\0';
