@@ -60,7 +60,7 @@ def shares(summary):
 
 def scenes_table():
     rows = []
-    for name, case, settings in SCENES[:1] if QUICK else SCENES:
+    for name, case, settings in SCENES[5:6] if QUICK else SCENES:
         for part in STEPS:
             smaller = () if part == 1 else (f"numerics.cfl={default_cfl(case) / part:g}",)
             stopped, summary = run(case, (*settings, *smaller))
