@@ -40,7 +40,8 @@ enum {
     STEP_CHUNK = 128,
     POINT_CHUNK_LEAST = 64,
     POINT_CHUNK_MOST = 1 << 17,
-    METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
+    CONVERTED_BYTES = 1 << 14, /* of HDF5's buffer, which it clears at each write */
+    METADATA_BYTES = 1 << 18   /* more than headers and chunk indices grow by with a snapshot */
 };
 
 static hid_t file_type(enum number_type item, bool doubles)
@@ -134,8 +135,8 @@ static int64_t count_rows(hid_t set)
 
 /* Appends n rows to a dataset, one column at a time, in which HDF5 compresses them. The rank in
  * memory is that of the file: otherwise HDF5 moves one item at a time. */
-static bool append_rows(hid_t file, const struct column *c, int64_t n, snapshot_values *values_of,
-                        const void *context, void *values)
+static bool append_rows(hid_t file, hid_t how, const struct column *c, int64_t n,
+                        snapshot_values *values_of, const void *context, void *values)
 {
     const hid_t set = H5Dopen2(file, c->name, H5P_DEFAULT);
     const int64_t first = count_rows(set);
@@ -146,7 +147,7 @@ static bool append_rows(hid_t file, const struct column *c, int64_t n, snapshot_
         const hsize_t at[2] = {(hsize_t)first, (hsize_t)column};
         values_of(context, (enum data)(c - columns), column, n, values);
         ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, at, NULL, size, NULL) >= 0 &&
-             H5Dwrite(set, memory_type(c), in_memory, in_file, H5P_DEFAULT, values) >= 0;
+             H5Dwrite(set, memory_type(c), in_memory, in_file, how, values) >= 0;
     }
     H5Sclose(in_memory);
     H5Sclose(in_file);
@@ -173,12 +174,14 @@ bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout, int6
 {
     static const int64_t more[] = {[BY_STEP] = 1, [BY_POINT] = 0, [BY_POINT_AND_ONE] = 1};
     void *const values = malloc((size_t)(n + 1) * sizeof(double));
-    bool ok = values != NULL;
+    const hid_t how = H5Pcreate(H5P_DATASET_XFER);
+    bool ok = values && H5Pset_buffer(how, CONVERTED_BYTES, NULL, NULL) >= 0;
     for (int k = 0; ok && k < D_COUNT; k++) {
         const struct column *const c = &columns[k];
         const int64_t rows = more[c->growth] + (c->growth == BY_STEP ? 0 : n);
-        ok = !layout->has[k] || append_rows(file, c, rows, values_of, context, values);
+        ok = !layout->has[k] || append_rows(file, how, c, rows, values_of, context, values);
     }
+    H5Pclose(how);
     free(values);
     return ok;
 }
