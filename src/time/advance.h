@@ -79,12 +79,10 @@ int particles_near(const struct simulation *sim, double x, double y);
 
 /* --- solid_steps.c --- */
 
-/* Up to 16 steps of solids without fluid, which end at t_limit at the latest. The observer sees the
- * state before them, and within them the states on both sides of the time that it waits for. */
-enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
-
-/* One step of rigid bodies without fluid and solids. */
-enum err rigid_only_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+/* Up to 16 steps of solids without fluid, or one with rigid bodies, which end at t_limit at the
+ * latest. The observer sees the state before them, and within them the states on both sides of the
+ * time that it waits for. */
+enum err lone_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* --- the integrators, each in a file of its own --- */
 

@@ -56,13 +56,6 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
 
 void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 
-/* Moves fluid particles towards lower concentration. */
-static double shift_fluid(struct simulation *sim, double clock)
-{
-    sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
-    return phase_add(sim, PHASE_shift, clock);
-}
-
 /* Magnitude of the impulse exchanged between fluid and structure in the last step. */
 static void add_exchange(struct simulation *sim)
 {
@@ -85,8 +78,7 @@ static void count_work(struct simulation *sim)
 
 static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
-    const bool solid = sim->effects & FX_SOLID;
-    TRY((solid ? solid_only_step : rigid_only_step)(sim, t_limit, d));
+    TRY(lone_step(sim, t_limit, d));
     count_work(sim);
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     find_speed(sim);
@@ -94,7 +86,7 @@ static enum err step_without_fluid(struct simulation *sim, double t_limit, struc
     /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
     energy_test_due(sim);
     TRY(guards_check(sim, d));
-    if (solid) timestep_recheck_solid(sim);
+    if (sim->effects & FX_SOLID) timestep_recheck_solid(sim);
     return ERR_OK;
 }
 
@@ -107,7 +99,10 @@ static enum err step_with_fluid(struct simulation *sim, double t_limit, struct d
     sim->integrator->step(sim, t_limit);
     clock = wall_clock();
     /* Done here so that the state does not depend on output between two steps. */
-    if (sim->effects & FX_SHIFTING) clock = shift_fluid(sim, clock);
+    if (sim->effects & FX_SHIFTING) {
+        sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
+        clock = phase_add(sim, PHASE_shift, clock);
+    }
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
     const enum err e = guards_check(sim, d);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Steps of a solid without fluid. */
+ * Steps of solids and rigid bodies without fluid. */
 #include "time/advance.h"
 
 #include <math.h>
@@ -29,6 +29,7 @@ static double find_bounds(struct simulation *sim)
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
     const struct integrator *const by = sim->integrator;
+    if (!(sim->effects & FX_SOLID)) return;
     if (by->solid_step && !sim->solid.implicit) {
         for (int k = 0; k < n; k++) by->solid_step(sim, dt);
     } else {
@@ -117,7 +118,7 @@ static void add_external_work(struct simulation *sim, double dt)
                            external->ay[i] * particles->vy[i]));
 }
 
-enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d)
+enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     struct state *const st = &sim->state;
     const double start = wall_clock(), before = phases_so_far(sim), begin = st->time;
@@ -142,19 +143,5 @@ enum err solid_only_step(struct simulation *sim, double t_limit, struct diag *d)
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     book_lone(sim, dt, n);
-    return ERR_OK;
-}
-
-enum err rigid_only_step(struct simulation *sim, double t_limit, struct diag *d)
-{
-    struct state *const st = &sim->state;
-    const double bound = find_bounds(sim), left = t_limit - st->time,
-                 steps = max2(1, ceil(left / bound - 1e-6));
-    const double begin = st->time, dt = steps <= 2 ? left / steps : bound;
-    TRY(observe(sim, begin + (1 + 1e-6) * dt, d));
-    advance_rigid(sim, begin, dt, dt);
-    st->time = steps <= 1 ? t_limit : begin + dt;
-    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
-    book_lone(sim, dt, 1);
     return ERR_OK;
 }
