@@ -51,16 +51,17 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
 static enum err describe_bodies(struct fluid *fluid, struct arena *a, const struct scene *scene,
                                 enum kind kind, struct diag *d)
 {
-    const bool wall = kind == KIND_WALL, sticks = fluid->effects & FX_NO_SLIP;
+    const bool wall = kind == KIND_WALL;
     const size_t n = (size_t)(wall ? scene->n_wall : scene->n_solid);
     fluid->volume[kind] = arena_alloc(a, n, sizeof *fluid->volume[kind], "volumes", d);
-    fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);
-    if (!fluid->volume[kind] || !fluid->sticks[kind]) return ERR_MEMORY;
-    for (int k = 0; k < (int)n; k++) {
+    if (!fluid->volume[kind]) return ERR_MEMORY;
+    for (int k = 0; k < (int)n; k++)
         fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
-        fluid->sticks[kind][k] =
-            sticks && (wall ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
-    }
+    if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
+    fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);
+    if (!fluid->sticks[kind]) return ERR_MEMORY;
+    for (int k = 0; k < (int)n; k++)
+        fluid->sticks[kind][k] = (wall ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
     return ERR_OK;
 }
 

@@ -173,7 +173,7 @@ struct fluid {
     bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed;        /* walls rest, and their packed positions are valid */
     bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
-    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it */
+    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; with NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
     int threads;
