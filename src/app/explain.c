@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * --explain: what would be simulated and what it would cost, as text and as JSON. */
 #include "app/actions.h"
 
 #include "app/forecast.h"

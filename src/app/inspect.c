@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * --inspect: the contents of a checkpoint as text. */
 #include "app/actions.h"
 
 #include "output/checkpoint.h"

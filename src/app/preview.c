@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * --preview: an SVG of the scene before it runs. */
 #include "app/actions.h"
 
 #include "base/files.h"

@@ -1,4 +1,6 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * A run of a case: its folder and files, the time loop, restart and fork, and what it says at its
+ * end. */
 #include "app/actions.h"
 
 #include "base/run_dir.h"

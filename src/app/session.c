@@ -235,7 +235,7 @@ static int choose_threads(const struct scene *scene, const struct sphfsi_options
     return limit;
 }
 
-enum err session_read(struct session *session, const struct sphfsi_options *o, struct diag *d)
+static enum err read_case(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     TRY(check_options(o, d));
     const int largest = THREADS_PER_CORE * thread_cores();
@@ -289,7 +289,7 @@ static void name_case(const struct scene *scene, struct diag *d)
 enum err session_open(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     const int offered = thread_count();
-    TRY(session_read(session, o, d));
+    TRY(read_case(session, o, d));
     thread_use(choose_threads(&session->scene, o, offered, d));
     const enum err e = simulation_create(&session->simulation, &session->scene, d);
     if (e) {
@@ -311,7 +311,7 @@ enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *g
     if (!e && !session) e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory", name);
     if (!e)
         e = simulation ? session_open(session, &c.options, &c.diag)
-                       : session_read(session, &c.options, &c.diag);
+                       : read_case(session, &c.options, &c.diag);
     if (!e) {
         e = act(session, &c.options, path, &c.diag);
         session_close(session);

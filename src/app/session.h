@@ -35,12 +35,8 @@ struct session {
     struct simulation simulation;
 };
 
-/* Reads the case, sets default intervals of [output], applies --until. On failure
- * nothing remains to be freed. */
-enum err session_read(struct session *session, const struct sphfsi_options *o, struct diag *d)
-    SPHFSI_CHECKED;
-
-/* session_read, the number of threads, and the simulation at time zero. */
+/* Reads the case, sets default intervals of [output], applies --until; then the number of threads
+ * and the simulation at time zero. On failure nothing remains to be freed. */
 enum err session_open(struct session *session, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 void session_close(struct session *session);

@@ -111,7 +111,8 @@ effect_set effects_of_scene(const struct scene *scene)
     return fx;
 }
 
-char *effect_caller_name(const struct scene *scene, const struct effect_caller *by,
+/* Writes "[wall bed] slip", or "integrator"; returns the text. */
+static char *caller_name(const struct scene *scene, const struct effect_caller *by,
                          char name[TITLE_TEXT])
 {
     char title[TITLE_TEXT] = "";
@@ -131,7 +132,7 @@ char *effect_caller_text(const struct scene *scene, const struct effect_caller *
              given && given->line == 0                   ? "--set"
              : given || section_table[by->section].named ? line
                                                          : "default",
-             effect_caller_name(scene, by, name));
+             caller_name(scene, by, name));
     return text;
 }
 
@@ -161,7 +162,8 @@ const struct phase_info phase_table[PHASE_COUNT] = {
     [PHASE_output] = {"output", "probes, ledger, snapshots, checkpoints", FX_ALWAYS},
 };
 
-const char *effect_left_out(const struct scene *scene)
+/* The name of an effect that a scene needs and this build excludes, or NULL. */
+static const char *effect_left_out(const struct scene *scene)
 {
     struct effect_caller by;
     for (int k = 0; k < EFFECT_COUNT; k++)
@@ -228,13 +230,13 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
     const struct effect_info *const effect = &effect_table[rule->effect],
                                     *const its = &effect_table[rule->other];
     char text[TITLE_TEXT], its_text[TITLE_TEXT];
-    effect_caller_name(scene, &by, text);
+    caller_name(scene, &by, text);
     if (rule->verb == NEEDS)
         return bad_line(r, line_of(scene, &by), "%s enables the effect %s, which needs %s (%s): %s",
                         text, effect->name, its->name, its->key, rule->reason);
     return bad_line(r, line_of(scene, &by),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
-                    text, effect->name, its->name, effect_caller_name(scene, &other, its_text),
+                    text, effect->name, its->name, caller_name(scene, &other, its_text),
                     line_of(scene, &other), rule->reason);
 }
 
@@ -254,7 +256,7 @@ static enum err check_owned(struct reader *r, const struct owned *row)
              param_number(param, section) == value))
             continue;
         by = (struct effect_caller){row->section, k, row->key};
-        effect_caller_name(scene, &by, text);
+        caller_name(scene, &by, text);
         TRY(case_go_on(r, bad_line(r, line_of(scene, &by),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
                                    text, effect->name, effect->name, effect->key)));

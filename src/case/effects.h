@@ -82,16 +82,10 @@ struct effect_caller {
 /* Whether the scene activates an effect, and where it does first. */
 bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *by);
 
-/* "[wall bed] slip", "integrator"; and "line 12: [wall bed] slip", or "--set: ...". They return the
- * text. */
+/* Writes "line 12: [wall bed] slip", or "--set: ..."; returns the text. */
 enum { EFFECT_CALLER_TEXT = 300 };
-char *effect_caller_name(const struct scene *scene, const struct effect_caller *by,
-                         char name[TITLE_TEXT]);
 char *effect_caller_text(const struct scene *scene, const struct effect_caller *by,
                          char text[EFFECT_CALLER_TEXT]);
-
-/* The name of an effect that a scene needs and this build excludes, or NULL. */
-const char *effect_left_out(const struct scene *scene);
 
 /* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
 effect_set effects_of_scene(const struct scene *scene);

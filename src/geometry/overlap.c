@@ -21,17 +21,11 @@ int geometry_piece_at(const struct region *region, double u, double v)
     return outlines_find(&region->add, u, v);
 }
 
-int geometry_shape_at(const struct region *region, double x, double y)
+bool geometry_covers(const struct region *region, double x, double y)
 {
     double at[2];
     geometry_place(region, x, y, at);
-    const int piece = geometry_piece_at(region, at[0], at[1]);
-    return piece < 0 ? -1 : region->add.shape[piece];
-}
-
-bool geometry_covers(const struct region *region, double x, double y)
-{
-    return geometry_shape_at(region, x, y) >= 0;
+    return geometry_piece_at(region, at[0], at[1]) >= 0;
 }
 
 bool geometry_covers_strictly(const struct region *region, double x, double y)

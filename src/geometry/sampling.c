@@ -280,7 +280,13 @@ static enum err append_points(struct sampler *sampler, const struct region *regi
     return ERR_OK;
 }
 
-enum err geometry_sample(struct sampler *sampler, struct samples *samples)
+/* An error if there was bad input. */
+static enum err problems_found(const struct sampler *sampler)
+{
+    return sampler->problems ? ERR_INPUT : ERR_OK;
+}
+
+static enum err sample_regions(struct sampler *sampler, struct samples *samples)
 {
     TRY(list_regions(sampler));
     TRY(geometry_choose_lattices(sampler));
@@ -292,7 +298,7 @@ enum err geometry_sample(struct sampler *sampler, struct samples *samples)
         TRY(count_points(sampler, &sampler->regions[k]));
         total += sampler->regions[k].n;
     }
-    TRY(geometry_problems(sampler));
+    TRY(problems_found(sampler));
     samples->x = geometry_alloc(sampler, (size_t)total, sizeof *samples->x);
     samples->y = geometry_alloc(sampler, (size_t)total, sizeof *samples->y);
     samples->region = geometry_alloc(sampler, (size_t)total, sizeof *samples->region);
@@ -324,15 +330,15 @@ enum err scene_sample(struct scene *scene, struct diag *d)
     struct sampler sampler = {.scene = scene, .diag = d};
     struct samples points = {0};
     scene->h = scene->numerics.h_over_dp * scene->top.dp;
-    enum err err = geometry_sample(&sampler, &points);
+    enum err err = sample_regions(&sampler, &points);
     if (!err) err = geometry_check_bodies(&sampler);
-    if (!err) err = geometry_problems(&sampler);
+    if (!err) err = problems_found(&sampler);
     if (!err) err = geometry_merge(&sampler, &points);
     if (!err) err = geometry_pack(&sampler);
     if (!err) err = geometry_open(&sampler);
     if (!err) err = geometry_extent(&sampler);
     if (!err) err = geometry_check_joined(&sampler);
-    if (!err) err = geometry_problems(&sampler);
+    if (!err) err = problems_found(&sampler);
     arena_free(&sampler.temp);
     return err;
 }

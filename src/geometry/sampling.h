@@ -71,8 +71,8 @@ SPHFSI_INLINE void *geometry_alloc(struct sampler *sampler, size_t n, size_t siz
 }
 
 /* Turns ERR_INPUT, whose message is in the diag, into ERR_OK, so that the next section is checked
- * too; not after CASE_MAX_PROBLEMS of them, with those of values. geometry_problems returns the
- * error before code that needs valid input. */
+ * too; not after CASE_MAX_PROBLEMS of them, with those of values. scene_sample returns the error
+ * before code that needs valid input. */
 SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 {
     sampler->problems += e == ERR_INPUT;
@@ -83,13 +83,6 @@ SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 /* A problem of a line of the case, so treated. */
 #define geometry_refuse(sampler, line, ...) \
     geometry_go_on(sampler, fail_at((sampler)->diag, (sampler)->scene, line, __VA_ARGS__))
-
-SPHFSI_INLINE enum err geometry_problems(const struct sampler *sampler)
-{
-    return sampler->problems ? ERR_INPUT : ERR_OK;
-}
-
-enum err geometry_sample(struct sampler *sampler, struct samples *samples) SPHFSI_CHECKED;
 
 /* Gives the lines of a wall their thickness, once the outlines of the fluid are known. */
 enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SPHFSI_CHECKED;
@@ -106,9 +99,7 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
 
 /* Refuses bodies of one row of particles, and finds the area that a body's particles cover. */
 enum err geometry_check_bodies(struct sampler *sampler) SPHFSI_CHECKED;
-/* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates; the smallest
- * number of them across a body. */
-double geometry_rows_between(const struct region *region, int c, double low, double high);
+/* Smallest number of rows or columns of its lattice across a body. */
 double geometry_rows_across(const struct region *region);
 
 /* The regions of a scene that has been sampled, for questions about places. */
@@ -127,9 +118,7 @@ enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* The piece of a region at a place in the axes of its lattice, or -1. */
 int geometry_piece_at(const struct region *region, double u, double v);
-/* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or
- * -1; and whether there is one. */
-int geometry_shape_at(const struct region *region, double x, double y);
+/* Whether a region has a point inside, with the rounding of its particles. */
 bool geometry_covers(const struct region *region, double x, double y);
 /* Whether a point lies in a region, and further from its edges than round-off. */
 bool geometry_covers_strictly(const struct region *region, double x, double y);

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * From [probe] sections to columns of files, and the values in them. */
 #include "output/probes.h"
 #include "output/fluid_sample.h"
 #include "base/elementary.h"

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * summary.json, and the parts of it that --explain prints as JSON, too. */
 #include "output/report.h"
 
 #include "expr/expr.h"
