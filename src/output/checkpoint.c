@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The format of checkpoints: blocks with checksums, their files, and how they are loaded. */
 #include "output/checkpoint.h"
 #include "output/ranges.h"
 
@@ -96,10 +97,11 @@ struct parts {
     struct part item[MAX_PARTS];
 };
 
-static void add(struct parts *list, struct part part)
+static void add_part(struct parts *list, const char *name, unsigned owner, enum item item,
+                     void *data, size_t count, enum in_fork in_fork)
 {
     ASSERT(list->n < MAX_PARTS);
-    list->item[list->n++] = part;
+    list->item[list->n++] = (struct part){name, owner, item, data, count, in_fork};
 }
 
 static void list_run(struct parts *list, struct image *m, struct simulation *sim)
@@ -109,32 +111,25 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
     const unsigned run = OWNER_STATE;
     const size_t n_open = (size_t)open->n, n_carried = (size_t)sim->carried.n;
     const size_t zones = (size_t)sim->damping.n, n_rigid = (size_t)sim->rigid.n * RIGID_NUMBERS;
-    add(list,
-        (struct part){"snapshots_missed", run, ITEM_INT64, &m->snapshots_missed, 1, FORK_SKIPS});
-    add(list,
-        (struct part){"snapshot_of_end", run, ITEM_INT64, &m->snapshot_of_end, 1, FORK_SKIPS});
+    add_part(list, "snapshots_missed", run, ITEM_INT64, &m->snapshots_missed, 1, FORK_SKIPS);
+    add_part(list, "snapshot_of_end", run, ITEM_INT64, &m->snapshot_of_end, 1, FORK_SKIPS);
 #define STATE(type, name, low, high, unit, meaning) \
-    add(list, (struct part){#name, run, item_of(#type), &state->name, 1, FORK_LOADS});
+    add_part(list, #name, run, item_of(#type), &state->name, 1, FORK_LOADS);
 #include "time/state.def"
 #undef STATE
-    add(list,
-        (struct part){"bound_steps", run, ITEM_INT64, state->bound_steps, BOUND_COUNT, FORK_LOADS});
-    add(list,
-        (struct part){"energy", run, ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS, FORK_LOADS});
+    add_part(list, "bound_steps", run, ITEM_INT64, state->bound_steps, BOUND_COUNT, FORK_LOADS);
+    add_part(list, "energy", run, ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS, FORK_LOADS);
     if (n_open > 0) {
-        add(list,
-            (struct part){"open_sum", run, ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, FORK_LOADS});
-        add(list, (struct part){"open_count", run, ITEM_INT64, open->count, n_open * OPEN_COUNTS,
-                                FORK_LOADS});
-        add(list, (struct part){"open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS});
+        add_part(list, "open_sum", run, ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, FORK_LOADS);
+        add_part(list, "open_count", run, ITEM_INT64, open->count, n_open * OPEN_COUNTS,
+                 FORK_LOADS);
+        add_part(list, "open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS);
     }
-    if (zones > 0)
-        add(list, (struct part){"zones", run, ITEM_DOUBLE, sim->damping.taken, zones, FORK_LOADS});
+    if (zones > 0) add_part(list, "zones", run, ITEM_DOUBLE, sim->damping.taken, zones, FORK_LOADS);
     if (n_rigid > 0)
-        add(list, (struct part){"rigid", run, ITEM_DOUBLE, sim->rigid.state, n_rigid, FORK_LOADS});
+        add_part(list, "rigid", run, ITEM_DOUBLE, sim->rigid.state, n_rigid, FORK_LOADS);
     if (n_carried > 0)
-        add(list,
-            (struct part){"rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS});
+        add_part(list, "rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS);
 }
 
 /* All state, in the order of the file. */
@@ -153,9 +148,8 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
             void *const data = field_array(&sim->kind[k], info);
             const bool may_lack = info->group & new_in_fork[k];
             if (!data || info->keep != KEEP_STATE) continue;
-            add(list,
-                (struct part){info->name, k, item_of(info->type), data, (size_t)sim->kind[k].n,
-                              may_lack ? FORK_LOADS_IF_THERE : FORK_LOADS});
+            add_part(list, info->name, k, item_of(info->type), data, (size_t)sim->kind[k].n,
+                     may_lack ? FORK_LOADS_IF_THERE : FORK_LOADS);
         }
 }
 
