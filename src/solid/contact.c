@@ -71,7 +71,7 @@ static bool touches(const struct contact *contact, const struct contact_pair *pa
 {
     if (!contact_foot(contact, pair->point, pair->edge, foot) || !(foot->distance < foot->reach))
         return false;
-    *q = contact_constants_of(contact, foot->law, foot->point, foot->a->body);
+    *q = contact_constants_of(foot->law, foot->point);
     return true;
 }
 
@@ -202,8 +202,7 @@ static void add_rows(struct contact *contact, const struct particles *particles,
                      const struct contact_pair *pair, const struct contact_foot *foot, double left)
 {
     const struct contact_edge *const e = &contact->edge[pair->edge];
-    const struct contact_constants q =
-        contact_constants_of(contact, foot->law, foot->point, foot->a->body);
+    const struct contact_constants q = contact_constants_of(foot->law, foot->point);
     const double s = foot->at;
     const double own = s == 0 ? 1 - foot->a->share : s == 1 ? 1 - foot->b->share : 1;
     const double both = moves_freely(contact, particles, foot->point) +
@@ -373,16 +372,23 @@ static void set_law(struct contact *contact, const struct scene_contact *from, i
     const double reach = spacing + (own ? from->gap : scene_contact_gap(contact->scene, from));
     double yields, shears;
     layer_yields(contact, a, b, &yields, &shears);
+    const double stiffness = from->stiffness * (2 * spacing / yields);
+    const struct solid_body *const body = contact->solid->body;
+    const double per_mass = 1 / body[a].mass + (b < contact->n_solids ? 1 / body[b].mass : 0);
     *contact_law_of(contact, a, b) = *contact_law_of(contact, b, a) = (struct contact_law){
         .on = true,
         .spacing = spacing,
         .reach = reach,
-        .stiffness = from->stiffness * (2 * spacing / yields),
+        .stiffness = stiffness,
+        .per_mass = per_mass,
         .shear = yields / shears,
         .damping = from->damping,
         .friction = from->friction,
     };
     contact->reach = max2(contact->reach, reach);
+    contact->first_omega2 =
+        max2(contact->first_omega2,
+             stiffness * per_mass * max2(contact_dp(contact, a), contact_dp(contact, b)) / spacing);
     contact->spacing = max2(contact->spacing, spacing);
 }
 

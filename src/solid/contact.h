@@ -13,9 +13,10 @@ struct contact_law {
     double spacing;   /* mean of both spacings, m */
     double reach;     /* distance below which they repel each other: the spacing and the gap, m */
     double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
-    double shear;     /* the same across the normal, in parts of it */
-    double damping;   /* fraction of the critical damping */
-    double friction;  /* Coulomb's coefficient */
+    double per_mass; /* sum of 1/m of a particle of each body, of a solid alone if against a wall */
+    double shear;    /* the same across the normal, in parts of it */
+    double damping;  /* fraction of the critical damping */
+    double friction; /* Coulomb's coefficient */
 };
 
 /* A particle at a surface. */
@@ -69,6 +70,7 @@ struct contact {
     int32_t *group;                  /* [n_bodies] */
     bool friction;                   /* some pair has it */
     double reach, spacing;           /* largest of all laws */
+    double first_omega2; /* and the largest of T-62e: of two faces at first contact, 1/s^2 */
     /* Points: those of solids first, then those of walls that move. */
     int64_t n_solid_points, n_moving_points, n_points;
     struct contact_point *point;

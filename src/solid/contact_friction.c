@@ -110,7 +110,7 @@ static struct spring spring_constants(const struct contact *contact, int32_t poi
     const struct contact_point *const p = &contact->point[point];
     const int body = contact->point[contact->edge[edge].a].body;
     const struct contact_law *const law = contact_law_of(contact, p->body, body);
-    const struct contact_constants q = contact_constants_of(contact, law, p, body);
+    const struct contact_constants q = contact_constants_of(law, p);
     const double halves = body < contact->n_solids ? 1 : 1 / CONTACT_HALF;
     return (struct spring){
         .edge = edge,

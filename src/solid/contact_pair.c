@@ -118,16 +118,11 @@ bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
 
 /* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
  * mass m of the pair, m_a m_b/(m_a + m_b). */
-struct contact_constants contact_constants_of(const struct contact *contact,
-                                              const struct contact_law *law,
-                                              const struct contact_point *point, int other_body)
+struct contact_constants contact_constants_of(const struct contact_law *law,
+                                              const struct contact_point *point)
 {
-    const int body[] = {point->body, other_body};
-    double per_mass = 0;
-    for (int k = 0; k < 2; k++)
-        if (body[k] < contact->n_solids) per_mass += 1 / contact->solid->body[body[k]].mass;
     const double k = law->stiffness * point->width / law->spacing,
-                 critical = 2 * sqrt(k * (1 / per_mass));
+                 critical = 2 * sqrt(k * (1 / law->per_mass));
     return (struct contact_constants){
         .stiffness = CONTACT_HALF * k,
         .damping = CONTACT_HALF * law->damping * critical,

@@ -44,9 +44,8 @@ struct contact_constants {
     double damping;            /* N s/m */
     double tangential_damping; /* of the spring of friction, N s/m */
 };
-struct contact_constants contact_constants_of(const struct contact *contact,
-                                              const struct contact_law *law,
-                                              const struct contact_point *point, int other_body);
+struct contact_constants contact_constants_of(const struct contact_law *law,
+                                              const struct contact_point *point);
 
 SPHFSI_INLINE struct contact_law *contact_law_of(const struct contact *contact, int a, int b)
 {

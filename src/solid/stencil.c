@@ -125,6 +125,13 @@ static void gradient_weight(const struct solid_body *own, const struct gradient_
     }
 }
 
+/* k_ab over kappa Y V^2, 1/m^4: T-26 as printed, or T-26a, whose largest eigenvalue is lower. */
+static double hourglass_weight(const struct solid_body *b, double R)
+{
+    return b->variational ? (1 - 0.5 * R / b->h) / (8 * square(square(b->h)))
+                          : kernel_w(R, b->h) / square(R);
+}
+
 /* Fills one lane of a slot with the constants of the pair (i, j). */
 static void slot_set(struct draft *slot, int lane, const struct solid *solid,
                      const struct particles *particles, const struct gradient_moments *moments,
@@ -134,7 +141,7 @@ static void slot_set(struct draft *slot, int lane, const struct solid *solid,
                                    *const b = &solid->body[particles->body[j]];
     const double X = reference_distance(particles->X[i], particles->X[j], a->dp),
                  Y = reference_distance(particles->Y[i], particles->Y[j], a->dp);
-    const double r2 = X * X + Y * Y, V = a->dp * a->dp, young = 0.5 * (a->young + b->young);
+    const double V = a->dp * a->dp, young = 0.5 * (a->young + b->young);
     double G[2], H[2];
     gradient_weight(a, &moments[i], X, Y, G);
     gradient_weight(b, &moments[j], -X, -Y, H);
@@ -145,7 +152,7 @@ static void slot_set(struct draft *slot, int lane, const struct solid *solid,
     slot->weight[W_X][lane] = X;
     slot->weight[W_Y][lane] = Y;
     slot->weight[W_HALF_K][lane] =
-        0.5 * a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
+        0.5 * a->kappa * young * V * hourglass_weight(a, sqrt(X * X + Y * Y)) / a->density;
 }
 
 static int compare_slot(const void *a, const void *b)

@@ -64,7 +64,7 @@ enum solid_weight {
     W_HY,
     W_X, /* X_ab, m */
     W_Y,
-    W_HALF_K, /* kappa E_ab V_b W_0ab/(2 X_ab^2 rho0), 1/s^2 */
+    W_HALF_K, /* k_ab of T-26 or T-26a over 2 V rho0, 1/s^2 */
     SOLID_WEIGHTS
 };
 

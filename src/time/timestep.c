@@ -134,14 +134,13 @@ double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
     return steps <= 2 ? left / max2(1, steps) : dt;
 }
 
-/* T-34c: the number of sub-steps goes down only after the solid's viscosity has dissipated enough.
- * An oscillation at the bound can gain that energy by fewer and then more sub-steps. Viscosity acts
- * on approaching pairs, half of the time. */
-static bool fewer_is_safe(const struct simulation *sim, double fewer)
+/* T-34c: steps of the solid grow again, from a part `ratio` of the new ones, only after its
+ * viscosity has dissipated enough. An oscillation at the bound can gain that energy by longer and
+ * then shorter steps. Viscosity acts on approaching pairs, half of the time. */
+static bool longer_is_safe(const struct simulation *sim, double ratio)
 {
     const struct state *const st = &sim->state;
-    const double z = sim->scene->numerics.solid_safety,
-                 less = z * fewer / (double)st->substeps_held;
+    const double z = sim->scene->numerics.solid_safety, less = z * ratio;
     const double root = sqrt((1 + z) * (1 - less) / ((1 - z) * (1 + less)));
     const double gain = root - 1 / root; /* at least the logarithm of root^2 */
     return 0.5 * sim->solid.damping_max * (st->time - st->substeps_needed) > gain;
@@ -155,7 +154,7 @@ int timestep_substeps(struct simulation *sim, double dt)
     const double most = ceil(max2(st->dt_max, dt) / sim->dt_solid * (1 - 1e-9));
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
     if (needed >= held) st->substeps_needed = st->time;
-    if (needed > held || (needed < held && fewer_is_safe(sim, needed)))
+    if (needed > held || (needed < held && longer_is_safe(sim, needed / held)))
         st->substeps_held = (int64_t)needed;
     return (int)st->substeps_held;
 }
@@ -186,6 +185,10 @@ static double step_in_contact(const struct simulation *sim)
     return min2(sim->scene->numerics.solid_safety * step, contact->approach);
 }
 
+/* T-62e, in parts of 1/omega: a point that meets a surface or leaves it then changes the energy of
+ * its approach by 1 % (root mean square). */
+#define RESOLVED 0.4
+
 bool timestep_watch_contact(struct simulation *sim, double time, int steps)
 {
     if (!(sim->effects & FX_CONTACT)) return false;
@@ -195,8 +198,16 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps)
                                                      : sim->dt_lone_solid;
     const bool near =
         contact_watch(&sim->contact, &sim->kind[KIND_SOLID], time, longest, steps * longest);
+    const double resolved = min2(sim->dt_lone_solid, sim->scene->numerics.solid_safety * RESOLVED /
+                                                         sqrt(sim->contact.first_omega2));
+    /* Sub-steps are held as a number. */
+    double *const needed = sim->effects & FX_MULTIRATE ? NULL : &sim->state.substeps_needed;
+    const bool held = needed && *needed > 0 && !longer_is_safe(sim, resolved / sim->dt_lone_solid);
     sim->solid.contact = near ? &sim->contact : NULL;
-    sim->dt_solid = near ? min2(sim->dt_lone_solid, step_in_contact(sim)) : sim->dt_lone_solid;
+    sim->dt_solid = near   ? min2(resolved, step_in_contact(sim))
+                    : held ? resolved
+                           : sim->dt_lone_solid;
+    if (near && needed) *needed = sim->state.time;
     sim->contact.seconds += wall_clock() - start;
     return near;
 }

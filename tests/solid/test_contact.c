@@ -334,13 +334,14 @@ static void test_block_on_a_floor(void)
 }
 
 /* A wall that comes down at 10 mm/s presses a block of 4 cm by 1 mm onto the floor: what the wall
- * has done is what strain and contact hold. */
+ * has done is what strain and contact hold. Eight particles across: at four the ends of the block,
+ * which hourglass control makes stiffer, are half of it, and store 4 % more. */
 static const char press[] = "dp = 1 cm\nend_time = 1\n[contact all]\n"
                             "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
                             "[wall plate]\nshape = box -0.1, 0.04, 0.2, 0.07\nmotion = down\n"
                             "[motion down]\nvelocity = 0, -10 mm/s\n"
                             "[solid a]\nshape = box 0, 0, 0.06, 0.04\ndensity = 1000\nyoung = "
-                            "1e6\npoisson = 0\nlaw = svk\n";
+                            "1e6\npoisson = 0\nlaw = svk\ndp = 5 mm\n";
 
 static void test_work_of_a_moving_wall(void)
 {
@@ -349,11 +350,11 @@ static void test_work_of_a_moving_wall(void)
         RIG_OPEN_SOLID(press, integrators[k]);
         rig_run(&rig, 0.1);
         const struct ledger row = simulation_ledger(&rig.sim);
-        /* The block of its full height: two contacts stand for half a spacing each. Its ends are a
-         * little stiffer, and the strain is 1/40: measured +2.2 %. */
+        /* The block of its full height: two contacts stand for half a spacing each. The strain is
+         * 1/40: measured -0.5 %. */
         const double stiffness = 0.06 * 1e6 / 0.04;
         const double exact = 0.5 * stiffness * square(1e-3);
-        assert_near(0.03 * exact, exact, row.elastic + row.contact, "stored");
+        assert_near(0.01 * exact, exact, row.elastic + row.contact, "stored");
         assert_at_most(0.003 * row.elastic, fabs(row.dissipated), "missing energy");
         TEST_ASSERT_TRUE(row.contact > 0.1 * row.elastic);
     }
@@ -372,6 +373,26 @@ static void test_out_of_reach_changes_no_bit(void)
         hash[k] = particles_hash(p, 1);
     }
     TEST_ASSERT_EQUAL_HEX64(hash[0], hash[1]);
+}
+
+/* Without viscosity the step for contact stays after two blocks have come apart; with it, it grows
+ * again (T-62e). */
+static void test_the_step_after_a_collision(void)
+{
+    for (int k = 0; k < 2; k++) {
+        RIG_OPEN_SOLID(BLOCKS "shape = box 0.06, 0, 0.1, 0.04\nvelocity = -1, 0\n",
+                       "a.velocity=1, 0", k ? "a.artificial_viscosity=0.2" : "precision=double",
+                       k ? "b.artificial_viscosity=0.2" : "precision=double");
+        const struct simulation *const sim = &rig.sim;
+        rig_run(&rig, 1e-3);
+        TEST_ASSERT_TRUE(!sim->solid.contact && sim->dt_solid == sim->dt_lone_solid);
+        while (sim->state.time < 0.05) {
+            rig_run(&rig, sim->state.time + 1e-3);
+            TEST_ASSERT_TRUE(!sim->solid.contact || sim->dt_solid < sim->dt_lone_solid);
+        }
+        TEST_ASSERT_TRUE(!sim->solid.contact && sim->state.substeps_needed > 0);
+        TEST_ASSERT_TRUE(k == (sim->dt_solid == sim->dt_lone_solid));
+    }
 }
 
 /* Number of threads, looking at the run, and where partners were looked for last change no bit. */
@@ -452,10 +473,12 @@ static void test_bound_and_phase_of_its_own(void)
     const struct simulation *const sim = &rig.sim;
     const double modulus = 4e6 / 3;
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
-    const double omega2 = square(sim->solid.omega_max) + 2 * modulus / 0.1;
-    assert_near(1e-15, 0.9 * solid_step_of(omega2, sim->solid.damping_max), sim->dt_solid, "bound");
+    /* Of all surfaces those of the first block with itself have the shortest period (T-62e). */
+    const double resolved = 0.9 * 0.4 / sqrt(2 * 2e6 / 0.1);
+    assert_near(1e-15, resolved, sim->dt_solid, "bound");
     assert_near(1e-15, 0.9 * solid_step_of(square(sim->solid.omega_max), sim->solid.damping_max),
                 sim->dt_lone_solid, "bound of the solid alone");
+    TEST_ASSERT_TRUE(resolved < sim->dt_lone_solid);
     TEST_ASSERT_TRUE(sim->dt_solid < 0.99 * sim->dt_lone_solid);
     /* Where the distance is half of the reach the contact is four times as stiff; the next edges,
      * at 1.118 of the reach, are near enough to count as at its beginning. */
@@ -464,6 +487,12 @@ static void test_bound_and_phase_of_its_own(void)
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
     assert_near(1e-6 * 5 * 2 * modulus / 0.1, (4 + 1) * 2 * modulus / 0.1, sim->contact.omega2,
                 "contact's part");
+    for (int64_t i = 0; i < p->n; i++) p->ux[i] = p->body[i] ? -0.008 : 0;
+    TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
+    const double omega2 = square(sim->solid.omega_max) + sim->contact.omega2;
+    TEST_ASSERT_TRUE(sim->dt_solid < resolved);
+    assert_near(1e-15, 0.9 * solid_step_of(omega2, sim->solid.damping_max), sim->dt_solid,
+                "bound of an overlap");
     memset(p->ux, 0, (size_t)p->n * sizeof *p->ux);
     rig_steps(&rig, 10, 1);
     TEST_ASSERT_EQUAL_INT64(sim->state.steps, sim->state.bound_steps[BOUND_contact]);
@@ -525,6 +554,7 @@ int main(void)
     RUN_TEST(test_block_on_a_floor);
     RUN_TEST(test_work_of_a_moving_wall);
     RUN_TEST(test_out_of_reach_changes_no_bit);
+    RUN_TEST(test_the_step_after_a_collision);
     RUN_TEST(test_same_bits);
     RUN_TEST(test_restart);
     RUN_TEST(test_with_fluid);

@@ -105,7 +105,7 @@ static const char shaken[] =
  * `rows`. */
 static double gain_of_exchange(const char *step, double rows)
 {
-    rig_open(&rig, shaken, step, NULL);
+    rig_open(&rig, shaken, "numerics.multirate=on", step, NULL);
     rig_ignore_gains(&rig);
     energy_begin(&rig.sim);
     for (int k = 1; k <= round(6e-3 / rows); k++) rig_run(&rig, k * rows);

@@ -196,7 +196,7 @@ static const char post[] =
     "artificial_viscosity = 0.02\ndensity_diffusion = 0.1\nwall_repulsion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -4*dp: 0, 0.3; 0, 0; 0.3, 0; 0.3, 0.3\n"
     "[solid post]\nshape = box 0.16, -4*dp, 0.18, 0.08\nclamp = box 0.16, -4*dp, 0.18, 0\n"
-    "density = 2500\nyoung = 1.2 MPa\npoisson = 0\nlaw = paper\n";
+    "density = 2500\nyoung = 1.9 MPa\npoisson = 0\nlaw = paper\n";
 
 static double mean_hourglass(const char *multirate, double *least, double *most)
 {

@@ -232,13 +232,16 @@ static void error_vector(const struct twin_solid_point *a, const struct twin_sol
     for (int i = 0; i < 2; i++) e[i] = 0.5 * (sum.m[i][0] * q->X[0] + sum.m[i][1] * q->X[1]) - x[i];
 }
 
-/* kappa V_b E_ab W_0ab/X_ab^2: the factor of Eq. 17 over V_a. */
+/* kappa V_b E_ab times W_0ab/X_ab^2 (Eq. 17), or (1 - X_ab/2h)/(8 h^4): k_ab over V_a. */
 static double spring(const struct twin_solid *t, const struct twin_solid_point *a,
                      const struct twin_solid_point *b, const struct reference *q)
 {
     const struct scene_solid *const body = &t->body[a->body];
     const double young = 0.5 * (body->young + t->body[b->body].young);
-    return body->hourglass * t->dp * t->dp * young * kernel(q->r, t->h) / (q->r * q->r);
+    const double weight = body->hourglass_form == HOURGLASS_PRINTED
+                              ? kernel(q->r, t->h) / (q->r * q->r)
+                              : (1 - 0.5 * q->r / t->h) / (8 * pow(t->h, 4));
+    return body->hourglass * t->dp * t->dp * young * weight;
 }
 
 /* Where the hourglass force is the derivative of the sum over pairs of V_a V_b k |e|^2/2, its share
