@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
+#include "base/box2.h"
 #include "base/elementary.h"
 
 #include <math.h>
@@ -320,9 +321,56 @@ static void check_voids(struct simulation *sim, struct diag *d)
               0.5 * scene->rho0 * square(sim->state.speed_high));
 }
 
+/* --- rigid bodies inside walls and each other --- */
+
+/* Distance from a particle of another body, in spacings, below which a particle of a rigid body is
+ * inside: no place of a square lattice is further than 0.71 from its particles, and bodies that
+ * touch are one spacing apart. */
+#define RIGID_INSIDE 0.75
+
+/* A particle of a wall, or of a rigid body behind body k, inside of rigid body k; -1: none. */
+static int64_t find_entered(const struct simulation *sim, int k)
+{
+    const struct particles *const p = &sim->kind[KIND_WALL];
+    const struct moving_wall *const b = sim->rigid.body[k].wall;
+    const double inside = RIGID_INSIDE * sim->scene->top.dp;
+    struct box2 box = box2_empty();
+    for (int64_t i = b->first; i < b->end; i++) box2_include(&box, p->x[i], p->y[i]);
+    for (int64_t j = 0; j < p->n; j++) {
+        const bool other = p->body[j] < scene_rigid_wall(sim->scene, 0) || p->body[j] > b->section;
+        const struct box2 place = {{p->x[j], p->y[j]}, {p->x[j], p->y[j]}};
+        if (!other || !box2_near(&place, &box, inside)) continue;
+        for (int64_t i = b->first; i < b->end; i++)
+            if (square(p->x[i] - p->x[j]) + square(p->y[i] - p->y[j]) < square(inside)) return j;
+    }
+    return -1;
+}
+
+static void check_rigid(struct simulation *sim, struct diag *d)
+{
+    const struct particles *const p = &sim->kind[KIND_WALL];
+    if (sim->guard.warned_rigid || sim->state.steps % CHECK_INTERVAL) return;
+    for (int k = 0; k < sim->rigid.n; k++) {
+        const int64_t at = find_entered(sim, k);
+        if (at < 0) continue;
+        sim->guard.warned_rigid = true;
+        const int other = p->body[at];
+        diag_warn(
+            d,
+            "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: rigid "
+            "bodies have no contact with walls and with each other; hold it by `guide`, "
+            "`hinge` or a [spring], or make it a [solid]",
+            time_text(sim).text, sim->scene->rigid[k].common.name,
+            other < scene_rigid_wall(sim->scene, 0) ? "wall" : "rigid",
+            sim->scene->wall[other].common.name, p->x[at], p->y[at]);
+        return;
+    }
+}
+
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
+    if (sim->effects & FX_RIGID) check_rigid(sim, d);
     if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));
     if (!(sim->effects & FX_MOTION)) check_voids(sim, d);
     if (sim->effects & FX_SOLID) TRY(check_solid(sim, d));

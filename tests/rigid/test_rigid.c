@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
                                           "integrator=leapfrog"};
@@ -165,6 +166,29 @@ static void test_a_body_floats(void)
     }
 }
 
+static char said[2000];
+
+static void hear(void *context, const char *text)
+{
+    (void)context;
+    snprintf(said, sizeof said, "%s", text);
+}
+
+/* A body that falls through the floor is warned of, by both names. A body between lattice places
+ * is found, too: the box spins. */
+static void test_a_body_in_a_wall_is_warned_of(void)
+{
+    rig_open(&rig,
+             "gravity = 0, -9.81\n" FREE "[wall floor]\nshape = box -1, -0.12, 1, 0\n"
+             "[rigid a]\nshape = box 0, 0.3, 0.3, 0.6\ndensity = 500\nspin = 0.5\n",
+             NULL);
+    rig.diag.warn = hear;
+    rig_run(&rig, 0.2);
+    TEST_ASSERT_EQUAL_STRING("", said);
+    rig_run(&rig, 0.3);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "[rigid a] has entered [wall floor] near"), said);
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(FREE "[rigid a]\nshape = box 0, 0, 1, 1\n", "needs `density` or `mass`");
@@ -207,6 +231,7 @@ int main(void)
     RUN_TEST(test_momentum_is_exchanged);
     RUN_TEST(test_a_light_body_is_stable);
     RUN_TEST(test_a_body_floats);
+    RUN_TEST(test_a_body_in_a_wall_is_warned_of);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
