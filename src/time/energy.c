@@ -282,15 +282,6 @@ void energy_of_evaluation(struct simulation *sim, double dt)
             dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
 }
 
-void energy_of_step(struct simulation *sim, double dt)
-{
-    struct energy_account *const account = &sim->state.energy;
-    energy_of_evaluation(sim, account->pending);
-    energy_test_due(sim);
-    account->pending = 0.5 * dt;
-    energy_of_evaluation(sim, account->pending);
-}
-
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
 {
     if (!keeps_account(sim)) return;
@@ -556,23 +547,39 @@ struct energy_gain energy_find_gain(struct simulation *sim)
 enum { TEST_STEPS = 64, SOLID_ONLY_TEST_STEPS = 256 };
 #define TEST_TIME 2.5e-3
 
+static bool test_is_due(const struct simulation *sim)
+{
+    const struct energy_account *const account = &sim->state.energy;
+    const int interval = sim->effects & FX_FLUID ? TEST_STEPS : SOLID_ONLY_TEST_STEPS;
+    return (double)sim->state.steps - account->tested_steps >= interval ||
+           sim->state.time - account->tested_at >= TEST_TIME;
+}
+
 void energy_test_due(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    const double time = sim->state.time;
-    const int interval = sim->effects & FX_FLUID ? TEST_STEPS : SOLID_ONLY_TEST_STEPS;
     if (!keeps_account(sim)) return;
     if (sim->effects & FX_OPEN) { /* brought in other than by the constraint */
         const double now = open_energy(&sim->open);
         energy_supply(sim, KIND_FLUID, 0, now - account->open);
         account->open = now;
     }
-    if ((double)sim->state.steps - account->tested_steps < interval &&
-        !(time - account->tested_at >= TEST_TIME))
-        return;
+    if (!test_is_due(sim)) return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);
     sim->gain_found = true;
-    account->tested_at = time;
+    account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
+}
+
+void energy_of_step(struct simulation *sim, double dt)
+{
+    struct energy_account *const account = &sim->state.energy;
+    if (test_is_due(sim)) {
+        energy_of_evaluation(sim, account->pending);
+        account->pending = 0;
+    }
+    energy_test_due(sim);
+    energy_of_evaluation(sim, account->pending + 0.5 * dt);
+    account->pending = 0.5 * dt;
 }
