@@ -74,6 +74,8 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
                  {BOUND_artificial, SECTION_fluid, "artificial_viscosity", "smaller"},
                  {BOUND_repulsion, SECTION_fluid, "wall_repulsion", "smaller"},
                  {BOUND_viscous, SECTION_fluid, "laminar_viscosity", "smaller"},
+                 {BOUND_zone, SECTION_damping, "rate", "smaller"},
+                 {BOUND_spring, SECTION_spring, "stiffness", "smaller"},
                  {BOUND_fixed, SECTION_numerics, "fixed_step", "larger"}};
     const struct scene *const scene = sim->scene;
     const double acoustic = scene->numerics.cfl * sim->fluid.k.h / sim->fluid.k.c0;

@@ -283,6 +283,24 @@ double rigid_hinge_power(const struct rigid *rigid, int k, double time)
     return rigid->state[k].reaction[0] * at.v[0] + rigid->state[k].reaction[1] * at.v[1];
 }
 
+double rigid_spring_rates(const struct rigid *rigid, double *damping)
+{
+    double omega2 = 0;
+    *damping = 0;
+    for (int j = 0; j < rigid->n_springs; j++) {
+        const struct rigid_spring *const spring = &rigid->spring[j];
+        double per_mass = 0;
+        for (int end = 0; end < 2 && spring->body[1] >= 0; end++) {
+            const double *const mass = rigid->body[spring->body[end]].mass;
+            const struct spring_end at = end_at(rigid, spring, end);
+            per_mass += 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
+        }
+        omega2 += spring->given->stiffness * per_mass;
+        *damping += spring->given->damping * per_mass;
+    }
+    return omega2;
+}
+
 double rigid_longest_step(const struct rigid *rigid)
 {
     const double *const g = rigid->scene->top.gravity;

@@ -60,6 +60,10 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
  * body by its radius of gyration. */
 double rigid_longest_step(const struct rigid *rigid);
 
+/* Sums of the squared frequencies, 1/s^2, and of the damping rates, 1/s, of all springs between two
+ * bodies: at least the largest of these bodies. */
+double rigid_spring_rates(const struct rigid *rigid, double *damping);
+
 /* Gives the scene the motion of the bodies at a time, after a step of dt: motion_at continues it.
  */
 void rigid_publish(const struct rigid *rigid, double time, double dt);

@@ -105,7 +105,7 @@ static double largest_factor(struct solid *solid, struct particles *particles,
  * limit for the predictor-corrector (docs/theory.md). */
 double solid_step_of(double omega2, double damping)
 {
-    if (!(omega2 > 0)) return (double)INFINITY;
+    if (!(omega2 > 0)) return damping > 0 ? 2 / damping : (double)INFINITY;
     return (sqrt(damping * damping + 4 * omega2) - damping) / omega2;
 }
 

@@ -45,6 +45,19 @@ static double bound_value(const struct simulation *sim, enum bound k,
         if (!sim->solid.contact) return never;
         return sim->effects & FX_MULTIRATE ? sim->contact.approach : sim->dt_solid;
     case BOUND_added_mass: return coupling_added_mass_step(&sim->coupling, &lightest);
+    case BOUND_zone: {
+        double rate = 0;
+        for (int z = 0; z < sim->scene->n_damping; z++) rate += sim->scene->damping[z].rate;
+        /* A decay that fluid cannot pass on grows between two Euler steps of Verlet. */
+        const double limit =
+            sim->effects & FX_VERLET ? 2.0 / n->verlet_reset : sim->integrator->velocity_decay;
+        return 0.9 * limit / rate;
+    }
+    case BOUND_spring: {
+        double damping;
+        const double omega2 = rigid_spring_rates(&sim->rigid, &damping);
+        return n->solid_safety * solid_step_of(omega2, damping);
+    }
     case BOUND_fixed: return n->fixed_step > 0 ? n->fixed_step : never;
     case BOUND_COUNT: break;
     }

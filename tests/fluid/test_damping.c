@@ -37,6 +37,21 @@ static void test_the_velocity_decays(void)
     }
 }
 
+/* A rate that the step of the sound would not follow: the fluid stops and does not swing. */
+static void test_a_high_rate_is_followed(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig, DROPS "[damping d]\nfrom = 1, 0\nto = 1.5, 0\nrate = 1e5\n", integrators[k],
+                 NULL);
+        rig_run(&rig, 1e-3);
+        const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < p->n; i++)
+            assert_near(1e-3, 0, p->body[i] == 1 ? p->vy[i] : p->vx[i] - 1, "velocity");
+    }
+}
+
 /* The rate grows as the distance to a power: 5 (0.5)^2 in the middle. */
 static void test_the_rate_grows(void)
 {
@@ -59,6 +74,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_velocity_decays);
+    RUN_TEST(test_a_high_rate_is_followed);
     RUN_TEST(test_the_rate_grows);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();

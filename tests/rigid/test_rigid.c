@@ -154,6 +154,23 @@ static void test_a_light_body_is_stable(void)
 }
 
 /* Half as dense as water, from its floating position: it stays within a quarter of a spacing. */
+static void test_a_stiff_spring_between_bodies_is_followed(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 FREE "[fluid a]\nshape = box -9, 0, -8.9, 0.1\nsound_speed = 20\n"
+                      "[rigid b]\nshape = box 0, 0, 0.4, 0.2\ndensity = 500\nvelocity = 1, 0\n"
+                      "[rigid c]\nshape = box 1, 0, 1.4, 0.2\ndensity = 500\n"
+                      "[spring d]\nbody = b\nother = c\nfrom = 0.4, 0.1\nto = 1, 0.1\n"
+                      "stiffness = 1e9\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.1);
+        const double apart = 1 - sqrt(20 / 1e9); /* of the centres: half of the speed is theirs */
+        assert_near(1.01 * (1 - apart), 0, state()[1].x[0] - state()[0].x[0], "elongation");
+        assert_near(1e-6, 1, state()[0].v[0] + state()[1].v[0], "momentum");
+    }
+}
+
 static void test_a_body_floats(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -230,6 +247,7 @@ int main(void)
     RUN_TEST(test_a_mooring_pulls_only);
     RUN_TEST(test_momentum_is_exchanged);
     RUN_TEST(test_a_light_body_is_stable);
+    RUN_TEST(test_a_stiff_spring_between_bodies_is_followed);
     RUN_TEST(test_a_body_floats);
     RUN_TEST(test_a_body_in_a_wall_is_warned_of);
     RUN_TEST(test_bad_input_is_refused);
