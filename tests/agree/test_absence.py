@@ -44,7 +44,7 @@ SOLID = """[solid gate]
 shape = box 0.2, 0, 0.23, 0.15
 clamp = box 0.2, 0.12, 0.23, 0.15
 density = 1100
-young = 1 MPa
+young = 1.5 MPa
 poisson = 0.4
 """
 OUTPUT = ("[output]\nprobe_interval = 1\nledger_interval = 1\nsnapshot_interval = 1\n"

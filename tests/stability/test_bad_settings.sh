@@ -23,7 +23,7 @@ says 1 'poisson' beam.cfg nu=0.5
 says 1 'poisson' beam.cfg nu=0.6
 says 1 'is 1 particle thick' gate.cfg 'thickness=5 mm'
 says 0 'only 2 particles thick' gate.cfg 'thickness=10 mm'
-says 2 'fixed_step = .* s exceeds the solid.s stable step' beam.cfg 'numerics.fixed_step=0.07 ms'
+says 2 'fixed_step = .* s exceeds the solid.s stable step' beam.cfg 'numerics.fixed_step=0.1 ms'
 says 0 'fixed_step = 0.00025 s (C_CFL = 0.741) is above 0.6' column.cfg \
     'numerics.fixed_step=0.25 ms'
 says 0 'numerics.cfl = 0.5 is above 0.2' column.cfg integrator=verlet numerics.cfl=0.5
