@@ -61,6 +61,15 @@ static void put_circle(const struct drawing *g, const char *class, const double 
             px(g, at[0]), py(g, at[1]));
 }
 
+/* A line with its ends, whose number stands at the first of them. */
+static void put_line(struct drawing *g, const double from[2], const double to[2])
+{
+    fprintf(g->file, "<path class=\"probe\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", px(g, from[0]),
+            py(g, from[1]), px(g, to[0]), py(g, to[1]));
+    put_circle(g, "probe", from);
+    put_circle(g, "probe", to);
+}
+
 /* --- bodies --- */
 
 static double spacing(const struct scene *scene, enum kind kind, int body)
@@ -117,19 +126,26 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     const struct scene_points *const p = &scene->points[kind];
     const struct scene_section_common *const common = section_at(scene, sections[kind], body);
     const char *const motion = kind == KIND_WALL ? scene->wall[body].motion : "";
+    const int rigid = kind == KIND_WALL ? body - scene_rigid_wall(scene, 0) : -1;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     const int64_t n = extend_box(scene, kind, body, low, high);
     put_particles(g, kind, body, false, motion[0] ? moving : fills[kind]);
     const int64_t n_clamped = put_particles(g, kind, body, true, clamped);
     for (int k = 0; kind == KIND_SOLID && k < scene->solid[body].hinge.n; k++)
         put_circle(g, "hinge", scene->solid[body].hinge.item[k].at);
+    if (rigid >= 0 && scene->rigid[rigid].hinge.n)
+        put_circle(g, "hinge", scene->rigid[rigid].hinge.item[0].at);
     int64_t i = 0, before = n / 2; /* the number stands at the middle one of the particles */
     while (i < p->n && (p->body[i] != body || before-- > 0)) i++;
     begin_legend(g, n ? px(g, p->x[i]) : -99, n ? py(g, p->y[i]) + 4 : 0);
-    fprintf(g->file, "%s %s: %.4g x %.4g m, %lld particles", kind_names[kind], common->name,
-            n ? high[0] - low[0] : 0, n ? high[1] - low[1] : 0, (long long)n);
+    fprintf(g->file, "%s %s: %.4g x %.4g m, %lld particles",
+            rigid >= 0 ? "rigid" : kind_names[kind], common->name, n ? high[0] - low[0] : 0,
+            n ? high[1] - low[1] : 0, (long long)n);
     if (kind == KIND_FLUID) fprintf(g->file, "; %g kg/m^3, c0 %.4g m/s", scene->rho0, scene->c0);
-    if (kind == KIND_WALL) fprintf(g->file, motion[0] ? "; moved by %s" : "; at rest", motion);
+    if (rigid >= 0)
+        fprintf(g->file, "; %.4g kg/m, moves by itself", scene->rigid_mass[rigid].mass);
+    else if (kind == KIND_WALL)
+        fprintf(g->file, motion[0] ? "; moved by %s" : "; at rest", motion);
     if (kind == KIND_SOLID) describe_solid(&scene->solid[body], n_clamped, g->file);
     end_text(g);
 }
@@ -151,10 +167,8 @@ static void put_probe(struct drawing *g, const struct scene_probe *probe)
     char quantity[SCENE_NAME];
     double at[2][2];
     const int n = find_points(probe, at);
-    if (n == 2)
-        fprintf(g->file, "<path class=\"probe\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", px(g, at[0][0]),
-                py(g, at[0][1]), px(g, at[1][0]), py(g, at[1][1]));
-    for (int k = 0; k < n; k++) put_circle(g, "probe", at[k]);
+    if (n == 2) put_line(g, at[0], at[1]);
+    if (n == 1) put_circle(g, "probe", at[0]);
     param_choice_name(param_find(SECTION_probe, "quantity"), probe->quantity, quantity);
     begin_legend(g, n ? px(g, at[0][0]) + 8 : -99, n ? py(g, at[0][1]) - 5 : 0);
     fprintf(g->file, "probe %s: %s%s%s", probe->common.name, quantity, probe->body[0] ? " of " : "",
@@ -162,6 +176,17 @@ static void put_probe(struct drawing *g, const struct scene_probe *probe)
     if (n == 1) fprintf(g->file, " at (%g, %g) m", at[0][0], at[0][1]);
     if (n == 2)
         fprintf(g->file, " from (%g, %g) to (%g, %g) m", at[0][0], at[0][1], at[1][0], at[1][1]);
+    end_text(g);
+}
+
+/* The line of a spring or of a zone of damping. */
+static void put_section(struct drawing *g, const char *word, const char *name, const double from[2],
+                        const double to[2])
+{
+    put_line(g, from, to);
+    begin_legend(g, px(g, from[0]) + 8, py(g, from[1]) - 5);
+    fprintf(g->file, "%s %s: from (%g, %g) to (%g, %g) m", word, name, from[0], from[1], to[0],
+            to[1]);
     end_text(g);
 }
 
@@ -206,7 +231,8 @@ static void find_view(struct drawing *g)
 static void put_head(const struct drawing *g)
 {
     const struct scene *const scene = g->scene;
-    const int lines = scene->n_fluid + scene->n_wall + scene->n_solid + scene->n_probe;
+    const int lines = scene->n_fluid + scene->n_wall + scene->n_solid + scene->n_probe +
+                      scene->n_spring + scene->n_damping;
     const int width = LEFT + DRAWING + RIGHT;
     const double height = py(g, g->low[1]) + FOOT + lines * LINE + 20;
     fprintf(g->file,
@@ -251,6 +277,12 @@ static enum err draw(struct session *session, const struct sphfsi_options *o, co
         for (int body = 0; body < section_count(scene, sections[order[k]]); body++)
             put_body(&g, order[k], body);
     put_axes(&g);
+    for (int k = 0; k < scene->n_spring; k++)
+        put_section(&g, "spring", scene->spring[k].common.name, scene->spring[k].from,
+                    scene->spring[k].to);
+    for (int k = 0; k < scene->n_damping; k++)
+        put_section(&g, "damping", scene->damping[k].common.name, scene->damping[k].from,
+                    scene->damping[k].to);
     for (int k = 0; k < scene->n_probe; k++) put_probe(&g, &scene->probe[k]);
     fputs("</svg>\n", g.file);
     const bool failed = ferror(g.file);

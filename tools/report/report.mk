@@ -18,7 +18,7 @@
 #   make energy-account  what the account of energy finds: docs/results/energy_account.md
 #   make performance     the bench, longest steps and the gate: docs/performance.md
 #   make glance          the charts of the README from the results of the reports
-#   make gallery         run the elastic valve, draw the picture of it in the README
+#   make gallery         run the elastic valve and the flap, draw their pictures in the README
 #   make reliability     run the fault tests and write docs/results/reliability.md
 
 # goal: the tool and its options. Each is run on the built program by the project's Python.
@@ -56,11 +56,14 @@ reliability: $(TESTS)
 help-reports:
 	@sed -n '/^#/!q; s/^# \{0,1\}//p' tools/report/report.mk
 
-# Those that the documents show.
-GALLERY := $(if $(QUICK),build/quick,runs)/elastic_valve
+# Those that the documents show: name of the picture, case, time of the snapshot.
+GALLERY := $(if $(QUICK),build/quick,runs)
 gallery: $(PROGRAM)
-	@mkdir -p $(dir $(GALLERY))
-	@[ -e $(GALLERY)/summary.json ] || ./$(PROGRAM) cases/elastic_valve.cfg --quiet \
-	  --out $(GALLERY) $(if $(QUICK),--set 'dp=4 mm' --until 0.05)
-	@$(PROJECT_PYTHON) tools/plot_fields.py $(GALLERY) --time $(if $(QUICK),0.05,0.75) --field velocity \
-	  --out $(if $(QUICK),build/quick,docs/img)/elastic_valve.png
+	@mkdir -p $(GALLERY)
+	@set -e; for row in 'elastic_valve elastic_valve 0.75' 'flap templates/flap 6'; do \
+	  set -- $$row; name=$$1; case=$$2; time=$$3; run=$(GALLERY)/$$name; \
+	  [ -e $$run/summary.json ] || ./$(PROGRAM) cases/$$case.cfg --quiet --out $$run \
+	    $(if $(QUICK),--set 'dp=4 mm' --until 0.05); \
+	  $(PROJECT_PYTHON) tools/plot_fields.py $$run --time $(if $(QUICK),0.05,$$time) \
+	    --field velocity --out $(if $(QUICK),build/quick,docs/img)/$$name.png; \
+	done
