@@ -90,13 +90,35 @@ static double with_friction(double rate, double most)
     return rate > most ? rate - most : rate < -most ? rate + most : 0;
 }
 
-void rigid_solve(struct rigid *rigid, int k, struct rigid_equations *eq, double end, double kick)
+/* The change of velocity by a unit of each impulse: B S^-1 B^T. */
+static void find_yields(const struct freedom *f, double A[3][3], double yields[3][3])
 {
+    double S[3][3] = {{0}};
+    for (int i = 0; i < f->n; i++)
+        for (int j = 0; j < f->n; j++)
+            for (int c = 0; c < 3; c++)
+                for (int e = 0; e < 3; e++) S[i][j] += f->B[c][i] * A[c][e] * f->B[e][j];
+    for (int c = 0; c < 3; c++) {
+        double M[3][3], q[3];
+        memcpy(M, S, sizeof M);
+        for (int i = 0; i < f->n; i++) q[i] = f->B[c][i];
+        (void)cholesky_solve(M[0], f->n, 3, 0, q);
+        for (int e = 0; e < 3; e++) {
+            yields[e][c] = 0;
+            for (int i = 0; i < f->n; i++) yields[e][c] += f->B[e][i] * q[i];
+        }
+    }
+}
+
+void rigid_solve(struct rigid *rigid, int k, double end, double kick)
+{
+    struct rigid_equations *const eq = &rigid->eq[k];
     const struct rigid_body *const body = &rigid->body[k];
-    struct rigid_state *const s = &rigid->state[k];
-    struct freedom f = freedom_of(rigid, k, end);
+    const struct rigid_state *const s = &rigid->state[k];
+    const struct freedom f = freedom_of(rigid, k, end);
     const double c_hinge = body->given->hinge_damping;
     double A[3][3], right[3], S[3][3] = {{0}}, q[3], friction = 0;
+    double alone[3][3] = {{body->mass[0]}, {0, body->mass[1]}, {0, 0, body->mass[2]}};
     eq->impulse[2] -= kick * (body->given->hinge_stiffness * s->x[2] + c_hinge * s->v[2]);
     eq->springs[2][2] += 0.5 * kick * c_hinge;
     for (int c = 0; c < 3; c++) {
@@ -116,20 +138,29 @@ void rigid_solve(struct rigid *rigid, int k, struct rigid_equations *eq, double 
                 for (int j = 0; j < f.n; j++) S[i][j] += f.B[c][i] * A[c][e] * f.B[e][j];
         }
     }
+    find_yields(&f, A, eq->yields);
+    find_yields(&f, alone, eq->alone);
     if (f.n) friction = kick * body->given->hinge_friction / S[0][0];
     if (f.n) (void)cholesky_solve(S[0], f.n, 3, 0, q);
     if (friction > 0) q[0] = with_friction(q[0], friction);
-    double change[3];
     for (int c = 0; c < 3; c++) {
-        change[c] = f.base[c] - s->v[c];
-        for (int j = 0; j < f.n; j++) change[c] += f.B[c][j] * q[j];
-        eq->faster[c] = change[c] - kick * s->a[c];
+        eq->change[c] = f.base[c] - s->v[c];
+        for (int j = 0; j < f.n; j++) eq->change[c] += f.B[c][j] * q[j];
+        eq->faster[c] = eq->change[c] - kick * s->a[c];
     }
+}
+
+void rigid_find_reaction(struct rigid *rigid, int k, double kick)
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    const struct rigid_equations *const eq = &rigid->eq[k];
+    const double *const along = body->given->guide;
+    const bool free = !body->given->hinge.n && along[0] == 0 && along[1] == 0 && body->given->turns;
     for (int c = 0; c < 3; c++) {
-        double needed = body->mass[c] * change[c] - eq->impulse[c];
+        double needed = body->mass[c] * eq->change[c] - eq->impulse[c];
         for (int e = 0; e < 3; e++)
-            needed += eq->fluid[c][e] * eq->faster[e] + eq->springs[c][e] * change[e];
-        s->reaction[c] = f.n < 3 ? needed / kick : 0;
+            needed += eq->fluid[c][e] * eq->faster[e] + eq->springs[c][e] * eq->change[e];
+        rigid->state[k].reaction[c] = free ? 0 : needed / kick;
     }
 }
 

@@ -23,7 +23,8 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
     rigid->mean_time = scene->n_fluid > 0 ? scene->h / scene->c0 : 0;
     rigid->body = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->body, "rigid bodies", d);
     rigid->state = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->state, "rigid bodies", d);
-    if (!rigid->body || !rigid->state) return ERR_MEMORY;
+    rigid->eq = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->eq, "rigid bodies", d);
+    if (!rigid->body || !rigid->state || !rigid->eq) return ERR_MEMORY;
     for (int k = 0; k < rigid->n; k++) {
         const struct rigid_mass *const m = &scene->rigid_mass[k];
         rigid->body[k] = (struct rigid_body){.given = &scene->rigid[k],
@@ -37,6 +38,7 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
             .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
         rigid_hold(rigid, k, 0);
     }
+    TRY(rigid_contact_create(rigid, a, d));
     return rigid_springs_create(rigid, a, d);
 }
 
@@ -120,61 +122,86 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 
 /* --- a step --- */
 
-static void advance_body(struct rigid *rigid, int k, const double gravity[2], double time,
-                         double dt, double kick)
+/* The kick is this part of the time in which the fluid receives the impulse. */
+static double part_of(const struct rigid *rigid, double kick)
 {
-    struct rigid_body *const body = &rigid->body[k];
+    const double exchange = exchange_time(rigid);
+    return exchange > 0 ? kick / exchange : 0;
+}
+
+static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
+                         double kick)
+{
+    const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
-    const double exchange = exchange_time(rigid), part = exchange > 0 ? kick / exchange : 0;
-    const double weight = kick / (kick + rigid->mean_time), late = rigid->centred ? 0.5 * dt : dt;
-    double impulse[3], impedance[3][3], before[3], faster[3], start[3];
-    struct rigid_equations eq = {.faster = faster};
-    memcpy(start, s->v, sizeof start);
-    find_fluid(rigid, body, impulse, impedance);
-    rigid_hold(rigid, k, time + dt - late);
+    struct rigid_equations *const eq = &rigid->eq[k];
+    const double exchange = exchange_time(rigid), part = part_of(rigid, kick);
+    double force[3], impedance[3][3];
+    memcpy(eq->start, s->v, sizeof eq->start);
+    find_fluid(rigid, body, force, impedance);
+    rigid_hold(rigid, k, now);
     for (int c = 0; c < 3; c++) {
         const double heavy = c < 2 && body->given->gravity ? body->mass[c] * gravity[c] : 0;
-        before[c] = s->v[c];
-        impulse[c] = kick * impulse[c] - part * s->impulse[c];
-        eq.impulse[c] = impulse[c] + kick * (heavy + body->load[c]);
+        eq->before[c] = s->v[c];
+        eq->from_fluid[c] = kick * force[c] - part * s->impulse[c];
+        eq->impulse[c] = eq->from_fluid[c] + kick * (heavy + body->load[c]);
         for (int e = 0; e < 3; e++) {
-            eq.fluid[c][e] = exchange * impedance[c][e];
-            eq.springs[c][e] =
+            eq->fluid[c][e] = exchange * impedance[c][e];
+            eq->springs[c][e] =
                 0.25 * kick * dt * body->stiffness[c][e] + 0.5 * kick * body->damping[c][e];
         }
     }
-    rigid_solve(rigid, k, &eq, time + dt, kick);
+}
+
+static void move_body(struct rigid *rigid, int k, double now, double dt, double late, double kick,
+                      double end)
+{
+    struct rigid_body *const body = &rigid->body[k];
+    struct rigid_state *const s = &rigid->state[k];
+    const struct rigid_equations *const eq = &rigid->eq[k];
+    const double part = part_of(rigid, kick), weight = kick / (kick + rigid->mean_time);
+    rigid_find_reaction(rigid, k, kick);
     body->work = body->passed = 0;
-    body->driven = kick * rigid_hinge_power(rigid, k, time + dt - late);
+    body->driven = kick * rigid_hinge_power(rigid, k, now);
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
-        for (int e = 0; e < 3; e++) resisted += eq.fluid[c][e] * faster[e];
-        const double change = kick * s->a[c] + faster[c];
-        body->mean[c] = before[c] + 0.5 * change;
-        body->work += (impulse[c] - resisted) * body->mean[c];
+        for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
+        const double change = kick * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
+        body->mean[c] = eq->before[c] + 0.5 * change;
+        body->work += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
-        s->v[c] = before[c] + change;
-        s->x[c] += late * s->v[c];
+        s->v[c] = eq->before[c] + change;
+        s->x[c] += late * s->v[c] + dt * eq->touch[RIGID_PUSH][c];
     }
-    rigid_hold(rigid, k, time + dt);
+    rigid_hold(rigid, k, end);
     for (int c = 0; c < 3; c++) {
-        s->last[c] = (s->v[c] - start[c]) / kick;
+        const double impact = eq->touch[RIGID_IMPACT][c] / kick;
+        /* An impact is no acceleration that the fluid could expect to go on. */
+        s->last[c] = (s->v[c] - eq->start[c]) / kick - impact;
         /* What turns the velocity along the way is a reaction, too. */
-        s->reaction[c] += body->mass[c] * (s->last[c] - (body->mean[c] - before[c]) * 2 / kick);
+        s->reaction[c] +=
+            body->mass[c] * (s->last[c] + impact - (body->mean[c] - eq->before[c]) * 2 / kick);
         s->a[c] += weight * (s->last[c] - s->a[c]);
     }
-    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, faster);
+    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, eq->faster);
 }
 
 void rigid_advance(struct rigid *rigid, const double gravity[2], double time, double dt,
                    double kick)
 {
+    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late, end = time + dt;
     for (int k = 0; k < rigid->n && rigid->centred; k++)
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
     rigid_find_loads(rigid);
-    for (int k = 0; k < rigid->n; k++) advance_body(rigid, k, gravity, time, dt, kick);
+    for (int k = 0; k < rigid->n; k++) {
+        prepare_body(rigid, k, gravity, now, dt, kick);
+        rigid_solve(rigid, k, end, kick);
+    }
+    rigid_touch(rigid, now, dt);
+    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, dt, late, kick, end);
     rigid_pass_work(rigid, kick);
+    rigid_contact_work(rigid);
 }
 
 /* --- energy --- */

@@ -45,6 +45,8 @@ struct rigid {
     struct rigid_state *state;
     int n_springs;
     struct rigid_spring *spring;
+    struct rigid_equations *eq; /* [n] of a step (rigid/forces.h) */
+    struct rigid_contact *contact;
     const struct scene *scene;
     struct particles *walls;
     double impedance; /* rho0 c0; 0: no fluid */

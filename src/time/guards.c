@@ -357,9 +357,9 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         const int other = p->body[at];
         diag_warn(
             d,
-            "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: rigid "
-            "bodies have no contact with walls and with each other; hold it by `guide`, "
-            "`hinge` or a [spring], or make it a [solid]",
+            "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: contact "
+            "ends a quarter of a spacing inside, and a hinge has none; hold the body by "
+            "`guide`, `hinge` or a [spring], or make its step smaller by `fixed_step`",
             time_text(sim).text, sim->scene->rigid[k].common.name,
             other < scene_rigid_wall(sim->scene, 0) ? "wall" : "rigid",
             sim->scene->wall[other].common.name, p->x[at], p->y[at]);

@@ -191,8 +191,8 @@ static void hear(void *context, const char *text)
     snprintf(said, sizeof said, "%s", text);
 }
 
-/* A body that falls through the floor is warned of, by both names. A body between lattice places
- * is found, too: the box spins. */
+/* What has passed into a wall is warned of, by both names: contact ends a quarter of a spacing
+ * inside. */
 static void test_a_body_in_a_wall_is_warned_of(void)
 {
     rig_open(&rig,
@@ -200,10 +200,111 @@ static void test_a_body_in_a_wall_is_warned_of(void)
              "[rigid a]\nshape = box 0, 0.3, 0.3, 0.6\ndensity = 500\nspin = 0.5\n",
              NULL);
     rig.diag.warn = hear;
+    said[0] = '\0';
     rig_run(&rig, 0.2);
     TEST_ASSERT_EQUAL_STRING("", said);
+    rig.sim.rigid.state->x[1] = -0.35;
     rig_run(&rig, 0.3);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "[rigid a] has entered [wall floor] near"), said);
+}
+
+/* A box that falls on a floor drawn as a line stays on it, and a disc rolls on beside it. */
+static void test_bodies_rest_on_the_floor(void)
+{
+    rig_open(&rig,
+             "gravity = 0, -9.81\n" FREE "[wall tank]\nshape = polyline: -2, 0; 0.5, 0; 3, 0\n"
+             "[rigid a]\nshape = box 0, 0.3, 0.3, 0.6\ndensity = 500\n"
+             "[rigid b]\nshape = circle 1.2, 0.45, 0.15\ndensity = 500\nvelocity = 0.4, 0\n"
+             "spin = -0.5\n",
+             NULL);
+    rig.diag.warn = hear;
+    said[0] = '\0';
+    rig_run(&rig, 1);
+    const struct rigid_state *const a = &state()[0], *const b = &state()[1];
+    const double lost = 500 * 9.81 * 0.3 * (0.09 + acos(-1) * 0.15 * 0.15);
+    assert_near(1e-9, -0.3, a->x[1], "y of the box");
+    assert_near(1e-9, 0, a->x[0], "x of the box");
+    assert_near(1e-9, 0, a->x[2], "angle of the box");
+    assert_near(1e-9, 0, a->v[1], "vy of the box");
+    assert_near(1e-9, -0.3, b->x[1], "y of the disc");
+    assert_near(1e-9, 0.4, b->x[0], "x of the disc");
+    assert_near(1e-9, -0.5, b->x[2], "angle of the disc");
+    assert_near(1e-3 * lost, lost, simulation_ledger(&rig.sim).dissipated, "dissipated");
+    TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+/* Inelastic: momentum and angular momentum stay, and the corner that was hit moves with the other
+ * body. */
+static void test_two_boxes_collide(void)
+{
+    rig_open(&rig,
+             FREE "[rigid a]\nshape = box 0, 0, 0.3, 0.3\nmass = 2\nvelocity = 1, 0\n"
+                  "[rigid b]\nshape = box 0.45, 0, 0.75, 0.3\nmass = 4\n"
+                  "[rigid c]\nshape = box 0, 2, 0.3, 2.3\nmass = 2\nvelocity = 1, 0\n"
+                  "[rigid d]\nshape = box 0.45, 2.21, 0.75, 2.51\nmass = 4\n",
+             NULL);
+    rig_run(&rig, 0.3);
+    const struct rigid_state *const s = state();
+    assert_near(1e-7, 1 / 3.0, s[0].v[0], "velocity of a");
+    assert_near(1e-7, 1 / 3.0, s[1].v[0], "velocity of b");
+    assert_near(1e-5, -0.15, s[1].x[0] - s[0].x[0], "distance of a and b");
+    assert_near(1e-12, 2, 2 * s[2].v[0] + 4 * s[3].v[0], "momentum of c and d");
+    double turning = 2 * 2.15;
+    for (int k = 2; k < 4; k++) {
+        const struct rigid_mass *const m = &rig.scene.rigid_mass[k];
+        const double x = m->centre[0] + s[k].x[0], y = m->centre[1] + s[k].x[1];
+        turning += m->inertia * s[k].v[2] + m->mass * (x * s[k].v[1] - y * s[k].v[0]);
+    }
+    assert_near(1e-5, 0, turning, "angular momentum of c and d");
+    TEST_ASSERT_TRUE(fabs(s[2].v[2]) > 0.1);
+}
+
+/* Without friction a box on a slope of 3 in 4 slides with 0.6 g. */
+static void test_a_box_slides_down_a_slope(void)
+{
+    rig_open(&rig,
+             "gravity = 0, -10\n" FREE "[wall slope]\nshape = polygon -4, -3; 4, 3; 4, -3\n"
+             "[rigid a]\nshape = polygon 0, 0; 0.4, 0.3; 0.1, 0.7; -0.3, 0.4\nmass = 3\n",
+             NULL);
+    rig_run(&rig, 0.5);
+    assert_near(1e-6, -6 * 0.5 * 0.8, state()->v[0], "vx");
+    assert_near(1e-6, -6 * 0.5 * 0.6, state()->v[1], "vy");
+    assert_near(1e-6, 0, state()->x[2], "angle");
+    assert_near(1e-6, -0.75 * 0.8, state()->x[0], "x");
+    assert_near(1e-3, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
+}
+
+/* A wall that rises lifts a body and does the work. */
+static void test_a_moving_wall_lifts_a_body(void)
+{
+    rig_open(&rig,
+             "gravity = 0, -10\n" FREE "[wall lift]\nshape = box -1, -0.12, 1, 0\nmotion = m\n"
+             "[motion m]\nvelocity = 0, 0.5\n"
+             "[rigid a]\nshape = box 0, 0, 0.3, 0.3\nmass = 3\n",
+             NULL);
+    rig_run(&rig, 0.4);
+    assert_near(1e-9, 0.2, state()->x[1], "y");
+    assert_near(1e-9, 0.5, state()->v[1], "vy");
+    assert_near(1e-2, 3 * 10 * 0.2 + 2 * 0.5 * 3 * 0.25, rig.sim.state.wall_work,
+                "work of the wall");
+}
+
+/* Half as dense again as water, it sinks and stays on the floor, with each integrator; a layer of
+ * water is left under it. */
+static void test_a_body_sinks_to_the_floor(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 "dp = 2 cm\nend_time = 2\ngravity = 0, -9.81\nscheme = standard\n"
+                 "[fluid w]\nshape = box 0, 0, 1.2, 0.4\nminus = box 0.4, 0.08, 0.8, 0.2\n"
+                 "surface = 0.4\nsound_speed = 30\n"
+                 "[wall tank]\nshape = polyline: 0, 1; 0, 0; 1.2, 0; 1.2, 1\n"
+                 "[rigid a]\nshape = box 0.4, 0.08, 0.8, 0.2\ndensity = 1500\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.8);
+        assert_near(0.002, -0.06, state()->x[1], integrators[k]);
+        assert_near(0.02, 0, state()->v[1], "velocity");
+    }
 }
 
 static void test_bad_input_is_refused(void)
@@ -250,6 +351,11 @@ int main(void)
     RUN_TEST(test_a_stiff_spring_between_bodies_is_followed);
     RUN_TEST(test_a_body_floats);
     RUN_TEST(test_a_body_in_a_wall_is_warned_of);
+    RUN_TEST(test_a_body_sinks_to_the_floor);
+    RUN_TEST(test_bodies_rest_on_the_floor);
+    RUN_TEST(test_two_boxes_collide);
+    RUN_TEST(test_a_box_slides_down_a_slope);
+    RUN_TEST(test_a_moving_wall_lifts_a_body);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }

@@ -1,0 +1,332 @@
+/* SPDX-License-Identifier: MIT */
+#include "rigid/forces.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/elementary.h"
+#include "geometry/outline.h"
+
+/* The outlines of a wall or rigid body at the start, and where it is. */
+struct rigid_shape {
+    struct outlines add, minus;
+    int rigid, motion; /* numbers; -1: none */
+    struct motion_state now;
+};
+
+/* A place where the corner of one section is near the outline of another one. */
+struct rigid_touch {
+    int body[2];        /* -1: a wall */
+    double along[2][3]; /* what a unit of impulse is to each body: force and moment */
+    double gap;         /* m */
+    double wall_speed;  /* of walls, along the normal from the second to the first, m/s */
+    double impulse[RIGID_STAGES];
+};
+
+struct rigid_contact {
+    double reach;              /* a spacing, m */
+    struct rigid_shape *shape; /* [n_wall] */
+    /* [rigid bodies][n_wall]: distance that outlines keep, m; NAN: no contact. */
+    double *layer, kept;
+    int n, most;
+    struct rigid_touch *touch;
+};
+
+/* --- outlines --- */
+
+static bool is_inside(const struct rigid_shape *s, const double at[2])
+{
+    return outlines_find(&s->add, at[0], at[1]) >= 0 && outlines_find(&s->minus, at[0], at[1]) < 0;
+}
+
+/* A corner, in the axes of the section whose outline it is compared with. */
+struct approach {
+    struct rigid_contact *contact;
+    const struct rigid_shape *of[2]; /* that of the corner and that of the outline */
+    double at[2], radius;
+    bool inside;
+    struct rigid_touch *deepest; /* of a corner inside: there is no other */
+};
+
+/* Adds a place `at` of the outline with the normal n, from which the corner is at a distance. */
+static void add_touch(struct approach *a, const double at[2], const double n[2], double distance)
+{
+    struct rigid_contact *const contact = a->contact;
+    const double near = 1e-6 * contact->reach, gap = distance - a->radius - contact->kept;
+    const double beyond[2] = {at[0] + near * n[0], at[1] + near * n[1]},
+                 before[2] = {at[0] - near * n[0], at[1] - near * n[1]};
+    const bool deep = distance < -1e-3 * near;
+    /* A quarter of a spacing: deeper, the body passes through, of which a guard warns. */
+    if (gap > contact->reach || gap < -contact->kept - 0.25 * contact->reach) return;
+    if (a->inside ? distance > 1e-3 * near : deep) return;
+    if (is_inside(a->of[1], beyond) || !is_inside(a->of[1], before)) return;
+    struct rigid_touch *to = &contact->touch[contact->n];
+    if (deep && a->deepest) {
+        if (gap <= a->deepest->gap) return;
+        to = a->deepest;
+    } else if (contact->n == contact->most) {
+        return;
+    } else {
+        contact->n++;
+    }
+    if (deep) a->deepest = to;
+    const struct motion_state *const m = &a->of[1]->now;
+    const double c = m->turn[0], s = m->turn[1];
+    const double normal[2] = {c * n[0] - s * n[1], s * n[0] + c * n[1]};
+    const struct motion_point place = motion_of_point(m, at[0], at[1]);
+    *to = (struct rigid_touch){.gap = gap};
+    for (int side = 0; side < 2; side++) {
+        const struct motion_state *const of = &a->of[side]->now;
+        const double sign = side ? -1 : 1, x = place.x[0] - of->centre[0] - of->d[0],
+                     y = place.x[1] - of->centre[1] - of->d[1];
+        to->body[side] = a->of[side]->rigid;
+        if (to->body[side] < 0) {
+            const double v[2] = {of->v[0] - of->rate * y, of->v[1] + of->rate * x};
+            to->wall_speed += sign * (normal[0] * v[0] + normal[1] * v[1]);
+            continue;
+        }
+        to->along[side][0] = sign * normal[0];
+        to->along[side][1] = sign * normal[1];
+        to->along[side][2] = sign * (x * normal[1] - y * normal[0]);
+    }
+}
+
+/* `sign`: -1 for a piece that is subtracted. */
+static void approach_piece(struct approach *a, const struct outline *o, double sign)
+{
+    const double most = a->contact->reach + a->contact->kept + a->radius;
+    const struct box2 place = {{a->at[0], a->at[1]}, {a->at[0], a->at[1]}};
+    if (!box2_near(&place, &o->box, most)) return;
+    if (o->n == 0) {
+        const double x = a->at[0] - o->centre[0], y = a->at[1] - o->centre[1];
+        const double r = elementary_hypot(x, y);
+        if (r == 0) return;
+        const double n[2] = {sign * x / r, sign * y / r};
+        const double at[2] = {o->centre[0] + o->radius * x / r, o->centre[1] + o->radius * y / r};
+        add_touch(a, at, n, sign * (r - o->radius));
+        return;
+    }
+    const double turn = polygon_area(o->n, o->pt) > 0 ? sign : -sign;
+    for (int k = 0; k < o->n; k++) {
+        const double *const from = o->pt[k], *const to = o->pt[k + 1 < o->n ? k + 1 : 0];
+        const double ex = to[0] - from[0], ey = to[1] - from[1];
+        const double length = elementary_hypot(ex, ey);
+        const double x = a->at[0] - from[0], y = a->at[1] - from[1];
+        const double part = length > 0 ? (x * ex + y * ey) / square(length) : -1;
+        if (part >= 0 && part <= 1) {
+            const double n[2] = {turn * ey / length, -turn * ex / length};
+            const double at[2] = {from[0] + part * ex, from[1] + part * ey};
+            add_touch(a, at, n, n[0] * x + n[1] * y);
+        }
+        const double r = elementary_hypot(x, y); /* from a corner of the outline */
+        if (r > 0 && !a->inside) add_touch(a, from, (const double[2]){x / r, y / r}, r);
+    }
+}
+
+/* Where a corner, or a circle about its centre, is near the outline of another section. */
+static void approach_corner(struct rigid_contact *contact, const struct rigid_shape *of,
+                            const struct rigid_shape *other, const double at[2], double radius)
+{
+    const struct motion_state *const m = &other->now;
+    const struct motion_point p = motion_of_point(&of->now, at[0], at[1]);
+    const double x = p.x[0] - m->d[0] - m->centre[0], y = p.x[1] - m->d[1] - m->centre[1];
+    struct approach a = {.contact = contact, .of = {of, other}, .radius = radius};
+    a.at[0] = m->centre[0] + m->turn[0] * x + m->turn[1] * y;
+    a.at[1] = m->centre[1] - m->turn[1] * x + m->turn[0] * y;
+    a.inside = is_inside(other, a.at);
+    for (int j = 0; j < other->add.n; j++) approach_piece(&a, &other->add.item[j], 1);
+    for (int j = 0; j < other->minus.n; j++) approach_piece(&a, &other->minus.item[j], -1);
+}
+
+static void approach_shape(struct rigid_contact *contact, const struct rigid_shape *of,
+                           const struct rigid_shape *other)
+{
+    for (int k = 0; k < of->add.n + of->minus.n; k++) {
+        const bool hole = k >= of->add.n;
+        const struct outline *const o = hole ? &of->minus.item[k - of->add.n] : &of->add.item[k];
+        if (!o->n && !hole) approach_corner(contact, of, other, o->centre, o->radius);
+        for (int i = 0; i < o->n; i++) approach_corner(contact, of, other, o->pt[i], 0);
+    }
+}
+
+/* --- all touches --- */
+
+static void place_shapes(struct rigid *rigid, double time)
+{
+    for (int w = 0; w < rigid->scene->n_wall; w++) {
+        struct rigid_shape *const s = &rigid->contact->shape[w];
+        s->now = motion_at(rigid->scene, s->motion, time);
+        if (s->rigid < 0) continue;
+        const double *const x = rigid->state[s->rigid].x;
+        s->now = (struct motion_state){.d = {x[0], x[1]},
+                                       .centre = {rigid->body[s->rigid].centre[0],
+                                                  rigid->body[s->rigid].centre[1]},
+                                       .angle = x[2],
+                                       .turn = {elementary_cos(x[2]), elementary_sin(x[2])}};
+    }
+}
+
+/* The touches of a body with a wall, or with a body before it. */
+static void approach_pair(struct rigid *rigid, int k, int w)
+{
+    const struct rigid_shape *const shape = rigid->contact->shape,
+                                    *const own = &shape[scene_rigid_wall(rigid->scene, k)];
+    approach_shape(rigid->contact, own, &shape[w]);
+    approach_shape(rigid->contact, &shape[w], own);
+}
+
+static enum err shape_create(struct rigid *rigid, int w, struct arena *a, struct diag *d)
+{
+    const struct scene *const scene = rigid->scene;
+    struct rigid_shape *const s = &rigid->contact->shape[w];
+    TRY(outlines_of(&s->add, scene, &scene->wall[w].shape, a, d));
+    TRY(outlines_of(&s->minus, scene, &scene->wall[w].minus, a, d));
+    s->rigid = w < scene_rigid_wall(scene, 0) ? -1 : w - scene_rigid_wall(scene, 0);
+    s->motion = scene->wall[w].motion[0] ? scene_find_motion(scene, scene->wall[w].motion) : -1;
+    for (int j = 0; j < s->add.n; j++) rigid->contact->most += 4 * (s->add.item[j].n + 4);
+    for (int j = 0; j < s->minus.n; j++) rigid->contact->most += 4 * s->minus.item[j].n;
+    return ERR_OK;
+}
+
+enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag *d)
+{
+    const struct scene *const scene = rigid->scene;
+    const size_t n = (size_t)scene->n_wall;
+    struct rigid_contact *const contact = arena_alloc(a, 1, sizeof *contact, "rigid bodies", d);
+    rigid->contact = contact;
+    if (!contact) return ERR_MEMORY;
+    contact->reach = scene->top.dp;
+    contact->shape = arena_alloc(a, n, sizeof *contact->shape, "rigid bodies", d);
+    contact->layer =
+        arena_alloc(a, n * (size_t)rigid->n, sizeof *contact->layer, "rigid bodies", d);
+    if (!contact->shape || !contact->layer) return ERR_MEMORY;
+    for (int w = 0; w < scene->n_wall; w++) TRY(shape_create(rigid, w, a, d));
+    contact->touch =
+        arena_alloc(a, (size_t)contact->most, sizeof *contact->touch, "rigid bodies", d);
+    if (!contact->touch) return ERR_MEMORY;
+    place_shapes(rigid, 0);
+    /* A layer of fluid stays between bodies that begin further apart, as between solids. A body on
+     * a hinge may turn into what it touches at the start. */
+    const double most = scene_contact_gap(scene, &scene->contact_default);
+    for (int k = 0; k < rigid->n; k++)
+        for (int w = 0; w < scene_rigid_wall(scene, k); w++) {
+            const int other = contact->shape[w].rigid;
+            double *const layer = &contact->layer[k * scene->n_wall + w];
+            contact->n = 0;
+            approach_pair(rigid, k, w);
+            *layer = most;
+            for (int j = 0; j < contact->n; j++)
+                *layer = max2(0, min2(*layer, contact->touch[j].gap));
+            if (contact->n &&
+                (scene->rigid[k].hinge.n || (other >= 0 && scene->rigid[other].hinge.n)))
+                *layer = NAN;
+        }
+    contact->n = 0;
+    return ERR_OK;
+}
+
+/* --- impulses --- */
+
+/* An impact is over before the fluid resists. */
+static const double (*yields_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
+{
+    return stage == RIGID_IMPACT ? eq->alone : eq->yields;
+}
+
+/* Velocity at which a touch opens, and what a unit of impulse adds to it. */
+static double opening(const struct rigid *rigid, const struct rigid_touch *t,
+                      enum rigid_stage stage, double *per_impulse)
+{
+    double rate = stage == RIGID_PUSH ? 0 : t->wall_speed;
+    *per_impulse = 0;
+    for (int side = 0; side < 2; side++) {
+        if (t->body[side] < 0) continue;
+        const struct rigid_equations *const eq = &rigid->eq[t->body[side]];
+        const double(*const yields)[3] = yields_in(eq, stage);
+        for (int c = 0; c < 3; c++) {
+            const double impact = eq->before[c] + (stage == RIGID_STEP ? eq->touch[0][c] : 0);
+            const double start =
+                stage == RIGID_PUSH ? 0 : impact + (stage == RIGID_STEP ? eq->change[c] : 0);
+            rate += t->along[side][c] * (start + eq->touch[stage][c]);
+            for (int e = 0; e < 3; e++)
+                *per_impulse += t->along[side][c] * yields[c][e] * t->along[side][e];
+        }
+    }
+    return rate;
+}
+
+/* T-102: projected Gauss-Seidel, in the order of the touches. */
+static void find_impulses(struct rigid *rigid, enum rigid_stage stage, double dt)
+{
+    struct rigid_contact *const contact = rigid->contact;
+    double largest = 1, first = 0;
+    for (int turn = 0; turn < 1000 && largest > 1e-12 * first; turn++) {
+        largest = 0;
+        for (int j = 0; j < contact->n; j++) {
+            struct rigid_touch *const t = &contact->touch[j];
+            const double gap = stage == RIGID_PUSH ? t->gap : max2(t->gap, 0);
+            double per_impulse;
+            const double rate = opening(rigid, t, stage, &per_impulse) + gap / dt;
+            if (!(per_impulse > 0)) continue;
+            const double more = max2(-rate / per_impulse, -t->impulse[stage]);
+            t->impulse[stage] += more;
+            largest = max2(largest, fabs(more) * per_impulse);
+            for (int side = 0; side < 2; side++) {
+                if (t->body[side] < 0) continue;
+                struct rigid_equations *const eq = &rigid->eq[t->body[side]];
+                const double(*const yields)[3] = yields_in(eq, stage);
+                for (int c = 0; c < 3; c++)
+                    for (int e = 0; e < 3; e++)
+                        eq->touch[stage][c] += yields[c][e] * t->along[side][e] * more;
+            }
+        }
+        if (turn == 0) first = largest;
+    }
+}
+
+static double impulse_of(const struct rigid_touch *t)
+{
+    return t->impulse[RIGID_IMPACT] + t->impulse[RIGID_STEP];
+}
+
+void rigid_touch(struct rigid *rigid, double time, double dt)
+{
+    struct rigid_contact *const contact = rigid->contact;
+    for (int k = 0; k < rigid->n; k++) memset(rigid->eq[k].touch, 0, sizeof rigid->eq[k].touch);
+    place_shapes(rigid, time);
+    contact->n = 0;
+    for (int k = 0; k < rigid->n; k++)
+        for (int w = 0; w < scene_rigid_wall(rigid->scene, k); w++) {
+            contact->kept = contact->layer[k * rigid->scene->n_wall + w];
+            if (!isnan(contact->kept)) approach_pair(rigid, k, w);
+        }
+    for (int stage = 0; stage < RIGID_STAGES; stage++)
+        find_impulses(rigid, (enum rigid_stage)stage, dt);
+    for (int k = 0; k < rigid->n; k++)
+        for (int c = 0; c < 3; c++) {
+            rigid->eq[k].change[c] +=
+                rigid->eq[k].touch[RIGID_IMPACT][c] + rigid->eq[k].touch[RIGID_STEP][c];
+            rigid->eq[k].faster[c] += rigid->eq[k].touch[RIGID_STEP][c];
+        }
+    for (int j = 0; j < contact->n; j++)
+        for (int side = 0; side < 2; side++)
+            for (int c = 0; c < 3 && contact->touch[j].body[side] >= 0; c++)
+                rigid->eq[contact->touch[j].body[side]].impulse[c] +=
+                    impulse_of(&contact->touch[j]) * contact->touch[j].along[side][c];
+}
+
+void rigid_contact_work(struct rigid *rigid)
+{
+    for (int j = 0; j < rigid->contact->n; j++) {
+        const struct rigid_touch *const t = &rigid->contact->touch[j];
+        const int a = t->body[0], b = t->body[1], body = a < 0 ? b : a;
+        if (a < 0 || b < 0) {
+            rigid->body[body].driven -= impulse_of(t) * t->wall_speed;
+            continue;
+        }
+        double work = 0;
+        for (int c = 0; c < 3; c++) work += impulse_of(t) * t->along[1][c] * rigid->body[b].mean[c];
+        rigid->body[b].passed += work;
+        rigid->body[a].passed -= work;
+    }
+}
