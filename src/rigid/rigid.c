@@ -179,7 +179,7 @@ static void move_body(struct rigid *rigid, int k, double now, double dt, double 
         const double impact = eq->touch[RIGID_IMPACT][c] / kick;
         /* An impact is no acceleration that the fluid could expect to go on. */
         s->last[c] = (s->v[c] - eq->start[c]) / kick - impact;
-        /* What turns the velocity along the way is a reaction, too. */
+        /* The force that turns the velocity within the step is a reaction, too. */
         s->reaction[c] +=
             body->mass[c] * (s->last[c] + impact - (body->mean[c] - eq->before[c]) * 2 / kick);
         s->a[c] += weight * (s->last[c] - s->a[c]);

@@ -55,7 +55,7 @@ static void test_a_body_falls_and_spins_exactly(void)
     assert_near(1e-9, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
 }
 
-/* A bar on a hinge at its end, let go when horizontal: after a quarter of a swing it hangs with
+/* A bar on a hinge at its end, from rest when horizontal: after a quarter of a swing it hangs with
  * omega^2 = 2 m g r/I, and the hinge carries m (g + omega^2 r). */
 static void test_a_bar_swings_about_its_hinge(void)
 {
