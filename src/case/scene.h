@@ -274,8 +274,8 @@ struct scene_open {
     double inward[2];         /* unit vector into the fluid */
     double length, depth;     /* m */
     double level, absorb;     /* m, NAN: none; s */
-    const struct expr *speed; /* along `inward` times `sense`; NULL: not given */
-    const struct expr *velocity[2], *pressure;
+    struct expr *speed;       /* along `inward` times `sense`; NULL: not given */
+    struct expr *velocity[2], *pressure;
     double sense; /* 1 for an [inflow], -1 for an [outflow] */
 };
 /* The section number k, those of [inflow] first. */

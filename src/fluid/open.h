@@ -26,22 +26,22 @@ struct open_rate {
 /* Before, after and at the time of an evaluation. */
 enum open_time { OPEN_BEFORE, OPEN_AFTER, OPEN_NOW, OPEN_TIMES };
 
-/* A boundary at a time: its velocities are expressions in x and y alone. */
-struct open_moment {
-    struct scene_open boundary;
-    struct expr *speed, *velocity[2]; /* those of the boundary; NULL: not given */
-};
-
-/* A particle of a buffer, with pressure and velocity of the fluid across the line. */
+/* A particle of a buffer, with pressure and velocity of the fluid across the line, or the given
+ * one. */
 struct open_member {
     int32_t particle;
     double p, v[2];
 };
 
 struct open {
+    const struct fluid_constants *k; /* of the fluid; its particles and cells */
+    struct particles *particles;
+    const struct cells *cells;
     int n;
     struct scene_open *boundary;
-    struct open_moment (*at)[OPEN_TIMES]; /* [n] */
+    struct scene_open (
+        *at)[OPEN_TIMES]; /* the same with velocities that are fixed at these times: */
+    double time[OPEN_TIMES];
     double (*sum)[OPEN_SUMS];
     int64_t (*count)[OPEN_COUNTS];
     int64_t next_id;
@@ -55,30 +55,41 @@ struct open {
 /* Number of fluid particles, in all, that a scene with open boundaries has memory for. */
 int64_t open_places(const struct scene *scene);
 
+/* `o` knows the fluid: k, particles and cells. */
 enum err open_create(struct open *o, struct arena *a, const struct scene *scene, int64_t next_id,
                      struct diag *d) SPHFSI_CHECKED;
 
+/* The boundary whose buffer a particle belongs to. */
+SPHFSI_INLINE const struct scene_open *open_boundary(const struct open *o, int64_t i)
+{
+    return &o->boundary[o->particles->open[i] - 1];
+}
+
+/* --- open_fields.c --- */
+
+/* Copies of boundary n for each time. */
+enum err open_copy(struct open *o, int n, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
 /* Before an evaluation: sets velocities and densities of the buffers at a time, from the fluid
  * alone. `counts`: the state is that between two steps, and its change counts in the account. */
-void open_set(struct open *o, const struct fluid_constants *k, struct particles *particles,
-              const struct cells *cells, double time, bool counts);
+void open_set(struct open *o, double time, bool counts);
 
 /* After it: forces do not move buffers; the rates store the constraint forces. */
-void open_hold(struct open *o, const struct fluid_constants *k, struct particles *particles);
+void open_hold(struct open *o);
 
 /* After a step: impulse and work of the last rates, and the mean flow. */
 void open_add_work(struct open *o, double dt);
 
+/* --- open.c --- */
+
 /* Whether a buffer particle is so far inside the fluid that it must be relabelled. */
-bool open_due(const struct open *o, const struct particles *particles, double dp);
+bool open_due(const struct open *o);
 
 /* Before a sorting: relabels, creates and removes particles. */
-enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *particles,
-                       struct diag *d) SPHFSI_CHECKED;
+enum err open_exchange(struct open *o, struct diag *d) SPHFSI_CHECKED;
 
 /* After a sorting: finds the particles of the buffers. */
-enum err open_list(struct open *o, const struct particles *particles, struct diag *d)
-    SPHFSI_CHECKED;
+enum err open_list(struct open *o, struct diag *d) SPHFSI_CHECKED;
 
 /* Energy brought in through all of them, J/m. */
 double open_energy(const struct open *o);

@@ -62,7 +62,7 @@ void evaluate_fluid(struct simulation *sim, double time)
         const double start = wall_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */
         const bool counts = time == sim->state.time;
-        open_set(&sim->open, &sim->fluid.k, &sim->kind[KIND_FLUID], &sim->cells, time, counts);
+        open_set(&sim->open, time, counts);
         phase_add(sim, PHASE_open, start);
     }
     if (sim->effects & FX_ANTUONO) sim->fluid.keeps_slopes = keeps_slopes(sim, time);
@@ -70,7 +70,7 @@ void evaluate_fluid(struct simulation *sim, double time)
     const double clock = wall_clock();
     coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
     phase_add(sim, PHASE_wall, clock);
-    if (sim->effects & FX_OPEN) open_hold(&sim->open, &sim->fluid.k, &sim->kind[KIND_FLUID]);
+    if (sim->effects & FX_OPEN) open_hold(&sim->open);
     if (sim->effects & FX_DAMPING_ZONE)
         damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->kind[KIND_FLUID]);
     if (sim->external[KIND_FLUID].at) add_external(sim, time);

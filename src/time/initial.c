@@ -177,6 +177,35 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+/* The solid with what acts on it: implicit steps, contact, loads. */
+static enum err create_structure(struct simulation *sim, struct diag *d)
+{
+    TRY(create_solid(sim, d));
+    sim->state.solid_stiffening = sim->state.solid_slowing = 1;
+    timestep_set_solid(sim);
+    if (implicit_pays(sim)) {
+        sim->effects |= FX_IMPLICIT;
+        TRY(particles_add(&sim->kind[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
+        TRY(create_solid(sim, d));
+    }
+    if (sim->effects & FX_CONTACT)
+        TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
+                           &sim->kind[KIND_SOLID], d));
+    if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
+        TRY(loads_create(&sim->loads, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
+        sim->solid.loads = &sim->loads;
+    }
+    if (sim->effects & FX_IMPLICIT) {
+        sim->coupling.centred = true;
+        TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
+        if (!(sim->effects & FX_FLUID))
+            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
+    }
+    sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
+    timestep_set_solid(sim);
+    return ERR_OK;
+}
+
 enum err initial_state(struct simulation *sim, struct diag *d)
 {
     sim->gravity_varies = scene_gravity_varies(sim->scene);
@@ -186,6 +215,9 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         id += sim->kind[kind].n;
     }
     if (sim->effects & FX_FLUID) TRY(create_fluid(sim, d));
+    sim->open = (struct open){.k = &sim->fluid.k,
+                              .particles = &sim->kind[KIND_FLUID],
+                              .cells = &sim->cells};
     if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, &sim->arena, sim->scene, id, d));
     sim->coupling = (struct coupling){
         .scene = sim->scene,
@@ -196,31 +228,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .centred = sim->integrator->centred,
         .exchange_time = &sim->state.exchange_time,
     };
-    if (sim->effects & FX_SOLID) {
-        TRY(create_solid(sim, d));
-        sim->state.solid_stiffening = sim->state.solid_slowing = 1;
-        timestep_set_solid(sim);
-        if (implicit_pays(sim)) {
-            sim->effects |= FX_IMPLICIT;
-            TRY(particles_add(&sim->kind[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
-            TRY(create_solid(sim, d));
-        }
-        if (sim->effects & FX_CONTACT)
-            TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
-                               &sim->kind[KIND_SOLID], d));
-        if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
-            TRY(loads_create(&sim->loads, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
-            sim->solid.loads = &sim->loads;
-        }
-        if (sim->effects & FX_IMPLICIT) {
-            sim->coupling.centred = true;
-            TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
-            if (!(sim->effects & FX_FLUID))
-                sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
-        }
-        sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
-        timestep_set_solid(sim);
-    }
+    if (sim->effects & FX_SOLID) TRY(create_structure(sim, d));
     if (sim->effects & FX_MOTION) {
         TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene, &sim->kind[KIND_WALL],
                                d));

@@ -153,7 +153,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         for (int kind = 0; kind < KIND_COUNT; kind++)
             if (sim->kind[kind].capacity && (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
                 cells_rebuild(&sim->cells, (enum kind)kind, &sim->kind[kind]);
-        if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, &sim->kind[KIND_FLUID], d));
+        if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);
         if (sim->effects & FX_COUPLING) clear_fluid_sums(&sim->kind[KIND_SOLID]);

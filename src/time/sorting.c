@@ -42,7 +42,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
     if (sim->effects & FX_WALL) clear_fluid_sums(&sim->kind[KIND_WALL]);
     if (sim->effects & FX_COUPLING) clear_fluid_sums(solid);
-    if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, &sim->fluid.k, fluid, d));
+    if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, d));
     const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
     if (lost && sim->state.lost == 0) guards_warn_of_loss(sim, fluid->n - lost, d);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
@@ -53,7 +53,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_PERIODIC) add_crossings(sim);
     fluid->n -= lost;
     sim->state.lost += lost;
-    if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, fluid, d));
+    if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
     if ((sim->effects & FX_WALL) && sim->state.sorts == 0)
         cells_sort(&sim->cells, KIND_WALL, &sim->kind[KIND_WALL]);
     else if (sim->effects & FX_MOTION)
@@ -93,8 +93,7 @@ void use_skin_left(struct simulation *sim, double speed2_before)
  * of the displacements are below the tolerance. */
 bool sorting_due(struct simulation *sim)
 {
-    if (sim->effects & FX_OPEN && open_due(&sim->open, &sim->kind[KIND_FLUID], sim->scene->top.dp))
-        return true;
+    if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
     const bool bounded = sim->integrator->ahead == 0 && !(sim->effects & FX_MOTION);
     const double tolerance = 1e-6 * sim->fluid.k.h;
     if (bounded && sim->skin_left > tolerance) return false;

@@ -362,16 +362,16 @@ static void test_members_are_checked(void)
         rig.diag.code = ERR_OK;
         particles->open[0] = wrong[k];
         snprintf(why, sizeof why, "belongs to open boundary %d, but the case has only 2", wrong[k]);
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, open_list(&rig.sim.open, particles, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, open_list(&rig.sim.open, &rig.diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, why), rig.diag.text);
     }
     particles->open[0] = kept;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, particles, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, &rig.diag));
     rig.sim.open.capacity = rig.sim.open.n_members;
     rig.diag.code = ERR_OK;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, particles, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, &rig.diag));
     rig.sim.open.capacity--;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, open_list(&rig.sim.open, particles, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, open_list(&rig.sim.open, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text,
                                         "four times as many particles as at the start"),
                                  rig.diag.text);

@@ -82,7 +82,7 @@ static double wall_pressure_of(int64_t i)
 static void test_buffers_see_the_fluid_across_the_line(void)
 {
     struct open *const o = &rig.sim.open;
-    open_set(o, &rig.sim.fluid.k, p, &rig.sim.cells, 0.5, false);
+    open_set(o, 0.5, false);
     int seen[2] = {0};
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m].particle;
@@ -117,7 +117,7 @@ static void test_what_is_set_is_booked(void)
             sum[2] += sign * k->mass *
                       (0.5 * (square(p->vx[i]) + square(p->vy[i])) + eos_energy(p->dens[i], 10));
         }
-        if (sign < 0) open_set(o, k, p, &rig.sim.cells, 0.5, true);
+        if (sign < 0) open_set(o, 0.5, true);
     }
     for (int n = 0; n < 2; n++) {
         TEST_ASSERT_TRUE(fabs(want[n][2]) > 0.1);
