@@ -266,12 +266,12 @@ SPHFSI_API enum sphfsi_status sphfsi_preview(const struct sphfsi_options *option
  * uses. */
 SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
 
-/** Prints, line by line through the message callback, every section and key of a case file, in
- * Markdown. The other options may be zero. */
+/** Prints, line by line through the message callback, every section and key of a case file, and the
+ * quantities of a probe. The other options may be zero. */
 SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 
-/** Prints them as one JSON text through the message callback: type, unit, range, default and
- * meaning of each key. */
+/** Prints them and the effects as one JSON text through the message callback: type, unit, range,
+ * default, meaning and example of each key. */
 SPHFSI_API enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options);
 
 /** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has

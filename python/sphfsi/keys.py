@@ -20,7 +20,7 @@ def sections() -> dict[str, dict]:
     found: list[str] = []
     call = Call(notes=found.append)
     call.finish(lib.sphfsi_keys_json(call.options))
-    return json.loads(found[-1])
+    return json.loads(found[-1])["sections"]
 
 
 def _kind(name: str, case: str) -> str | None:

@@ -38,13 +38,6 @@ static const char *const section_meanings[][2] = {
     {"reference", "A curve that a probe is compared with, in the summary and in plots."},
 };
 
-/* A paragraph, with an empty line before it. */
-static void say_paragraph(const struct sphfsi_options *o, const char *text)
-{
-    session_say(o, "%s", "");
-    session_say(o, "%s", text);
-}
-
 static bool pure(const struct param *param)
 {
     return !param->unit || strcmp(param->unit, "1") == 0;
@@ -133,139 +126,55 @@ static void param_type_text(const struct param *param, char *text, size_t size)
                  param->type == PARAM_EXPR && param->count == 2 ? "s" : "", scopes[param->scope]);
 }
 
-/* "> 0, <= 1000", the names of a choice joined by "or", or nothing. */
-static void range_of(const struct param *param, char *text, size_t size)
-{
-    text[0] = '\0';
-    if (param->type == PARAM_REAL || param->type == PARAM_INTEGER) {
-        snprintf(text, size, "%s %g, %s %g", param->low.open ? ">" : "≥", param->low.value,
-                 param->high.open ? "<" : "≤", param->high.value);
-    } else if (param->type == PARAM_CHOICE) {
-        size_t at = 0;
-        for (const char *c = param->choices; *c && at + 8 < size; c++)
-            at += (size_t)snprintf(text + at, size - at, *c == '|' ? ", " : "%c", *c);
-    }
-}
-
-/* Escapes |, which would end a cell of the table. */
-static void in_cell(const char *text, char *cell, size_t size)
-{
-    size_t at = 0;
-    for (; *text && at + 3 < size; text++) {
-        if (*text == '|') cell[at++] = '\\';
-        cell[at++] = *text;
-    }
-    cell[at] = '\0';
-}
-
-/* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value.
- */
-static void default_cell(const struct param *param, char *cell, size_t size)
-{
-    static const char *const kinds[] = {" with only solids", " with only fluid",
-                                        " with fluid and solids"};
-    double value[] = {param->number.value, param->number.value, param->number.value};
-    bool set = false, equal = true;
-    const int first = param->section == SECTION_fluid ? SCENE_FLUID : SCENE_SOLID,
-              step = param->section == SECTION_solid ? SCENE_COUPLED - SCENE_SOLID : 1;
-    for (int k = first; k <= SCENE_COUPLED; k += step) {
-        set |=
-            scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, param->section, param->key, &value[k]);
-        equal &= value[k] == value[first];
-    }
-    char paper[SCENE_TEXT], text[SCENE_NAME];
-    default_of(param, paper, sizeof paper);
-    const char *const tick = paper[0] ? "`" : "";
-    size_t at = 0;
-    for (int k = first; set && k <= (equal ? first : SCENE_COUPLED); k += step) {
-        value_of(param, value[k], text, sizeof text);
-        at += (size_t)snprintf(cell + at, size - at, "%s`%s`%s", k > first ? ", " : "", text,
-                               equal ? "" : kinds[k]);
-    }
-    if (param->number.needed)
-        snprintf(cell, size, "**needed**");
-    else
-        snprintf(cell + at, size - at, "%s%s%s%s", set ? "; `scheme = paper`: " : "", tick, paper,
-                 tick);
-}
-
-static void say_key(const struct param *param, const struct sphfsi_options *o)
-{
-    char type[64], fallback[3 * SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
-    param_type_text(param, type, sizeof type);
-    default_cell(param, fallback, sizeof fallback);
-    range_of(param, range, sizeof range);
-    manual_example(param, example, sizeof example);
-    in_cell(param->meaning, meaning, sizeof meaning);
-    if (param->motion_kinds)
-        snprintf(meaning + strlen(meaning), sizeof meaning - strlen(meaning), " (kind = %s)",
-                 param->motion_kinds);
-    session_say(o, "| `%s` | %s | %s | %s | %s | %s | %s%s%s%s%s |", param->key, type,
-                pure(param) ? "" : param->unit, fallback, range, meaning, example[0] ? "`" : "",
-                example[0] ? param->key : "", example[0] ? " = " : "", example,
-                example[0] ? "`" : "");
-}
-
 static const char *section_meaning(enum section_id id)
 {
     for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
         if (strcmp(section_meanings[k][0], section_table[id].word) == 0)
             return section_meanings[k][1];
-    return NULL;
+    return "";
 }
 
-static void say_section(enum section_id id, const struct sphfsi_options *o)
+/* The meaning of a key, with the kinds of motion that have it. */
+static void meaning_of(const struct param *param, char *text, size_t size)
 {
-    const struct section_info *const info = &section_table[id];
-    char title[SCENE_NAME];
-    snprintf(title, sizeof title, "### [%s%s]", info->word, info->named ? " NAME" : "");
-    say_paragraph(o, id == SECTION_top ? "### Top of the file" : title);
-    if (section_meaning((enum section_id)id))
-        say_paragraph(o, section_meaning((enum section_id)id));
-    say_paragraph(o, "| key | type | unit | default | range | meaning | example |");
-    session_say(o, "|---|---|---|---|---|---|---|");
-    for (int k = 0; k < PARAM_COUNT; k++)
-        if (param_table[k].section == id) say_key(&param_table[k], o);
+    const bool some = param->motion_kinds;
+    snprintf(text, size, "%s%s%s%s", param->meaning, some ? " (kind = " : "",
+             some ? param->motion_kinds : "", some ? ")" : "");
 }
 
-static void say_quantities(const struct sphfsi_options *o)
+/* What the default scheme sets a key to in a kind of scene; false: it leaves the default. */
+static const char *const kind_words[] = {"with solids", "with fluid", "with fluid and solids"};
+static bool scheme_value(const struct param *param, int kind, char *text, size_t size)
 {
-    static const char *const needs[] = {
-        [TARGET_SOLID_POINT] = "`body` (solid), `point`",
-        [TARGET_FLUID_POINT] = "`point`, optional `on`",
-        [TARGET_ANY_POINT] = "`point`, optional `body` or `on`",
-        [TARGET_SOLID] = "`body` (solid)",
-        [TARGET_BODY] = "`body` (solids or walls), optional `point` of the moment",
-        [TARGET_FLUID] = "",
-        [TARGET_FLUID_LINE] = "`point`, `to`",
-    };
-    say_paragraph(o, "### Quantities of a probe");
-    say_paragraph(
-        o, "A column is called PROBE_COLUMN, such as `tip_dx_m`. Forces, moments, energies and "
-           "fluxes are per metre of depth.");
-    say_paragraph(o, "| quantity | keys | columns | meaning |");
-    session_say(o, "|---|---|---|---|");
-    for (int k = 0; k < PROBE_QUANTITIES; k++) {
-        const struct quantity_info *const q = &quantity_table[k];
-        session_say(o, "| `%s` | %s | `%s` | %s |", q->name, needs[probe_targets[k]], q->columns,
-                    q->meaning);
-    }
+    double value;
+    const bool set =
+        scheme_sets(SCHEME_STANDARD, (enum scene_kind)kind, param->section, param->key, &value);
+    if (set) value_of(param, value, text, size);
+    return set;
 }
 
-static void list_effects(const struct sphfsi_options *o)
+/* --- as text --- */
+
+static void say_key(const struct param *param, const struct sphfsi_options *o)
 {
-    say_paragraph(o, "### Effects");
-    say_paragraph(o,
-                  "An effect is a part of the model that a case enables. Only enabled effects are "
-                  "computed; `--explain` lists them.");
-    say_paragraph(o, "| effect | enabled by | meaning | source |");
-    session_say(o, "|---|---|---|---|");
-    for (int k = 0; k < EFFECT_COUNT; k++) {
-        char meaning[512];
-        in_cell(effect_table[k].meaning, meaning, sizeof meaning);
-        session_say(o, "| %s | %s | %s | %s |", effect_table[k].name, effect_table[k].key, meaning,
-                    effect_table[k].equation);
-    }
+    const bool number = param->type == PARAM_REAL || param->type == PARAM_INTEGER,
+               choice = param->type == PARAM_CHOICE;
+    char type[64], range[128] = "", fallback[SCENE_TEXT], meaning[768], value[SCENE_NAME];
+    param_type_text(param, type, sizeof type);
+    default_of(param, fallback, sizeof fallback);
+    meaning_of(param, meaning, sizeof meaning);
+    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++)
+        if (scheme_value(param, k, value, sizeof value))
+            snprintf(meaning + strlen(meaning), sizeof meaning - strlen(meaning), "; %s: %s",
+                     kind_words[k], value);
+    if (number)
+        snprintf(range, sizeof range, " %s %g, %s %g",
+                 param->low.open ? ">" : ">=", param->low.value,
+                 param->high.open ? "<" : "<=", param->high.value);
+    session_say(o, "  %s%s%s: %s%s%s%s%s: %s", param->key, *fallback ? " = " : "", fallback,
+                choice ? param->choices : type, pure(param) ? "" : ", ",
+                pure(param) ? "" : param->unit, range, param->number.needed ? ", needed" : "",
+                meaning);
 }
 
 enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
@@ -273,16 +182,22 @@ enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
     struct call c;
     const enum err e = call_begin(&c, "keys", options);
     const struct sphfsi_options *const o = &c.options;
-    if (!e) {
-        session_say(o, "## Sections and keys");
-        for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
-        say_quantities(o);
-        list_effects(o);
+    for (int k = 0; k < PARAM_COUNT && !e; k++) {
+        const enum section_id id = param_table[k].section;
+        const struct section_info *const info = &section_table[id];
+        if (k == 0 || id != param_table[k - 1].section)
+            session_say(o, "[%s%s] %s", info->word, info->named ? " NAME" : "",
+                        section_meaning(id));
+        say_key(&param_table[k], o);
     }
+    if (!e) session_say(o, "Quantities of a probe, and their columns");
+    for (int k = 0; k < PROBE_QUANTITIES && !e; k++)
+        session_say(o, "  %s (%s): %s", quantity_table[k].name, quantity_table[k].columns,
+                    quantity_table[k].meaning);
     return call_end(&c, e);
 }
 
-/* --- the keys as JSON --- */
+/* --- as JSON --- */
 
 static void write_range(struct json *j, const struct param *param)
 {
@@ -300,32 +215,43 @@ static void write_range(struct json *j, const struct param *param)
 /* The default as a text of a case, and what the default scheme sets instead by kind of scene. */
 static void write_default(struct json *j, const struct param *param)
 {
-    static const char *const names[] = {"default with solids", "default with fluid",
-                                        "default with fluid and solids"};
-    char text[SCENE_TEXT];
-    double value;
+    char text[SCENE_TEXT], name[SCENE_NAME];
     default_of(param, text, sizeof text);
     if (param->number.needed)
         json_integer(j, "needed", 1);
     else if (text[0])
         json_text(j, "default", text);
-    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++)
-        if (scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, param->section, param->key, &value)) {
-            value_of(param, value, text, sizeof text);
-            json_text(j, names[k], text);
-        }
+    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++) {
+        snprintf(name, sizeof name, "default %s", kind_words[k]);
+        if (scheme_value(param, k, text, sizeof text)) json_text(j, name, text);
+    }
 }
 
 static void write_key(struct json *j, const struct param *param)
 {
-    char type[64];
+    char type[64], text[768];
     param_type_text(param, type, sizeof type);
     json_open(j, param->key, '{');
     json_text(j, "type", type);
     if (!pure(param)) json_text(j, "unit", param->unit);
     write_range(j, param);
     write_default(j, param);
-    json_text(j, "meaning", param->meaning);
+    meaning_of(param, text, sizeof text);
+    json_text(j, "meaning", text);
+    manual_example(param, text, sizeof text);
+    json_text(j, "example", text);
+    json_close(j, '}');
+}
+
+static void write_section(struct json *j, enum section_id id)
+{
+    json_open(j, section_table[id].word, '{');
+    json_text(j, "meaning", section_meaning(id));
+    json_integer(j, "named", section_table[id].named);
+    json_open(j, "keys", '{');
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (param_table[k].section == id) write_key(j, &param_table[k]);
+    json_close(j, '}');
     json_close(j, '}');
 }
 
@@ -333,17 +259,27 @@ static enum err write_keys(struct json *j, void *unused, struct diag *d)
 {
     (void)unused, (void)d;
     json_open(j, NULL, '{');
-    for (int id = 0; id < SECTION_COUNT; id++) {
-        json_open(j, section_table[id].word, '{');
-        if (section_meaning((enum section_id)id))
-            json_text(j, "meaning", section_meaning((enum section_id)id));
-        json_integer(j, "named", section_table[id].named);
-        json_open(j, "keys", '{');
-        for (int k = 0; k < PARAM_COUNT; k++)
-            if (param_table[k].section == (enum section_id)id) write_key(j, &param_table[k]);
-        json_close(j, '}');
+    json_open(j, "sections", '{');
+    for (int id = 0; id < SECTION_COUNT; id++) write_section(j, (enum section_id)id);
+    json_close(j, '}');
+    json_open(j, "quantities", '{');
+    for (int k = 0; k < PROBE_QUANTITIES; k++) {
+        json_open(j, quantity_table[k].name, '{');
+        json_integer(j, "target", probe_targets[k]);
+        json_text(j, "columns", quantity_table[k].columns);
+        json_text(j, "meaning", quantity_table[k].meaning);
         json_close(j, '}');
     }
+    json_close(j, '}');
+    json_open(j, "effects", '{');
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        json_open(j, effect_table[k].name, '{');
+        json_text(j, "enabled_by", effect_table[k].key);
+        json_text(j, "meaning", effect_table[k].meaning);
+        json_text(j, "source", effect_table[k].equation);
+        json_close(j, '}');
+    }
+    json_close(j, '}');
     json_close(j, '}');
     return ERR_OK;
 }

@@ -65,11 +65,7 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 "$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
 "$sphfsi" --keys --json | grep -q '"exclusiveMaximum": 0.5' || fail "--keys --json gives no range"
 "$sphfsi" --keys >keys || fail "--keys"
-grep -qF '| `end_time` | number | s | **needed** |' keys || fail "--keys gives no needed key"
-for cell in '`0.3`; `scheme = paper`: `0`' '`neo_hookean`; `scheme = paper`: `paper`' \
-    '`4` with only fluid, `0` with fluid and solids; `scheme = paper`: `0`'; do
-    grep -qF "| $cell |" keys || fail "--keys gives the scheme's default: $cell"
-done
+grep -qF '  end_time: number, s > 0, <= 1e+09, needed: ' keys || fail "--keys gives no needed key"
 "$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "enabled effects" out ||
     fail "--explain"
 "$sphfsi" --explain cantilever.cfg --set "plate.lattice_angle=20 deg" --threads 1 >out 2>err &&
