@@ -338,9 +338,26 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
     json_close(j, '}');
 }
 
+struct explained {
+    struct session *session;
+    const struct call *call;
+};
+
+static void write_warnings(struct json *j, const char *line)
+{
+    char text[sizeof((struct diag *)0)->text];
+    json_open(j, "warnings", '[');
+    for (; *line; line += strcspn(line, "\n") + 1) {
+        snprintf(text, sizeof text, "%.*s", (int)strcspn(line, "\n"), line);
+        json_text(j, NULL, text);
+    }
+    json_close(j, ']');
+}
+
 static enum err write_all(struct json *j, void *context, struct diag *d)
 {
-    struct session *const session = context;
+    const struct explained *const of = context;
+    struct session *const session = of->session;
     struct simulation *const sim = &session->simulation;
     struct unit_costs c;
     json_open(j, NULL, '{');
@@ -354,6 +371,7 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
     write_cost(j, sim, &c);
     report_derived(j, &session->scene);
     report_parameters(j, &session->scene);
+    write_warnings(j, of->call->warned.more);
     json_close(j, '}');
     return ERR_OK;
 }
@@ -362,7 +380,7 @@ static enum err explain_json(struct session *session, const struct sphfsi_option
                              const char *unused, struct diag *d)
 {
     (void)unused;
-    return session_json(o, write_all, session, d);
+    return session_json(o, write_all, &(struct explained){session, o->context}, d);
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)

@@ -77,7 +77,9 @@ enum sphfsi_status call_null_argument(const char *name, const char *what)
 
 static void guarded_message(void *context, enum sphfsi_message kind, const char *text)
 {
-    const struct call *const c = context;
+    struct call *const c = context;
+    if (kind == SPHFSI_WARNING) diag_more(&c->warned, text);
+    if (!c->given->message) return;
     const struct host mine = host_use(c->host);
     c->given->message(c->given->context, kind, text);
     host_use(mine);
@@ -112,7 +114,7 @@ enum err call_begin(struct call *c, const char *name, const struct sphfsi_option
     c->given = given;
     c->options = *given;
     c->options.context = c;
-    if (given->message) c->options.message = guarded_message;
+    c->options.message = guarded_message;
     if (given->progress) c->options.progress = guarded_progress;
     c->diag = session_diag(&c->options);
     return ERR_OK;

@@ -15,6 +15,7 @@ struct call {
     struct sphfsi_options options;      /* the same with callbacks that restore its settings */
     struct host host;                   /* its settings: floating point, threads */
     struct diag diag;
+    struct diag warned; /* `more`: the warnings so far */
 };
 
 /* Checks the options, NULL too, and begins; on failure call_end is all that may follow. */

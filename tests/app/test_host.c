@@ -448,9 +448,14 @@ static void keep_json(void *context, enum sphfsi_message kind, const char *text)
 
 static void explain_is_data_too(void)
 {
-    const struct sphfsi_options o = {.case_text = tiny_case, .threads = 1, .message = keep_json};
+    static const char *const sets[] = {"fluid water.density=50"};
+    const struct sphfsi_options o = {
+        .case_text = tiny_case, .threads = 1, .message = keep_json, .sets = sets, .n_sets = 1};
     TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_explain_json(&o), sphfsi_error());
     TEST_ASSERT_TRUE(json[0] == '{');
+    const char *const warnings = strstr(json, "\"warnings\": [");
+    TEST_ASSERT_NOT_NULL(warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "less than any liquid"));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"fluid\": 100"));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"effects\": "));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"wall_seconds\": "));
