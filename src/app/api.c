@@ -210,10 +210,10 @@ uint64_t sphfsi_hash(struct sphfsi_simulation *handle)
 /* --- fields --- */
 
 /* The arrays of snapshots that the particles have under another name, or not at all. */
-#define POINTDATA(NAME, name, item, width, choice) {D_##NAME, #name, width},
+#define POINTDATA(NAME, name, item, width, choice, unit) {D_##NAME, #name, unit, width},
 static const struct {
     enum data what;
-    const char *name;
+    const char *name, *unit;
     int width;
 } file_field[] = {
 #include "case/pointdata.def"
@@ -283,19 +283,6 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
     return false;
 }
 
-static const char *unit_of(enum data what)
-{
-    switch (what) {
-    case D_VELOCITY: return "m/s";
-    case D_DENSITY: return "kg/m^3";
-    case D_PRESSURE:
-    case D_STRESS:
-    case D_VON_MISES: return "Pa";
-    case D_DISPLACEMENT: return "m";
-    default: return "1";
-    }
-}
-
 static enum err compute(struct sphfsi_simulation *handle, enum kind kind, const char *name,
                         enum data what, int width, struct diag *d)
 {
@@ -321,8 +308,8 @@ static enum err view_computed(struct sphfsi_simulation *handle, enum kind kind, 
         const int width = file_field[k].width;
         TRY(compute(handle, kind, name, what, width, d));
         *view = (struct sphfsi_view){
-            handle->computed[kind][what], sim->kind[kind].n, SPHFSI_DOUBLE, width, unit_of(what),
-            "as in fields.vtkhdf"};
+            handle->computed[kind][what], sim->kind[kind].n,    SPHFSI_DOUBLE, width,
+            file_field[k].unit,           "as in fields.vtkhdf"};
         return ERR_OK;
     }
     struct nearest best = {0};

@@ -21,7 +21,7 @@ enum data {
     D_CONNECTIVITY,
     D_OFFSETS,
     D_TYPES,
-#define POINTDATA(NAME, name, item, width, choice) D_##NAME,
+#define POINTDATA(NAME, ...) D_##NAME,
 #include "case/pointdata.def"
     D_COUNT,
     D_FIRST_POINTDATA = D_TYPES + 1

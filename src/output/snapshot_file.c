@@ -31,7 +31,7 @@ static const struct column {
     [D_CONNECTIVITY] = {"VTKHDF/Connectivity", BY_POINT, I64, 1},
     [D_OFFSETS] = {"VTKHDF/Offsets", BY_POINT_AND_ONE, I64, 1},
     [D_TYPES] = {"VTKHDF/Types", BY_POINT, U8, 1},
-#define POINTDATA(NAME, name, item, width, choice) \
+#define POINTDATA(NAME, name, item, width, ...) \
     [D_##NAME] = {"VTKHDF/PointData/" #name, BY_POINT, item, width},
 #include "case/pointdata.def"
 };
@@ -74,7 +74,7 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
                                                     ? (unsigned)scene->output.snapshot_compression
                                                     : 0};
     for (int k = 0; k < D_COUNT; k++) layout.has[k] = true;
-#define POINTDATA(NAME, name, item, width, choice) \
+#define POINTDATA(NAME, name, item, width, choice, unit) \
     layout.has[D_##NAME] = !(choice) || scene_snapshot_has(scene, #name);
 #include "case/pointdata.def"
     return layout;

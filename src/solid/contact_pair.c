@@ -2,6 +2,7 @@
  * The distance and the law of a point and an edge, and the list of near ones. */
 #include "solid/contact_pair.h"
 
+#include "base/box2.h"
 #include "particles/kernel.h"
 
 #include <math.h>
@@ -164,24 +165,13 @@ void contact_add_row(struct contact *contact, const struct particles *particles,
 /* --- list --- */
 
 /* The box around the solids' surfaces, widened: walls outside need no search. */
-struct box {
-    double low[2], high[2];
-};
-
-static struct box box_of_solids(const struct contact *contact, double more)
+static struct box2 box_of_solids(const struct contact *contact, double more)
 {
-    struct box box = {{(double)INFINITY, (double)INFINITY}, {-(double)INFINITY, -(double)INFINITY}};
+    struct box2 box = box2_empty();
     for (int64_t k = 0; k < contact->n_solid_points; k++)
-        for (int c = 0; c < 2; c++) {
-            box.low[c] = min2(box.low[c], contact->point[k].x[c] - more);
-            box.high[c] = max2(box.high[c], contact->point[k].x[c] + more);
-        }
+        box2_include(&box, contact->point[k].x[0], contact->point[k].x[1]);
+    for (int c = 0; c < 2; c++) box.low[c] -= more, box.high[c] += more;
     return box;
-}
-
-static bool in_box(const struct box *box, double x, double y)
-{
-    return x >= box->low[0] && x <= box->high[0] && y >= box->low[1] && y <= box->high[1];
 }
 
 enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct diag *d)
@@ -228,18 +218,18 @@ void contact_list(struct contact *contact, double margin)
         half2 = max2(half2, 0.25 * (square(a[0] - b[0]) + square(a[1] - b[1])));
     }
     const double reach = contact->reach + margin + sqrt(half2);
-    const struct box box = box_of_solids(contact, reach);
+    const struct box2 box = box_of_solids(contact, reach);
     contact->margin = margin;
     contact->grid.side = reach;
     point_grid_clear(&contact->grid);
     for (int64_t k = contact->n_edges - 1; k >= 0; k--)
-        if (in_box(&box, contact->middle_x[k], contact->middle_y[k]))
+        if (box2_contains(&box, contact->middle_x[k], contact->middle_y[k]))
             point_grid_insert(&contact->grid, k);
     contact->n_pairs = 0;
     for (int64_t k = 0; k < contact->n_points; k++) {
         struct contact_point *const p = &contact->point[k];
         memcpy(p->listed, p->x, sizeof p->listed);
-        if (!in_box(&box, p->x[0], p->x[1])) continue;
+        if (!box2_contains(&box, p->x[0], p->x[1])) continue;
         const int64_t first = contact->n_pairs;
         struct point_visit v = point_grid_visit(&contact->grid, p->x[0], p->x[1], reach);
         while (point_grid_next(&contact->grid, &v))
