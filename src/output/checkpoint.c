@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The format of checkpoints: blocks with checksums, their files, and how they are loaded. */
+ * The format of checkpoints: blocks under one checksum, their files, and how they are loaded. */
 #include "output/checkpoint.h"
 #include "output/ranges.h"
 
@@ -13,7 +13,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 9, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
+enum { FORMAT = 10, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 enum { KEEP = 2 }; /* checkpoints in the folder of a run */
 
 /* Owners of blocks: the kinds of particles, then these. */
@@ -33,23 +33,20 @@ struct file_header {
     int64_t steps;
     int64_t count[KIND_COUNT];
     char version[CHECKPOINT_VERSION_TEXT];
-    uint64_t sum; /* checksum (base/hash.h) of the bytes before it */
 };
 
 struct block_header {
     char name[NAME_TEXT];
     uint32_t owner, item;
     uint64_t count;
-    uint64_t payload_sum;
-    uint64_t sum; /* of the bytes before it */
 };
 
 struct file_footer {
     char magic[8];
-    uint64_t sum; /* of everything before the footer */
+    uint64_t sum; /* checksum (base/hash.h) of everything before the footer */
 };
 
-_Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) == 64 &&
+_Static_assert(sizeof(struct file_header) == 136 && sizeof(struct block_header) == 48 &&
                    sizeof(struct file_footer) == 16,
                "docs/formats.md gives these sizes");
 
@@ -155,7 +152,7 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
 
 /* --- capture --- */
 
-/* Appends a block to reserved memory; checkpoint_seal fills in the checksums. */
+/* Appends a block to reserved memory. */
 static void put_block(struct image *m, const struct part *part)
 {
     struct block_header head = {.owner = part->owner, .item = part->item, .count = part->count};
@@ -308,16 +305,6 @@ enum err checkpoint_remove_others(const char *folder, int64_t newest, struct dia
 
 void checkpoint_seal(struct image *m)
 {
-    struct block b;
-    for (size_t at = sizeof(struct file_header); block_at(m, at, &b); at = block_end(&b)) {
-        b.head.payload_sum = checksum(m->bytes + b.payload, payload_bytes(&b));
-        b.head.sum = checksum(&b.head, offsetof(struct block_header, sum));
-        memcpy(m->bytes + b.at, &b.head, sizeof b.head);
-    }
-    struct file_header head;
-    memcpy(&head, m->bytes, sizeof head);
-    head.sum = checksum(&head, offsetof(struct file_header, sum));
-    memcpy(m->bytes, &head, sizeof head);
     struct file_footer foot = {.sum = checksum(m->bytes, m->size - sizeof foot)};
     memcpy(foot.magic, footer_magic, sizeof foot.magic);
     memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
@@ -359,7 +346,7 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     memcpy(&head, m->bytes, sizeof head);
     if (memcmp(head.magic, magic, sizeof magic) != 0)
         return damaged(d, path, "its first 8 bytes are wrong");
-    /* Before any checksum, since another byte order or format has other checksums. */
+    /* Before the checksum, since another byte order or format has another one. */
     if (head.byte_order == __builtin_bswap32(BYTE_ORDER_MARK))
         return diag_fail(d, ERR_IO,
                          "%s: has big-endian byte order, but this program reads little-endian; "
@@ -371,15 +358,13 @@ static enum err check_header(const struct image *m, const char *path, struct dia
                          "%s: has format %u, but this program reads format %d; continue the run "
                          "with version %.*s, which wrote the file (its bytes 88 to 135)",
                          path, head.format, FORMAT, (int)sizeof head.version - 1, head.version);
-    if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header) ||
-        head.sum != checksum(&head, offsetof(struct file_header, sum)))
+    if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header))
         return damaged(d, path, "its header is damaged");
     if (head.file_size != m->size) return damaged(d, path, "its length is wrong; it was cut short");
     return ERR_OK;
 }
 
-/* Every block is complete, has correct checksums and a terminated name; no bytes follow the last
- * block. */
+/* Every block is complete and has a terminated name; no bytes follow the last block. */
 static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
 {
     struct file_header head;
@@ -388,12 +373,8 @@ static enum err check_blocks(const struct image *m, const char *path, struct dia
     for (uint32_t k = 0; k < head.blocks; k++) {
         struct block b;
         if (!block_at(m, at, &b)) return damaged(d, path, "a block extends beyond its end");
-        if (b.head.sum != checksum(&b.head, offsetof(struct block_header, sum)) ||
-            !memchr(b.head.name, '\0', sizeof b.head.name))
-            return damaged(d, path, "the header of a block is damaged");
-        if (b.head.payload_sum != checksum(m->bytes + b.payload, payload_bytes(&b)))
-            return diag_fail(d, ERR_IO, "%s: is not a valid checkpoint: block %s is damaged", path,
-                             b.head.name);
+        if (!memchr(b.head.name, '\0', sizeof b.head.name))
+            return damaged(d, path, "the name of a block has no end");
         at = block_end(&b);
     }
     if (at != m->size - sizeof(struct file_footer))

@@ -35,10 +35,11 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
 enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d) SPHFSI_CHECKED;
 
-/* Fills in the checksums of an image; checkpoint_store calls it. */
+/* Writes the checksum of an image; checkpoint_store calls it. */
 void checkpoint_seal(struct image *m);
 
-/* Checks every length and checksum; `name` names the image in messages. ERR_IO: it is damaged. */
+/* Checks every length and the checksum; `name` names the image in messages. ERR_IO: it is damaged.
+ */
 enum err checkpoint_check(const struct image *m, const char *name, struct diag *d) SPHFSI_CHECKED;
 
 /* Reads a file and checks it. */

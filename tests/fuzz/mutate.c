@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* docs/formats.md */
-enum { HEADER = 144, BLOCK = 64, FOOTER = 16, MAX_BLOCKS = 128 };
+enum { HEADER = 136, BLOCK = 48, FOOTER = 16, MAX_BLOCKS = 128 };
 enum { AT_BLOCKS = 24, AT_SIZE = 32, AT_COUNTS = 64, AT_OWNER = 32, AT_ITEM = 36, AT_ITEMS = 40 };
 
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max_size);
