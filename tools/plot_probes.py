@@ -24,6 +24,8 @@ def arguments(description, example, default, picture):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of "
                                                               "tools/refine.py")
+    parser.add_argument("--name", action="append", default=[], metavar="TEXT",
+                        help="name of the RUN at the same place (default: its folder)")
     parser.add_argument("--column", action="append", default=[], metavar="NAME",
                         help="column of probes.csv, such as M1_dx_m; may be repeated "
                         f"(default: {default})")
@@ -31,6 +33,8 @@ def arguments(description, example, default, picture):
                         help="CSV file time_s,value for the first column; may be repeated")
     parser.add_argument("--label", action="append", default=[], metavar="TEXT",
                         help="legend text of the --reference at the same place")
+    parser.add_argument("--from", type=float, default=0, metavar="TIME", dest="start",
+                        help="draw and compare from this time on, in s")
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
                         f"(default: {picture} in the first folder)")
     parser.add_argument("--csv", metavar="FILE", help="write the table, in SI units")
@@ -76,12 +80,19 @@ def write_csv(path, rows):
 def plot(args, choose, draw, picture):
     """`choose` gives the columns to draw, `draw` the figure and the units of its columns."""
     runs = runfiles.make_runs(args.run)
+    for run, name in zip(runs, args.name):
+        run.name = name
     tables = [run.curves() for run in runs]
     refs = draw_probes.case_references(runs)
     columns = choose(runs, tables, refs, args.column)
     refs += [Reference(columns[0], path, Path(path).stem, label or Path(path).stem, sort=True)
              for path, label in itertools.zip_longest(args.reference, args.label)]
-    curves = draw_probes.curves_of(runs, tables, columns)
+    curves = {column: [(run, time[time >= args.start], value[time >= args.start])
+                       for run, time, value in found]
+              for column, found in draw_probes.curves_of(runs, tables, columns).items()}
+    for run, time, _ in itertools.chain.from_iterable(curves.values()):
+        if not len(time):
+            raise BadFile(f"{run.folder}: ends before {args.start:g} s")
     figure, units = draw(columns, curves, refs)
     rows = [(run, ref, draw_probes.compare(time, value, ref)) for column in columns
             for run, time, value in curves[column] for ref in refs if ref.probe == column]

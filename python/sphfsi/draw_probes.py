@@ -30,6 +30,7 @@ UNITS = {"SI": "SI", "m_per_s": "m/s", "N_per_m": "N/m", "Nm_per_m": "N m/m", "J
 DASHES = [(0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (8, 3))]
 GREYS = ["0.25", "0.45", "0.35", "0.55"]
 MARKERS = "osD^v<>"
+LABEL = 24  # characters of a line of a label beside a curve
 RESULTS = ["points", "rms", "peak", "peak_time_s", "ref_peak", "ref_peak_time_s",
            "peak_difference", "peak_time_difference_s"]
 
@@ -92,6 +93,12 @@ def common(time, ref):
     """The points of a reference within the time of a run."""
     inside = (ref.time >= time[0]) & (ref.time <= time[-1]) & np.isfinite(ref.value)
     return ref.time[inside], ref.value[inside]
+
+
+def along(time, ref):
+    """A computed reference at the times of a run."""
+    inside = (time >= ref.time[0]) & (time <= ref.time[-1])
+    return time[inside], np.interp(time[inside], ref.time, ref.value)
 
 
 def compare(time, value, ref):
@@ -167,7 +174,7 @@ def draw_column(above, below, column, curves, refs, legend):
             above.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
                        markeredgewidth=2, zorder=5)
         for ref in judges if below else []:
-            t, v = common(time, ref)
+            t, v = common(time, ref) if ref.measured else along(time, ref)
             style = dict(styles[ref], color=colour, markeredgecolor=colour, linewidth=0.8)
             if ref.measured:
                 style.update(linestyle="-", markersize=2.6)
@@ -176,7 +183,9 @@ def draw_column(above, below, column, curves, refs, legend):
             below.plot(t, scale * (np.interp(t, time, value) - v), **style)
     end = max(time[-1] for _, time, _ in curves)
     above.set(ylabel=words, xlim=(0, 1.02 * end or 1))
-    above.axhline(0, color="0.8", linewidth=0.6, zorder=1)
+    low, high = above.get_ylim()
+    if low < 0 < high:
+        above.axhline(0, color="0.8", linewidth=0.6, zorder=1)
     (below or above).set_xlabel("Time (s)")
     if below:
         below.set_ylabel(f"Difference ({unit})", fontsize=8)
@@ -184,32 +193,63 @@ def draw_column(above, below, column, curves, refs, legend):
     return scale, unit
 
 
+def spread(ends, lines, height):
+    """Where labels of these numbers of lines stand, from 0 to 1: as near to the ends of their
+    curves as they can be without an overlap, in their order. `height` is that of a line."""
+    order = np.argsort(ends, kind="stable")
+    size = height * np.asarray(lines)[order]
+    below = np.cumsum(size) - 0.5 * size
+    blocks = []  # labels that touch: [ends less what is below them, ...]
+    for want in np.asarray(ends)[order] - below:
+        blocks.append([want])
+        while len(blocks) > 1 and np.mean(blocks[-2]) >= np.mean(blocks[-1]):
+            blocks[-2:] = [blocks[-2] + blocks[-1]]
+    free = [np.mean(block) for block in blocks for _ in block]
+    placed = np.empty(len(order))
+    placed[order] = below + np.clip(free, 0, max(0, 1 - size.sum()))
+    return placed
+
+
+def label_curves(axes, curves):
+    """Names of curves, {name: line}, to the right of the axes in the colours of their lines."""
+    size, room = 8, axes.get_position().height * axes.figure.get_figheight() * 72
+    names = [textwrap.fill(name, LABEL) for name in curves]
+    ends = []
+    for line in curves.values():
+        time, value = np.asarray(line.get_data(), dtype=float)
+        value = value[(time <= axes.get_xlim()[1]) & np.isfinite(value)]
+        low, high = axes.get_ylim()
+        ends.append((value[-1] - low) / (high - low) if len(value) else 0)
+    places = spread(ends, [name.count("\n") + 1.3 for name in names], 1.2 * size / room)
+    for name, line, end, place in zip(names, curves.values(), ends, places):
+        look = dict(color=line.get_color(), transform=axes.transAxes)
+        axes.plot([1, 1.03], [end, place], clip_on=False, linewidth=0.6, **look)
+        axes.text(1.04, place, name, fontsize=size, va="center", linespacing=1.0, **look)
+
+
 def draw_figure(columns, curves, refs):
-    """All columns side by side and one legend below them, which the citations make long."""
+    """All columns side by side, the names of the curves to the right of the last one."""
     refs = [ref for ref in refs if ref.probe in columns]
-    names = [run.label() for run, _, _ in curves[columns[0]]]
-    names += dict.fromkeys(ref.label for ref in refs)
-    ncol = 2 if len(names) > 2 and max(map(len, names)) <= 48 else 1
-    texts = {name: textwrap.fill(name, 100) for name in names}
-    lines = sum(text.count("\n") + 1 for text in texts.values())
-    below, top = 0.5 + 0.16 * -(-lines // ncol), 0.12
+    names = [run.label() for run, _, _ in curves[columns[0]]] + [ref.label for ref in refs]
+    top, below = 0.12, 0.45
     height = below + top + (3.6 if refs else 2.6)
+    right = 0.3 + 0.065 * min(LABEL, max(map(len, names)))
     fig, axes = plt.subplots(2 if refs else 1, len(columns), figsize=(WIDTH, height),
                              squeeze=False, sharex="col",
                              gridspec_kw={"height_ratios": [2.6, 1] if refs else [1]})
-    fig.subplots_adjust(left=0.08, right=0.985, top=1 - top / height, bottom=below / height,
-                        wspace=0.25, hspace=0.07)
-    legend, units = {}, {}
+    fig.subplots_adjust(left=0.08, right=1 - right / WIDTH, top=1 - top / height,
+                        bottom=below / height, wspace=0.32, hspace=0.07)
+    units, legend = {}, {}
     for k, column in enumerate(columns):
         own = [ref for ref in refs if ref.probe == column]
         if refs and not own:
             axes[1, k].set_visible(False)
             axes[0, k].tick_params(labelbottom=True)
+        legend.clear()
         units[column] = draw_column(axes[0, k], axes[1, k] if own else None, column,
                                     curves[column], own, legend)
         fig.align_ylabels(axes[:, k])
-    fig.legend([legend[name] for name in names], [texts[name] for name in names], ncol=ncol,
-               loc="lower center", bbox_to_anchor=(0.53, 0.0))
+    label_curves(axes[0, -1], legend)
     return fig, units
 
 

@@ -155,6 +155,15 @@ def test_m1(tmp, good, halted):
     bad = tmp / "bad.csv"
     bad.write_text("time_s,value\n0,one\n")
     refuses("bad.csv, line 2", "plot_m1", good, "--reference", bad)
+    out = draws(good / "m1.png", "plot_m1", good, "--name", "as measured", "--from", 0.2)
+    peak = next(line.split() for line in out.splitlines() if "as measured" in line)
+    assert float(peak[peak.index("mm") + 3]) >= 0.2, out
+    refuses("ends before 99 s", "plot_m1", good, "--from", 99)
+    from sphfsi.draw_probes import spread
+    ends = [0.5, 0.5, 0.02, 0.5, 0.9]  # labels stay near their curves, in order, without overlap
+    places = spread(ends, [1, 2, 1, 1, 1], 0.05)
+    assert np.allclose(places, [0.425, 0.5, 0.025, 0.575, 0.9]), places
+    assert np.allclose(spread([2, -1], [1, 1], 0.1), [0.95, 0.05])
     status, out, _ = tool("plot_m1")
     assert status == 1 and "example" in out, out
 

@@ -85,7 +85,7 @@ def scenes():
 
 
 def draw_stability():
-    """The energy that hard scenes gain out of nothing: some by their names, the others in a row."""
+    """Spurious energy that hard scenes gain: some by their names, the others in a row."""
     found = list(scenes())
     figure, axes = plt.subplots(figsize=(7.2, 2.7), layout="constrained")
     rows = list(NAMED)
@@ -100,13 +100,13 @@ def draw_stability():
     axes.set_yticks([-row for row in range(len(rows) + 1)],
                     [*NAMED.values(), f"the other {len(found) - len(rows)} scenes"])
     axes.set(xscale="log", xlim=(2e-4, 10),
-             xlabel="energy gained out of nothing, % of the energy in play")
+             xlabel="spurious gain, % of the energy in play")
     axes.set_xticks([NONE, 1e-3, 1e-2, 0.1, 1, 10], ["none", "0.001", "0.01", "0.1", "1", "10"])
     axes.minorticks_off()
     axes.spines[["top", "left", "right"]].set_visible(False)
     axes.tick_params(top=False, left=False, right=False)
-    axes.set_title(f"{len(found)} hard scenes: {good} stable and right with defaults, {cured} with "
-                   f"a setting (orange), {len(found) - good - cured} not", fontsize=9, loc="right")
+    axes.set_title(f"{len(found)} hard scenes: {good} stable with defaults, {cured} with a setting "
+                   f"(orange), {len(found) - good - cured} unstable", fontsize=9, loc="right")
     save(figure, "stability")
 
 

@@ -193,7 +193,7 @@ def draw(rows):
             return passes(0.15 + 0.7 * min(1, max(0, (math.log10(row["gain"] + 1e-12) + 6) / 4)))
         return {"left out": "0.93", "gains": "#e06a10", "stopped": "#9c1010"}[verdict]
 
-    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(11, 5.6), sharex=True,
+    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(8.2, 5.2), sharex=True,
                                 sharey=True)
     for row in rows:
         panel = axes[SIDES.index(row["sides"])][ACROSS.index(row["across"])]
@@ -208,7 +208,7 @@ def draw(rows):
         panel.set_yticks([k + 0.45 for k in range(len(SUBSTEPS))], [f"{n:g}" for n in SUBSTEPS],
                          fontsize=8)
         wet = "one side" if SIDES[i] == 1 else "both sides"
-        panel.set_title(f"{ACROSS[j]} across, water on {wet}", fontsize=9)
+        panel.set_title(f"{ACROSS[j]} across, water on {wet}", fontsize=8)
         panel.tick_params(length=0)
     figure.supxlabel("density of the plate over that of water", fontsize=10)
     figure.supylabel("fluid step over the limit of the solid's step", fontsize=10)
@@ -217,9 +217,9 @@ def draw(rows):
     words = ("gain 1e-6", "1e-4", "1e-2", "above 1 % at the start", "above 1 % of the run",
              "stopped",
              "cannot stand by statics")
-    figure.legend(handles, words, loc="upper center", ncol=7, fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0.01, 0, 1, 0.95))
-    figure.savefig(PICTURE, dpi=110)
+    figure.legend(handles, words, loc="upper center", ncol=4, fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0.01, 0, 1, 0.92))
+    figure.savefig(PICTURE, dpi=150)
     print(f"wrote {PICTURE.relative_to(ROOT)}")
 
 

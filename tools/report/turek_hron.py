@@ -17,7 +17,7 @@ import math
 import os
 from pathlib import Path
 
-from common import (IMAGES, OUT, ROOT, Run, load, np, options, plt, run_tool, store, table,
+from common import (COLOURS, IMAGES, OUT, ROOT, Run, load, np, options, plt, run_tool, store, table,
                     write)
 from palette import shrink
 from runs import Job
@@ -357,24 +357,28 @@ def pictures(run):
     for case, mark in (("fsi2", "o"), ("fsi3", "s")):
         wanted = REFERENCE[case]["uy"][1]
         own = [(k["cpu_seconds"], abs(100 * (k["series"]["uy"]["amplitude"] / wanted - 1)),
-                f"  {k['across']} across" +
-                "".join(f",\n  {c.split('.')[-1]}" for c in constants(k)))
+                f"{k['across']} across" +
+                "".join(f",\n{c.split('.')[-1]}" for c in constants(k)))
                for k in load(KEPT)
                if k["case"] == case and k["series"]["uy"]["state"] == "periodic" and
                k["cpu_seconds"]]
         other = [(cost, abs(off)) for name, off, cost, _ in OTHERS if name.endswith(case.upper())]
-        ax.loglog(*zip(*other), mark, mfc="none", color="0.4", label=f"OpenFOAM, {case.upper()}")
-        if own:
-            ax.loglog([k[0] for k in own], [k[1] for k in own], mark,
-                      label=f"sphfsi, {case.upper()}")
-            for cost, off, name in own:
-                ax.annotate(name, (cost, off), fontsize=8, va="center")
+        ax.loglog(*zip(*other), mark, mfc="none", color="0.4")
+        ax.annotate(f"OpenFOAM, {case.upper()}", max(other), ha="center", va="bottom",
+                    xytext=(0, 5), textcoords="offset points", fontsize=9, color="0.4")
+        colour = COLOURS[0 if case == "fsi2" else 1]
+        for cost, off, name in own:
+            ax.loglog(cost, off, mark, color=colour)
+            ax.annotate(f"{case.upper()}, {name}", (cost, off), fontsize=9,
+                        va="center", color=colour, xytext=(7, 0), textcoords="offset points",
+                        bbox={"facecolor": "white", "linewidth": 0, "pad": 1})
     # Twenty seconds of FSI2, 77 to 81 mm beside 81.6 mm (timed on two cores).
-    ax.loglog([200, 200], [0.7, 5.6], "-", color="tab:red", label="SPHinXsys, FSI2, 10 across")
-    ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %")
-    ax.margins(y=0.12)
-    ax.legend(fontsize=7)
-    fig.savefig(IMAGES / "turek_hron_cost.png", dpi=100, bbox_inches="tight")
+    ax.loglog([200, 200], [0.7, 5.6], "-", color="0.4")
+    ax.annotate("SPHinXsys, FSI2,\n10 across", (200, 0.6), fontsize=9, color="0.4", ha="center",
+                va="top")
+    ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %", xlim=(40, 3e7))
+    ax.margins(y=0.2)
+    fig.savefig(IMAGES / "turek_hron_cost.png", dpi=150, bbox_inches="tight")
     if not run:
         return
     times, series = columns(run)

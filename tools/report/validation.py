@@ -226,8 +226,10 @@ def picture(tool, names, image, caption, *options):
     folders = [FOLDER / name for name in names
                if (FOLDER / name / "fields.vtkhdf").is_file()]
     if len(folders) == len(names):
+        words = [f"--name={WORDS[name]}" for name in names if tool == "plot_m1"]
         done = subprocess.run([sys.executable, str(ROOT / "tools" / f"{tool}.py"),
-                               *map(str, folders), "--out", str(path), *map(str, options)],
+                               *map(str, folders), "--out", str(path), *words,
+                               *map(str, options)],
                               capture_output=True, text=True, check=False)
         if done.returncode:
             raise BadFile(f"{path.name}: {last_line(done)}")
@@ -350,7 +352,7 @@ def plate(report):
                        "first peak (1e-5 m, ms)", "first frequency (Hz)", *COST], "plate", cells),
         *both_integrators(report),
         *picture("plot_m1", ["plate", "plate-verlet", "plate-h1.5", "plate-leapfrog"], "plate-m1",
-                 "Mid-span deflection"),
+                 "Mid-span deflection from 0.03 s on", "--from", 0.03),
         *picture("plot_fields", ["plate-verlet", "plate"], "plate-fields",
                  "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time",
                  0.3),
