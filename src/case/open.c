@@ -130,7 +130,7 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
     if (range.largest > 0 && max2(range.forth, range.back) < 1e-9 * range.largest)
         return bad_section(r,
                            "its velocity is along the line everywhere and at all times, so no "
-                           "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
+                           "fluid passes; add a component along (%.3g, %.3g), or use `speed`",
                            o->inward[0], o->inward[1]);
     if (range.forth <= 0 && range.back > 0)
         return bad_section(r,

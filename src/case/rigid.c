@@ -73,7 +73,7 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
                         "[rigid %s] has a second `hinge`, which would hold it still; leave it out",
                         rigid->common.name);
     if (guided || !rigid->turns)
-        return bad_section(r, "has a `hinge`, about which it turns, and `%s`; leave one out",
+        return bad_section(r, "has both `hinge` and `%s`; leave one out",
                            guided ? "guide" : "turns = off");
     if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
         return bad_line(r, rigid->hinge.item[0].line,

@@ -83,8 +83,8 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
         const double bound = sim->dt_bound[owner[k].bound];
         if (!(bound > 0 && bound < 0.1 * acoustic)) continue;
         warn_at(d, scene, scene_line(scene, owner[k].section, 0, owner[k].key),
-                "%s limits the time step to %.3g s, while sound waves would allow %.3g times "
-                "as much. The run takes that many times longer; a %s %s may help",
+                "%s limits the time step to %.3g s, while sound waves would allow %.3g times as "
+                "much. The run becomes longer by this factor; a %s %s may help",
                 owner[k].key, bound, acoustic / bound, owner[k].change, owner[k].key);
     }
     const double added = sim->dt_bound[BOUND_added_mass], solid = sim->dt_bound[BOUND_solid];
@@ -92,19 +92,19 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
         int lightest;
         coupling_added_mass_step(&sim->coupling, &lightest);
         const struct scene_solid *const body = &scene->solid[lightest];
-        warn_at(d, scene, scene_line(scene, SECTION_solid, lightest, "density"),
-                "[solid %s] is %.3g times as dense as the fluid. So light a body limits the "
-                "time step to %.3g s, while sound waves would allow %.3g times as much. The run "
-                "takes that many times longer; a denser body allows longer steps",
-                body->common.name, body->density / scene->rho0, added, acoustic / added);
+        warn_at(
+            d, scene, scene_line(scene, SECTION_solid, lightest, "density"),
+            "[solid %s] is %.3g times as dense as the fluid, so it limits the time step to %.3g s, "
+            "while sound waves would allow %.3g times as much; a denser body shortens the run",
+            body->common.name, body->density / scene->rho0, added, acoustic / added);
     }
     if (sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE) && solid > 0 &&
         solid < 0.1 * acoustic && scene->numerics.multirate == MULTIRATE_OFF)
-        warn_at(d, scene, scene_line(scene, SECTION_numerics, 0, "multirate"),
-                "the solid limits the time step of the fluid to %.3g s, while sound waves would "
-                "allow %.3g times as much. The run takes up to that many times longer; "
-                "numerics.multirate = auto gives the solid steps of its own",
-                solid, acoustic / solid);
+        warn_at(
+            d, scene, scene_line(scene, SECTION_numerics, 0, "multirate"),
+            "the solid limits the time step of the fluid to %.3g s, while sound waves would allow "
+            "%.3g times as much. numerics.multirate = auto gives the solid steps of its own",
+            solid, acoustic / solid);
 }
 
 static void warn_of_precision(const struct simulation *sim, struct diag *d)

@@ -98,9 +98,9 @@ static void warn_of_surface(struct check *check, int f)
                 fluid->common.name, top, fluid->surface, (long long)above);
     if (isfinite(lowest) && scene->top.gravity[1] < 0)
         warn_at(check->diag, check->scene, fluid->common.line,
-                "[fluid %s] has a free surface at y = %.4g m, below its `surface = %.4g m`: it "
-                "begins there with a pressure of %.3g Pa and will spout; `surface` is the height "
-                "of the free surface, and a [fluid] for each height has its own",
+                "[fluid %s] has a free surface at y = %.4g m, below its `surface = %.4g m`: the "
+                "pressure there begins with %.3g Pa and drives a jet; `surface` is the height of "
+                "the free surface, one for each [fluid]",
                 fluid->common.name, lowest, fluid->surface,
                 -fluid->density * scene->top.gravity[1] * (fluid->surface - lowest));
 }
@@ -161,16 +161,16 @@ static void warn_of_weight(struct check *check, int fluid)
     const double pressure = f->density * size * depth;
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
         warn_at(check->diag, check->scene, f->common.line,
-                "[fluid %s] has a `surface`, but stands on nothing: it begins with up to "
-                "%.3g Pa at its lower end and will spout there; move it to the floor, or leave "
-                "out `surface`",
+                "[fluid %s] has a `surface`, but nothing is below it: the pressure at its lower "
+                "end begins with up to %.3g Pa and drives a jet; move the fluid to the floor, or "
+                "leave out `surface`",
                 f->common.name, pressure);
     const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
         warn_at(check->diag, check->scene, f->common.line,
-                "[fluid %s] begins without the pressure of its weight, so it collapses onto "
-                "its floor and its pressure swings between 0 and twice its %.3g Pa; give it its %s",
+                "[fluid %s] begins without the pressure of its weight, %.3g Pa, so it falls onto "
+                "its floor and its pressure oscillates between 0 and twice this value; add %s",
                 f->common.name, pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
 }
 
@@ -252,9 +252,8 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
         point_at(check, behind, 0.8 * dp, POINT_ANY) >= 0)
         return;
     warn_at(check->diag, check->scene, o->common->line,
-            "[%s %s] ends inside the fluid at (%.4g, %.4g) m, and no wall holds the fluid "
-            "beyond it: it flows past the line and is lost; add a [wall], or let the line end at "
-            "a wall or at the surface",
+            "[%s %s] ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the "
+            "line and is lost; add a [wall], or let the line end at a wall or at the surface",
             o->word, o->common->name, o->from[0] + (last ? o->length * o->along[0] : 0),
             o->from[1] + (last ? o->length * o->along[1] : 0));
 }
@@ -305,12 +304,12 @@ static void warn_of_balance(struct check *check)
     if (fabs(more) <= 0.01 * volume) return;
     const struct scene_open o = scene_open_at(scene, n_open - 1);
     warn_at(check->diag, check->scene, o.common->line,
-            "[%s %s]: the open boundaries give velocities only, which let %.3g m^2 more %s "
-            "than %s by t = %.3g s, %.2g %% of the fluid. It has no free surface, so %s; give one "
-            "of them a `pressure` instead of its velocity",
+            "[%s %s]: the velocities at the open boundaries let %.3g m^2 more %s than %s by t = "
+            "%.3g s, %.2g %% of the fluid. There is no free surface, so %s; give one boundary a "
+            "`pressure` instead of a velocity",
             o.word, o.common->name, fabs(more), more > 0 ? "in" : "out", more > 0 ? "out" : "in",
             n * step, 100 * fabs(more) / volume,
-            more > 0 ? "its pressure rises until a guard stops the run" : "voids open in it");
+            more > 0 ? "the pressure rises until a guard stops the run" : "voids open");
 }
 
 /* Whether fluid somewhere has nothing beside it. */
@@ -447,8 +446,8 @@ static void warn_of_fixed_probe(struct check *check, const struct scene_probe *p
     if (wall < 0) return;
     const char *const name = check->scene->wall[wall].common.name;
     warn_at(check->diag, check->scene, probe->common.line,
-            "[probe %s] begins at [wall %s], which moves away, but stays where it is; "
-            "`on = %s` moves it along",
+            "[probe %s] stays in place while [wall %s], at which it begins, moves away; `on = %s` "
+            "moves it with the wall",
             probe->common.name, name, name);
 }
 
@@ -472,13 +471,13 @@ static void warn_of_turning(struct check *check)
             for (int n = 0; scene_listed(scene->probe[m].body, n, name); n++)
                 asked |= scene->probe[m].quantity == PROBE_FORCE && strcmp(name, common->name) == 0;
         if (turns && asked && (b ? b->slip : w->slip) == SLIP_NONE)
-            warn_at(check->diag, check->scene, common->line,
-                    "[%s %s] %s with slip = none: the viscous moment on it is off by 2 mu A times "
-                    "its rate of turning (mu = %.3g Pa s, A: the area that it encloses); forces "
-                    "are right%s",
-                    kind_names[b ? KIND_SOLID : KIND_WALL], common->name,
-                    b ? "is free to turn" : "turns", nu * scene->rho0,
-                    b ? ", but at low Reynolds numbers it turns up to twice too fast" : "");
+            warn_at(
+                check->diag, check->scene, common->line,
+                "[%s %s] %s with slip = none: the viscous moment on it is off by 2 mu A omega (mu "
+                "= %.3g Pa s, A: area of the body, omega: angular velocity); forces are right%s",
+                kind_names[b ? KIND_SOLID : KIND_WALL], common->name,
+                b ? "is free to turn" : "turns", nu * scene->rho0,
+                b ? ", but at low Reynolds numbers it turns up to twice as fast as it should" : "");
     }
 }
 
@@ -519,9 +518,9 @@ static void warn_of_streamlines(struct check *check)
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting == 0)
             warn_at(check->diag, scene, scene->fluid[k].common.line,
-                    "[fluid %s] sticks to [%s %s] and has no `shifting`: its particles line up "
-                    "along streamlines and leave gaps beside bodies, where forces scatter and "
-                    "drift; set shifting = 10 and shifting_speed = largest",
+                    "[fluid %s] sticks to [%s %s] and has no `shifting`: its particles align along "
+                    "streamlines and leave gaps beside bodies, which disturb the forces; set "
+                    "shifting = 10 and shifting_speed = largest",
                     scene->fluid[k].common.name, kind, name);
 }
 

@@ -252,9 +252,8 @@ static void warn_of_rigid_contact(const struct check *check, int solid)
     for (int k = 0; k < scene->n_rigid; k++)
         if (scene_contact_of(scene, solid, scene->n_solid + scene_rigid_wall(scene, k)))
             warn_at(check->diag, scene, scene->rigid[k].common.line,
-                    "contact of [rigid %s] with [solid %s] pushes the solid only, as a wall that "
-                    "moves does; where they cannot meet, say so by a [contact] with `enabled = "
-                    "off`",
+                    "contact of [rigid %s] with [solid %s] pushes the solid only, not the rigid "
+                    "body; if they cannot meet, switch it off by a [contact] with `enabled = off`",
                     scene->rigid[k].common.name, scene->solid[solid].common.name);
 }
 

@@ -96,9 +96,9 @@ static void warn_of_motion_table(struct check *check, int k)
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
     warn_at(check->diag, check->scene, line,
-            "%s = %.200s ends at t = %.6g s, before end_time = %.6g s, and still moves in its last "
-            "row: what it moves stops there within a step and then rests; continue the table, end "
-            "it at rest, or use end_time = %.6g s",
+            "%s = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last two rows "
+            "differ: the motion stops there within a step; continue the table, end it at rest, or "
+            "use end_time = %.6g s",
             key, motion->file, end, scene->top.end_time, end);
 }
 
@@ -176,15 +176,14 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
                 sqrt(largest / (0.01 * scene->rho0)));
     if (open->absorb > 0 && wave < reach)
         warn_at(check->diag, check->scene, line,
-                "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The fluid "
-                "resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out waves of "
-                "up to the length L",
+                "[%s %s] absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the "
+                "fluid resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 "
+                "lets waves up to the length L pass",
                 open->word, open->common->name, open->absorb, wave, reach);
     if (open->absorb > scene->top.end_time)
         warn_at(check->diag, check->scene, line,
-                "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
-                "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a shorter "
-                "time",
+                "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that begins is "
+                "treated as sound: rho0 c0 = %.3g Pa for each m/s resist it; use a shorter time",
                 open->word, open->common->name, open->absorb, scene->top.end_time,
                 scene->rho0 * scene->c0);
 }

@@ -200,7 +200,7 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     if (sim->solid.implicit && sim->solid.implicit->failed)
         return diag_fail(d, ERR_GUARD,
                          "%s: Newton's method finds no solution for the implicit step of the "
-                         "solid of %.3g s or for parts of it (residual: %.2g of the largest "
+                         "solid, %.3g s, nor for shorter ones (residual: %.2g of the largest "
                          "force); a smaller fixed_step or solid_steps = explicit may help",
                          time_text(sim).text, sim->state.dt, sim->solid.implicit->residual);
     const struct finding fast = too_fast(sim, particles);
@@ -313,10 +313,10 @@ static void check_voids(struct simulation *sim, struct diag *d)
     if (!(missing > VOIDS_SHARE * start + margin)) return;
     sim->guard.warned_voids = true;
     diag_warn(d,
-              "%s: %.2g %% of the channel is empty: voids have opened where the pressure "
-              "of the fluid fell below zero, and the flow round them is wrong. Only differences of "
-              "pressure act on it, so give the open boundaries a `pressure` that is higher by "
-              "about rho v^2/2 = %.3g Pa, by the largest speed so far",
+              "%s: %.2g %% of the channel is empty: voids have opened where the pressure of the "
+              "fluid fell below zero, and the flow around them is wrong. Only differences of "
+              "pressure matter here, so raise the `pressure` of the open boundaries by about rho "
+              "v^2/2 = %.3g Pa (v: largest speed so far)",
               time_text(sim).text, 100 * missing / start,
               0.5 * scene->rho0 * square(sim->state.speed_high));
 }
@@ -355,14 +355,13 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         if (at < 0) continue;
         sim->guard.warned_rigid = true;
         const int other = p->body[at];
-        diag_warn(
-            d,
-            "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: contact "
-            "ends a quarter of a spacing inside, and a hinge has none; hold the body by "
-            "`guide`, `hinge` or a [spring], or make its step smaller by `fixed_step`",
-            time_text(sim).text, sim->scene->rigid[k].common.name,
-            other < scene_rigid_wall(sim->scene, 0) ? "wall" : "rigid",
-            sim->scene->wall[other].common.name, p->x[at], p->y[at]);
+        diag_warn(d,
+                  "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
+                  "contact ends a quarter of a spacing inside and is absent at a hinge; hold the "
+                  "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
+                  time_text(sim).text, sim->scene->rigid[k].common.name,
+                  other < scene_rigid_wall(sim->scene, 0) ? "wall" : "rigid",
+                  sim->scene->wall[other].common.name, p->x[at], p->y[at]);
         return;
     }
 }

@@ -404,7 +404,7 @@ static void test_a_table_that_ends_in_motion_is_warned_of(void)
     read_warned(moved, "0, 0, 0\n0.5, 1e-3, 0\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(warnings, "motion.cfg:11: [motion move] file = test_motion.tmp ends at t = 0.5 s, "
-                         "before end_time = 1 s, and still moves"),
+                         "before end_time = 1 s, and its last two rows differ"),
         warnings);
     read_warned(moved, "0, 0, 0\n0.5, 1e-3, 0\n0.6, 1e-3, 0\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);

@@ -109,7 +109,7 @@ static void test_bodies(void)
     const double sound = rig.sim.scene->numerics.cfl * rig.sim.fluid.k.h / 20;
     const double bound = rig.sim.dt_bound[BOUND_added_mass];
     snprintf(want, sizeof want,
-             "--set: [solid post] is 0.01 times as dense as the fluid. So light a body limits the "
+             "--set: [solid post] is 0.01 times as dense as the fluid, so it limits the "
              "time step to %.3g s, while sound waves would allow %.3g times as much",
              bound, sound / bound);
     TEST_ASSERT_EQUAL_STRING_LEN(want, said, strlen(want));

@@ -101,7 +101,7 @@ static void test_a_surface_above_the_water(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "free surface at y = 0.05 m, below its `surface "
                                                   "= 0.2 m`"),
                                  warnings);
-    TEST_ASSERT_NOT_NULL(strstr(warnings, "a pressure of 1.47e+03 Pa")); /* 1000*9.81*0.15 */
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "begins with 1.47e+03 Pa")); /* 1000*9.81*0.15 */
     /* Under a lid the water may be under pressure; under water of another section, too. */
     read(HEAD DEEP SIDES FLOOR "[wall lid]\nshape = box -0.02, 0.05, 0.12, 0.07\n");
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free surface"), warnings);
@@ -272,12 +272,12 @@ static void test_a_gap_of_one_particle(void)
     read(HEAD
          "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
              FLOOR "[wall post]\nshape = box 0.05, 0.005, 0.07, 0.05\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
-                                        "doubts.cfg:15: the gap between [wall floor] and [wall "
-                                        "post] at (0.05059, 0.002497) m is 0.005 m wide, one "
-                                        "particle: between a fifth and four fifths of the flow "
-                                        "passes, and may gain energy; use dp = 0.0025 m or less"),
-                                 warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings, "doubts.cfg:15: the gap between [wall floor] and [wall "
+                         "post] at (0.05059, 0.002497) m is 0.005 m wide, one "
+                         "particle: between a fifth and four fifths of the flow "
+                         "pass, and energy may be gained; use dp = 0.0025 m or less"),
+        warnings);
     TEST_ASSERT_NULL(strchr(strchr(warnings, '\n') + 1, '\n')); /* one warning */
     read(HEAD
          "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
@@ -426,8 +426,8 @@ static void test_velocities_that_do_not_balance(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
     read(OPEN_CHANNEL IN OUT("speed = -0.1*cos(pi*t)") SIDE_WALLS);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
-                                        "[outflow o]: the open boundaries give velocities "
-                                        "only, which let 0.00"),
+                                        "[outflow o]: the velocities at the open boundaries "
+                                        "let 0.00"),
                                  warnings);
     read(OPEN_CHANNEL IN "[inflow o]\nfrom = 0.4, 0\nto = 0.4, 0.2\nspeed = 0.1\n" SIDE_WALLS);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "m^2 more in than out by t = 0.03"), warnings);
@@ -472,15 +472,15 @@ static void test_absorption_without_effect(void)
     read(OPEN_CHANNEL IN OUT("pressure = 0\nabsorb = 0.2") SIDE_WALLS);
     TEST_ASSERT_EQUAL_STRING("", warnings);
     read(OPEN_CHANNEL IN OUT("pressure = 0\nabsorb = 1e-9") SIDE_WALLS);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "absorb = 1e-09 s lets out waves "
-                                                  "below c0 absorb/4 = 5e-10 m only"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "absorb = 1e-09 s lets only "
+                                                  "waves below c0 absorb/4 = 5e-10 m pass"),
                                  warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "doubts.cfg:15: "), warnings);
     /* From rest, 20 Pa then drive 0.01 m/s instead of 0.2 m/s at the end. */
     read(OPEN_CHANNEL IN OUT("pressure = 0\nabsorb = 5") SIDE_WALLS);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "absorb = 5 s is longer than end_time = 4 s"),
                                  warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "by rho0 c0 = 2e+03 Pa for each"), warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "rho0 c0 = 2e+03 Pa for each"), warnings);
 }
 
 int main(void)

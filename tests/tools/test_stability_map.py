@@ -35,7 +35,7 @@ def test_report():
     assert [m.judge(r) for r in rows] == ["passes", "passes", "gains", "stopped", "left out"]
     text = m.report(rows)
     assert "Of 4 plates **1 were stopped, and 1 gained more" in text, text
-    assert "1 more gained 1 % of what was in play" in text, text
+    assert "1 more gained 1 % of the energy in play" in text, text
     assert "| 0.3 | 5 | 1 | verlet | paper | 2.5 | 18 % | interface |" in text, text
     assert "1 more cannot stand" in text and "1 bend" in text, text
 
