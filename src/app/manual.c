@@ -344,6 +344,7 @@ static enum err cite(struct session *session, const struct sphfsi_options *o, co
         {"bonet", fx & FX_SOLID},
         {"ganzenmueller", fx & FX_HOURGLASS},
         {"belytschko", fx & FX_SOLID},
+        {"belytschko_1999", fx & FX_THIN},
         {"oconnor", fx & FX_SOLID_VISCOSITY},
         {"bonet_wood", any_law(scene, LAW_SVK) || any_law(scene, LAW_NEO_HOOKEAN)},
         {"dualsphysics", scene->top.integrator == INTEGRATOR_SYMPLECTIC},

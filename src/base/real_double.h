@@ -8,6 +8,7 @@
 
 #define real double
 #define vreal vdouble
+#define vmask vlong
 #define four_real four_double_at
 #define LANES LANES_DOUBLE
 #define GROUPS GROUPS_DOUBLE

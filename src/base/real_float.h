@@ -8,6 +8,7 @@
 
 #define real float
 #define vreal vfloat
+#define vmask vint
 #define four_real four_float_at
 #define LANES LANES_FLOAT
 #define GROUPS GROUPS_FLOAT

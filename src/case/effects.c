@@ -90,6 +90,8 @@ bool effect_called(const struct scene *scene, enum effect effect, struct effect_
 #define MEETS_WALL meets(scene, by, scene->n_solid)
 #define HAS_GRAVITY has_gravity(scene, by)
 #define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(scene))
+#define THIN_LINES \
+    called_by(by, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
 #define LATER false
 #define EFFECT(name, when, ...) \
     if (effect == EFFECT_##name) return when;

@@ -22,6 +22,7 @@ struct shape {
     double size; /* radius of a circle; thickness of a polyline, to the left of its direction if
                          positive, to the right if negative; else 0 */
     bool bare;   /* the side of a wall, drawn as a line without thickness (geometry/wall_lines.c) */
+    bool thin;   /* a wall thinner than dp with fluid on both sides; `size` is its thickness */
     int line;
 };
 
@@ -180,6 +181,23 @@ SPHFSI_INLINE void place_of_lattice(const struct scene_lattice *l, double x, dou
     at[1] = turned ? x * l->turn[1] + y * l->turn[0] : y;
 }
 
+/* A dummy of a thin line: beside its part of that number, at a fraction `along` of it, `off` to the
+ * left of the line and `beyond` the place in its direction, m. */
+struct line_dummy {
+    int32_t part;
+    double along, off, beyond;
+};
+
+/* A thin line (T-110): n points, with n - 1 parts between them. */
+struct scene_line {
+    int wall, n;
+    double (*pt)[2];
+    double extend[2]; /* how far it continues into a wall beyond its ends, m */
+    bool tip[2];      /* whether fluid can flow round its ends */
+    int64_t n_dummies;
+    struct line_dummy *dummy; /* in the order of the particles, the last of their wall */
+};
+
 /* Of a rigid body, per depth: kg/m, kg m, m. */
 struct rigid_mass {
     double mass, inertia, centre[2];
@@ -236,6 +254,8 @@ struct scene {
     /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
     struct rigid_motion *rigid_motion;
     struct rigid_mass *rigid_mass; /* [n_rigid], by sampling */
+    int n_line;
+    struct scene_line *line;       /* by sampling, in the order of the walls */
     struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h;                                     /* smoothing length */

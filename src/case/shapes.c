@@ -6,6 +6,7 @@
  *   polygon X, Y; X, Y; X, Y ...          corners in either order of turning
  *   polyline thickness T: X, Y; X, Y ...  a band to the left of the direction of the points; T < 0:
  *                                         to the right; last point = first point: closed
+ *   polyline thickness 0: X, Y; X, Y ...  of a wall: a thin line, with fluid on both sides
  *   polyline: X, Y; X, Y ...              the side of a wall, whose thickness the kernel determines
  *   arc thickness T: X, Y, R, A, B        a polyline along a circle, from angle A to angle B
  *   arc: X, Y, R, A, B */
@@ -97,17 +98,20 @@ static enum err read_thickness(struct reader *r, struct slice *text, struct shap
     static const char word[] = "thickness";
     const size_t length = sizeof word - 1;
     struct slice number;
+    const int section = r->sections[r->entry->section].id;
     const bool given = text->length >= length && memcmp(text->at, word, length) == 0,
-               wall = r->sections[r->entry->section].id == SECTION_wall &&
-                      strcmp(r->entry->key, "shape") == 0;
+               shaped = strcmp(r->entry->key, "shape") == 0,
+               wall = section == SECTION_wall && shaped;
     shape->bare = text->at[0] == ':' && wall;
     if ((!given && !shape->bare) || !slice_next(text, ':', &number) || !text->at)
         return bad_value(r, "write `polyline thickness T: X, Y; X, Y; ...`; `thickness T` may be "
                             "left out in a `shape` of a [wall]");
     if (shape->bare) return ERR_OK;
     TRY(case_number(r, slice_after(number, length), "m", &shape->size));
-    if (shape->size == 0 || fabs(shape->size) > 1e9)
-        return bad_value(r, "the thickness must not be 0 and at most 1e9 m");
+    shape->thin = shape->size == 0 && (wall || (section == SECTION_rigid && shaped));
+    if ((shape->size == 0 && !shape->thin) || fabs(shape->size) > 1e9)
+        return bad_value(r, "the thickness must be at most 1e9 m, and 0 only in a `shape` of a "
+                            "[wall] or [rigid]");
     return ERR_OK;
 }
 

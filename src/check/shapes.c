@@ -179,7 +179,7 @@ static void warn_of_region(struct check *check, const struct region *region)
         bool layered = false; /* layers follow faces at any position */
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
-        if (region->lattice.fitted || layered) continue;
+        if (region->lattice.fitted || layered || shape->thin) continue;
         warn_of_edges(check, region, k);
         if (region->kind == KIND_WALL) warn_of_thin(check, region, shape, thickness(shape));
     }

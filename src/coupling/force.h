@@ -34,7 +34,7 @@ static void drag_force(const struct fluid *fluid, const struct neighbours *neigh
     for (int m = 0; m < neighbours->n; m++)
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[m];
-            const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
+            const struct pair q = pair_load(s, code, candidates(neighbours, code, part), s->line);
             const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
             sum_x[part] = vfma(weight, q.u, sum_x[part]);
             sum_y[part] = vfma(weight, q.v, sum_y[part]);
@@ -58,7 +58,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
-            struct pair q = pair_load(s, code, b);
+            struct pair q = pair_load(s, code, b, s->line);
             q.p = lane(b, PACKED_P);
             vreal stress = fx_pressure(s, &q);
             if (effects & FX_ONE_SIDED)
@@ -91,7 +91,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
            wet_y[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS, own += GROUPS) {
-        struct receiver s = receiver_at(sides, own);
+        struct receiver s = dummy_at(sides, own);
         s.u = vspread(own + PACKED_U * CLUSTER);
         s.v = vspread(own + PACKED_V * CLUSTER);
         s.p = vspread(own + PACKED_P * CLUSTER);
@@ -120,7 +120,7 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
 {
     const struct cell_list *const list = &cells->kind[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     gather_around_cell(scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m;

@@ -15,7 +15,7 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *fluid,
             const uint32_t code = neighbours->code[k];
             const real *const b = candidates(neighbours, code, part);
             const struct separation d = separation_from(s, code, b);
-            const vreal w = kernel_of(d.length);
+            const vreal w = weight_seen(s, &d, kernel_of(d.length));
             const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
             sum_w[part] = sum_w[part] + w;
             sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
@@ -50,7 +50,7 @@ static void mirrored_velocity(const struct neighbours *neighbours, const struct 
             const uint32_t code = neighbours->code[k];
             const real *const b = candidates(neighbours, code, part);
             const struct separation d = separation_from(s, code, b);
-            const vreal w = kernel_of(d.length);
+            const vreal w = weight_seen(s, &d, kernel_of(d.length));
             sum_w[part] = sum_w[part] + w;
             sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
             sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
@@ -117,6 +117,9 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
         d->packed[PACKED_Y * CLUSTER + r] = (real)(y * inv_h);
     }
     cluster_close(d->packed, fluid->packed[d->kind].n, d->count);
+    for (int r = 0; r < d->count && fluid->effects & FX_THIN; r++)
+        d->packed[PACKED_LINE * CLUSTER + r] =
+            d->kind == KIND_WALL ? (real)fluid->lines.of_wall[d->at[r]] : 0;
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
@@ -157,7 +160,7 @@ static void no_slip(const struct fluid *fluid, const struct particles *particles
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && neighbours->n && !own_image; r += GROUPS) {
-        const struct receiver s = receiver_at(sides, d->packed + r);
+        const struct receiver s = dummy_at(sides, d->packed + r);
         mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
@@ -193,7 +196,7 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
     gather(d, particles->ay, ay);
     for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
-        const struct receiver s = receiver_at(sides, d->packed + r);
+        const struct receiver s = dummy_at(sides, d->packed + r);
         extrapolated_pressure(fluid, neighbours, &s, &ax[r], &ay[r], &pressure[r]);
     }
 }
@@ -232,7 +235,7 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct parti
                                          enum kind kind, const struct cells *cells, int32_t cell)
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
     const bool rests = kind == KIND_WALL && !(fluid->effects & FX_MOTION);
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
@@ -265,7 +268,7 @@ static void dummies_surface_of_cell(const struct fluid *fluid, const struct part
                                     enum kind kind, const struct cells *cells, int32_t cell)
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     for (int32_t m = 0; m < clusters_in(&cells->kind[kind], cell); m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
         pack_surface_fields(fluid, particles, &d);

@@ -29,6 +29,7 @@ static int packed_count(enum kind kind, effect_set effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
     if (kind == KIND_FLUID && effects & FX_VISCOSITY) return PACKED_VISCOUS_FIELDS;
+    if (kind != KIND_FLUID && effects & FX_THIN) return PACKED_THIN_FIELDS;
     if (kind != KIND_FLUID && effects & FX_REPULSION) return PACKED_REPULSION_FIELDS;
     if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return PACKED_ONE_SIDED_FIELDS;
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? PACKED_NO_SLIP_FIELDS : PACKED_FIELDS;
@@ -82,11 +83,17 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
     if (!fluid->neighbour_scratch || !deferred) return ERR_MEMORY;
     for (int t = 0; t < fluid->threads; t++)
         fluid->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
+    for (int t = 0; t < fluid->threads && fluid->effects & FX_THIN; t++) {
+        fluid->neighbour_scratch[t].pieces =
+            arena_alloc(a, (size_t)(fluid->lines.n_pieces * LINE_IMAGES), 5 * sizeof(double),
+                        "thin walls", d);
+        if (!fluid->neighbour_scratch[t].pieces) return ERR_MEMORY;
+    }
     return ERR_OK;
 }
 
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
-                      effect_set effects, const struct particles kinds[KIND_COUNT],
+                      effect_set effects, struct particles kinds[KIND_COUNT],
                       const struct cells *cells, struct diag *d)
 {
     memset(fluid, 0, sizeof *fluid);
@@ -101,6 +108,7 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
             fluid->kernel->effects != (effects & (effect_set)PAIR_EFFECTS)))
         fluid->kernel++;
     fluid->threads = thread_count();
+    if (effects & FX_THIN) TRY(lines_create(&fluid->lines, a, scene, &kinds[KIND_WALL], d));
     for (int k = 0; k < KIND_COUNT; k++) fluid->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(fluid, a, cells_clusters(cells, kinds[KIND_FLUID].capacity), d));
     fluid->near_dummies =

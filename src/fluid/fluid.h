@@ -6,6 +6,7 @@
 #include "particles/clusters.h"
 #include "case/effects.h"
 #include "fluid/eos.h"
+#include "fluid/lines.h"
 
 #define ETA2 0.01           /* (eta/h)^2 */
 #define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
@@ -73,6 +74,9 @@ enum packed_field {
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
+    /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0. */
+    PACKED_LINE = PACKED_REPULSION_FIELDS,
+    PACKED_THIN_FIELDS,
     /* Of the fluid, with artificial viscosity: rho0/rho; where density diffuses by Antuono et al.
      * 2010: the gradient of dens, times h. */
     PACKED_SPECIFIC = PACKED_FIELDS,
@@ -80,7 +84,7 @@ enum packed_field {
     PACKED_SLOPE_X = PACKED_VISCOUS_FIELDS,
     PACKED_SLOPE_Y,
     PACKED_SLOPE_FIELDS,
-    PACKED_MOST = PACKED_REPULSION_FIELDS
+    PACKED_MOST = PACKED_THIN_FIELDS
 };
 
 /* By cluster in cell order, consecutively: each field of its four particles in a row. Missing
@@ -157,6 +161,7 @@ struct neighbour_scratch {
      * candidates, from earlier receivers. Zero between evaluations, except for the first, the
      * discard slot. */
     void *deferred;
+    void *pieces; /* of thin lines near a cell: struct near_piece of fluid/neighbours.h */
 };
 
 struct fluid {
@@ -170,6 +175,7 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
+    struct lines lines;       /* thin lines; unused without any */
     bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed;        /* walls rest, and their packed positions are valid */
     bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
@@ -182,7 +188,7 @@ struct fluid {
 
 /* Chooses the kernel and allocates packed fields. */
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
-                      effect_set effects, const struct particles kinds[KIND_COUNT],
+                      effect_set effects, struct particles kinds[KIND_COUNT],
                       const struct cells *cells, struct diag *d) SPHFSI_CHECKED;
 
 /* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
@@ -203,6 +209,15 @@ int32_t fluid_fullest_cell(const struct cells *cells);
  * time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT]);
+
+/* Whether a place and particle i of a kind, (x, y) away, see each other (T-110). */
+SPHFSI_INLINE bool fluid_sees(const struct fluid *fluid, const struct cells *cells,
+                              const double from[2], enum kind kind, int64_t i, double x, double y)
+{
+    if (!(fluid->effects & FX_THIN)) return true;
+    return lines_between(&fluid->lines, cells, from, x, y) ==
+           (kind == KIND_WALL ? fluid->lines.of_wall[i] : 0);
+}
 
 /* The fluid's own pressures to p, which no step needs. */
 void fluid_show(const struct fluid *fluid, struct particles *particles);

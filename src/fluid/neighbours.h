@@ -77,15 +77,75 @@ SPHFSI_INLINE struct neighbours gather_clusters_ahead(struct neighbour_scratch *
     return neighbours_of(&fluid->packed[KIND_FLUID], near);
 }
 
-/* Sides of the cells in units of h. */
-struct cell_sides {
-    real x, y;
+/* In units of h; the kernel ends at 2. */
+#define FAR 1e9
+
+/* A piece of a thin line, relative to a cell's centre in units of h; with the number of its line,
+ * from 1, if it is the last of its pieces. */
+struct near_piece {
+    real from[2], to[2], line;
+    real length, tip[2]; /* distance of `from` from the tips of the line along it; FAR: none */
 };
 
-SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const struct cells *cells)
+/* Lists the pieces that a connection from a place in a cell may cross; returns their number. */
+static int near_pieces(const struct fluid *fluid, const struct cells *cells, int32_t cell,
+                       struct near_piece *out)
 {
-    return (struct cell_sides){(real)(cells->side[0] / fluid->k.h),
-                               (real)(cells->side[1] / fluid->k.h)};
+    const double centre[2] = {cell_centre_x(cells, cell), cell_centre_y(cells, cell)},
+                 reach = KERNEL_REACH * fluid->k.h + cells->skin, inv_h = 1 / fluid->k.h;
+    int n = 0;
+    for (int k = 0; k < fluid->lines.n; k++) {
+        const struct thin_line *const line = &fluid->lines.line[k];
+        const int before = n;
+        for (int m = 0; m < LINE_IMAGES; m++) {
+            double shift[2], low[2], high[2];
+            if (!line_image(cells, m, shift)) continue;
+            for (int c = 0; c < 2; c++) {
+                shift[c] -= centre[c];
+                low[c] = -0.5 * cells->side[c] - reach - shift[c];
+                high[c] = 0.5 * cells->side[c] + reach - shift[c];
+            }
+            if (line->box.low[0] > high[0] || line->box.high[0] < low[0] ||
+                line->box.low[1] > high[1] || line->box.high[1] < low[1])
+                continue;
+            for (int j = 0; j < line->n_pieces; j++) {
+                const double *const a = line->piece[j].from, *const b = line->piece[j].to;
+                if (min2(a[0], b[0]) > high[0] || max2(a[0], b[0]) < low[0] ||
+                    min2(a[1], b[1]) > high[1] || max2(a[1], b[1]) < low[1])
+                    continue;
+                struct near_piece *const p = &out[n++];
+                *p = (struct near_piece){.from = {(real)((a[0] + shift[0]) * inv_h),
+                                                  (real)((a[1] + shift[1]) * inv_h)},
+                                         .to = {(real)((b[0] + shift[0]) * inv_h),
+                                                (real)((b[1] + shift[1]) * inv_h)},
+                                         .length = (real)(line->piece[j].length * inv_h)};
+                for (int last = 0; last < 2; last++)
+                    p->tip[last] =
+                        line->scene->tip[last]
+                            ? (real)(fabs(line->piece[j].start - last * line->length) * inv_h)
+                            : (real)FAR;
+            }
+        }
+        if (n > before) out[n - 1].line = (real)(k + 1);
+    }
+    return n;
+}
+
+/* Sides of the cells in units of h, and the thin lines near one. */
+struct cell_sides {
+    real x, y;
+    int n_pieces;
+    const struct near_piece *piece;
+};
+
+SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const struct cells *cells,
+                                              int32_t cell)
+{
+    struct near_piece *const piece = fluid->neighbour_scratch[thread_index()].pieces;
+    return (
+        struct cell_sides){(real)(cells->side[0] / fluid->k.h), (real)(cells->side[1] / fluid->k.h),
+                           fluid->effects & FX_THIN ? near_pieces(fluid, cells, cell, piece) : 0,
+                           piece};
 }
 
 /* Particles a, one in each group of four lanes; with their positions relative to the centres of the
@@ -94,6 +154,9 @@ struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
     vreal slope_x, slope_y; /* h times the gradient of dens, if it is used */
     vreal specific;         /* rho0/rho, with artificial viscosity */
+    vreal line;             /* of a dummy: the line that has to lie between, or 0 */
+    int n_pieces;           /* of thin lines near its cell; NULL: there are none at all */
+    const struct near_piece *piece;
 };
 
 /* Pairs of each a with the candidates b, one in each lane of a group. */
@@ -111,6 +174,9 @@ struct pair {
 SPHFSI_INLINE struct receiver receiver_at(const struct cell_sides *sides, const real *own)
 {
     struct receiver a;
+    a.n_pieces = sides->n_pieces;
+    a.piece = sides->piece;
+    a.line = vset(0);
     const vreal x = vspread(own + PACKED_X * CLUSTER), y = vspread(own + PACKED_Y * CLUSTER);
     const vreal side_x = vset(sides->x), side_y = vset(sides->y);
     a.x[0] = x + side_x;
@@ -130,30 +196,92 @@ SPHFSI_INLINE int particles_in(const struct cell_list *list, int32_t cell, int32
     return rest < CLUSTER ? rest : CLUSTER;
 }
 
-/* Vector from candidates to receivers, in units of h. */
+/* Dummies as receivers: of thin lines, too. */
+SPHFSI_INLINE struct receiver dummy_at(const struct cell_sides *sides, const real *own)
+{
+    struct receiver a = receiver_at(sides, own);
+    if (a.piece) a.line = vspread(own + PACKED_LINE * CLUSTER);
+    return a;
+}
+
+SPHFSI_INLINE vreal vpick(vmask mask, vreal yes, vreal no)
+{
+    return (vreal)(((vmask)yes & mask) | ((vmask)no & ~mask));
+}
+
+/* T-110: how much of a pair with the separation (x, y) is seen if `line` has to lie between both.
+ */
+SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal line)
+{
+    vreal clear = vset(1), seen = vset(0), passes = vset(1);
+    vmask odd = {0};
+    for (int m = 0; m < a->n_pieces; m++) {
+        const struct near_piece *const p = &a->piece[m];
+        const vreal from_x = vset(p->from[0]) - a->x[1], from_y = vset(p->from[1]) - a->y[1],
+                    to_x = vset(p->to[0]) - a->x[1], to_y = vset(p->to[1]) - a->y[1];
+        const vreal from = x * from_y - y * from_x, to = x * to_y - y * to_x,
+                    here = from_x * to_y - from_y * to_x, there = here - from + to;
+        const vmask crosses = CROSSES(here, there, from, to);
+        vreal open = vset(0);
+        if (p->tip[0] < 1 || p->tip[1] - p->length < 1) { /* T-110b */
+            const vreal along = vset(p->length) * from / (from - to);
+            const vreal from_tip = vmin(vset(p->tip[0]) + along, vset(p->tip[1]) - along);
+            open = vmax(vset(0), vset(1) - from_tip);
+        }
+        odd ^= crosses;
+        passes = vpick(crosses, vmin(passes, open), passes);
+        if (p->line == 0) continue;
+        passes = vpick(odd, passes, vset(1));
+        seen = vpick(line == p->line, clear * (vset(1) - passes), seen);
+        clear = clear * passes;
+        passes = vset(1);
+        odd ^= odd;
+    }
+    return vpick(line == 0, clear, seen);
+}
+
+/* Vector from candidates to receivers, in units of h; and how much of these is seen, if there are
+ * lines. What is hidden is out of reach for all laws. */
+SPHFSI_INLINE void separate(const struct receiver *a, uint32_t code, const real *b, vreal line,
+                            vreal *x, vreal *y, vreal *seen)
+{
+    *x = a->x[neighbour_column(code)] - lane(b, PACKED_X);
+    *y = a->y[neighbour_row(code)] - lane(b, PACKED_Y);
+    if (!a->piece) return;
+    *seen = visible(a, *x, *y, line);
+    *x = vpick(*seen == 0, vset((real)FAR), *x);
+}
+
 struct separation {
-    vreal x, y, length;
+    vreal x, y, length, seen;
 };
 
 SPHFSI_INLINE struct separation separation_from(const struct receiver *a, uint32_t code,
                                                 const real *b)
 {
     struct separation d;
-    d.x = a->x[neighbour_column(code)] - lane(b, PACKED_X);
-    d.y = a->y[neighbour_row(code)] - lane(b, PACKED_Y);
+    separate(a, code, b, a->line, &d.x, &d.y, &d.seen);
     d.length = vsqrt(vfma(d.y, d.y, d.x * d.x));
     return d;
 }
 
-/* Geometry of the pairs, Eq. 5. */
-SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b)
+/* A weight of the pairs, as far as they are seen. */
+SPHFSI_INLINE vreal weight_seen(const struct receiver *a, const struct separation *d, vreal weight)
+{
+    return a->piece ? weight * d->seen : weight;
+}
+
+/* Geometry of the pairs, Eq. 5; with the line that has to lie between (T-110). */
+SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b,
+                                    vreal line)
 {
     struct pair q;
-    q.x = a->x[neighbour_column(code)] - lane(b, PACKED_X);
-    q.y = a->y[neighbour_row(code)] - lane(b, PACKED_Y);
+    vreal seen;
+    separate(a, code, b, line, &q.x, &q.y, &seen);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
     q.slope = lane(b, PACKED_VOLUME) * (t * t * t);
+    if (a->piece) q.slope = q.slope * seen;
     q.u = a->u - lane(b, PACKED_U);
     q.v = a->v - lane(b, PACKED_V);
     q.vx = vfma(q.v, q.y, q.u * q.x);

@@ -2,9 +2,6 @@
  * Packed fields of the fluid, and the renormalised gradient of its density. Included by
  * fluid/sweep.h, once for each precision. */
 
-/* In units of h; the kernel ends at 2. */
-#define FAR 1e9
-
 /* Fills a cluster after its first `count` particles. */
 static void cluster_close(real *packed, int fields, int count)
 {
@@ -117,7 +114,7 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
             const uint32_t code = neighbours->code[k];
             const real *const b = candidates(neighbours, code, part);
             const struct separation r = separation_from(a, code, b);
-            const vreal w = gradient_weight(&r, b);
+            const vreal w = weight_seen(a, &r, gradient_weight(&r, b));
             const vreal step = w * (a->dens - lane(b, PACKED_DENS));
             xx[part] = vfma(w * r.x, r.x, xx[part]);
             xy[part] = vfma(w * r.x, r.y, xy[part]);
@@ -146,7 +143,7 @@ static void slopes_of_cell(const struct fluid *fluid, struct particles *particle
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;

@@ -29,9 +29,10 @@ SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struc
 
 /* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the
  * candidates. */
-SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b)
+SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b,
+                                       vreal line)
 {
-    struct pair q = pair_load(a, code, b);
+    struct pair q = pair_load(a, code, b, line);
     q.slope = q.slope * a->volume;
     q.p = lane(b, PACKED_P);
     return q;
@@ -42,7 +43,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
                                             const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)
 {
-    struct exchange e = {.pair = pair_between(a, code, b)};
+    struct exchange e = {.pair = pair_between(a, code, b, vset(0))};
     struct pair *const q = &e.pair;
     e.rate = fx_continuity(q);
     vreal stress = fx_pressure(a, q), inv;
@@ -119,7 +120,8 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
                                             const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)
 {
-    struct exchange e = {.pair = pair_between(a, code, b)};
+    const vreal line = PAIR_HAS(fx, THIN) ? lane(b, PACKED_LINE) : vset(0);
+    struct exchange e = {.pair = pair_between(a, code, b, line)};
     struct pair *const q = &e.pair;
     e.rate = PAIR_HAS(fx, ONE_SIDED) ? fx_one_sided_rate(q) : fx_continuity(q);
     const vreal inv = vset(1) / (q->r2 + k->eta2);

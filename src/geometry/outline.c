@@ -50,7 +50,8 @@ static const struct shape *line_at(const struct scene *scene, const struct shape
     for (int k = 0; k < scene->n_wall && p->bare; k++)
         for (int j = 0; j < scene->wall[k].shape.n; j++) {
             const struct shape *const q = &scene->wall[k].shape.item[j];
-            for (int n = 0; n < 2 && q != p && q->bare && q->kind == SHAPE_POLYLINE; n++) {
+            for (int n = 0; n < 2 && q != p && q->bare && !q->thin && q->kind == SHAPE_POLYLINE;
+                 n++) {
                 const double *const at = q->pt[n ? q->n - 1 : 0];
                 *last = n;
                 if (fabs(at[0] - end[0]) <= nothing && fabs(at[1] - end[1]) <= nothing) return q;
@@ -179,6 +180,7 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
     for (int k = 0; k < list->n; k++) {
         const struct shape *shape = &list->item[k];
         const int pieces = shape->kind == SHAPE_POLYLINE ? shape->n - 1 : 1;
+        if (shape->thin) continue;
         TRY(cut_shape(scene, shape, &o->item[o->n], a, d));
         for (int j = 0; j < pieces; j++) {
             add_box(o, &o->item[o->n]);

@@ -16,7 +16,7 @@ struct outline {
 
 /* A region: the union of some shapes, minus others. */
 struct outlines {
-    int n;
+    int n; /* none of a thin line */
     struct outline *item;
     int *shape;      /* index of the shape that a piece belongs to */
     struct box2 box; /* of all pieces */

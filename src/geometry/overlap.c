@@ -97,7 +97,8 @@ static enum err find_overlaps(struct sampler *sampler, const struct samples *sam
         for (int64_t j = first; j <= k; j++)
             for (int r = 0; r < sampler->n_regions; r++) {
                 const struct region *const its = &sampler->regions[r];
-                if (r == region || !geometry_covers_strictly(its, samples->x[j], samples->y[j]))
+                if (r == region || samples->thin[j] ||
+                    !geometry_covers_strictly(its, samples->x[j], samples->y[j]))
                     continue;
                 covered[j] |= r < region;
                 if ((other && its != other) || may_lie_in(sampler, samples, j, its)) continue;
@@ -174,8 +175,8 @@ enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
     TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,
                           &sampler->temp, sampler->diag));
     for (int64_t k = 0; k < samples->n; k++) {
-        kept[k] = !covered[k] && !is_crowded(&t, sampler, samples, k);
-        if (kept[k]) point_grid_insert(&t, k);
+        kept[k] = samples->thin[k] || (!covered[k] && !is_crowded(&t, sampler, samples, k));
+        if (kept[k] && !samples->thin[k]) point_grid_insert(&t, k);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++)
         TRY(store(sampler, samples, kept, (enum kind)kind));

@@ -112,6 +112,9 @@ static enum err turn_regions(struct sampler *sampler)
         TRY(outlines_turn(&region->add, region->lattice.angle, &sampler->temp, sampler->diag));
         TRY(outlines_turn(&region->minus, region->lattice.angle, &sampler->temp, sampler->diag));
         region->box = region->add.box;
+        if (region->add.n == 0) /* thin lines only: one point, and nothing is there */
+            for (int c = 0; c < 2; c++)
+                region->box.low[c] = region->box.high[c] = region->lattice.origin[c];
         TRY(layers_find(sampler, region));
     }
     return ERR_OK;
@@ -224,9 +227,10 @@ static enum err count_points(struct sampler *sampler, struct region *region)
         for (int64_t i = 0; i < region->count[0]; i++) region->n += sampler->mask[i];
     }
     if (region->has_layers) TRY(lay_layers(sampler, region));
+    if (region->kind == KIND_WALL) region->n += geometry_thin_count(sampler->scene, region->body);
     bool empty = false;
     for (int k = 0; k < region->list->n; k++) {
-        if (per_shape[k]) continue;
+        if (per_shape[k] || region->list->item[k].thin) continue;
         empty = true;
         TRY(geometry_refuse(sampler, region->list->item[k].line,
                             "shape %d of [%s %s] contains no particle, because it is narrower "
@@ -286,9 +290,22 @@ static enum err problems_found(const struct sampler *sampler)
     return sampler->problems ? ERR_INPUT : ERR_OK;
 }
 
+static void append_thin(const struct sampler *sampler, const struct region *region,
+                        struct samples *samples)
+{
+    const int64_t n = geometry_thin_count(sampler->scene, region->body);
+    geometry_thin_points(sampler->scene, region->body, samples->x + samples->n,
+                         samples->y + samples->n);
+    for (int64_t k = 0; k < n; k++) {
+        samples->region[samples->n] = (int32_t)(region - sampler->regions);
+        samples->thin[samples->n++] = 1;
+    }
+}
+
 static enum err sample_regions(struct sampler *sampler, struct samples *samples)
 {
     TRY(list_regions(sampler));
+    TRY(geometry_thin(sampler));
     TRY(geometry_choose_lattices(sampler));
     TRY(turn_regions(sampler));
     TRY(check_size(sampler));
@@ -303,13 +320,16 @@ static enum err sample_regions(struct sampler *sampler, struct samples *samples)
     samples->y = geometry_alloc(sampler, (size_t)total, sizeof *samples->y);
     samples->region = geometry_alloc(sampler, (size_t)total, sizeof *samples->region);
     samples->clamped = geometry_alloc(sampler, (size_t)total, 1);
-    if (!samples->x || !samples->y || !samples->region || !samples->clamped) return ERR_MEMORY;
+    samples->thin = geometry_alloc(sampler, (size_t)total, 1);
+    if (!samples->x || !samples->y || !samples->region || !samples->clamped || !samples->thin)
+        return ERR_MEMORY;
     for (int k = 0; k < sampler->n_regions; k++) {
         struct region *region = &sampler->regions[k];
         const int64_t from = samples->n;
         const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
         TRY(append_points(sampler, region, upright, samples));
         if (region->kind == KIND_SOLID) TRY(geometry_clamp(sampler, region, from, samples));
+        if (region->kind == KIND_WALL) append_thin(sampler, region, samples);
     }
     return ERR_OK;
 }

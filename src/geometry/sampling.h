@@ -62,6 +62,7 @@ struct samples {
     double *x, *y;
     int32_t *region;
     uint8_t *clamped;
+    uint8_t *thin; /* of a thin line, which overlaps nothing */
 };
 
 /* Zeroed memory that lasts until the scene is sampled; NULL: there is none. */
@@ -86,6 +87,12 @@ SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 
 /* Gives the lines of a wall their thickness, once the outlines of the fluid are known. */
 enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SPHFSI_CHECKED;
+
+/* The thin lines of all walls and their dummies (geometry/thin.c), once walls have outlines. Number
+ * and places of the dummies of a wall. */
+enum err geometry_thin(struct sampler *sampler) SPHFSI_CHECKED;
+int64_t geometry_thin_count(const struct scene *scene, int wall);
+void geometry_thin_points(const struct scene *scene, int wall, double *x, double *y);
 
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *sampler) SPHFSI_CHECKED;

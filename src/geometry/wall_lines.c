@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Walls that are drawn as lines without thickness. Such a line becomes a band on its dry side, as
- * many layers of particles thick as the kernel reaches. */
+ * many layers of particles thick as the kernel reaches. With fluid on both sides it is a thin
+ * line. */
 #include "geometry/sampling.h"
 
 #include "base/elementary.h"
@@ -20,10 +21,9 @@ static bool is_fluid(const struct sampler *sampler, const double at[2])
     return false;
 }
 
-/* Whether there is fluid half a spacing beside a line, on its left (side = 1) or right (-1), and
- * where. Places less than a spacing from a corner may lie beyond the next segment. */
-static bool is_wet(const struct sampler *sampler, const struct shape *line, double side,
-                   double at[2])
+/* Whether there is fluid half a spacing beside a line, on its left (side = 1) or right (-1). Places
+ * less than a spacing from a corner may lie beyond the next segment. */
+static bool is_wet(const struct sampler *sampler, const struct shape *line, double side)
 {
     const double dp = sampler->scene->top.dp;
     for (int k = 0; k + 1 < line->n; k++) {
@@ -36,8 +36,7 @@ static bool is_wet(const struct sampler *sampler, const struct shape *line, doub
                 parts == 1
                     ? 0.5
                     : (dp + (length - 2 * dp) * (double)(j - 1) / (double)(parts - 1)) / length;
-            at[0] = a[0] + s * dx - off * dy;
-            at[1] = a[1] + s * dy + off * dx;
+            const double at[2] = {a[0] + s * dx - off * dy, a[1] + s * dy + off * dx};
             if (is_fluid(sampler, at)) return true;
         }
     }
@@ -66,7 +65,7 @@ static enum err find_inside(struct sampler *sampler, const struct shape *line, b
 /* Fluid beside the line decides on which side the wall is. Without any, the fluid is meant to be on
  * the left of an open line, and inside a closed one if it has some there. A closed line around a
  * wall is filled. */
-static enum err thicken_line(struct sampler *sampler, const struct region *wall, struct shape *line)
+static enum err thicken_line(struct sampler *sampler, struct shape *line)
 {
     const struct scene *const scene = sampler->scene;
     const double dp = scene->top.dp, *const first = line->pt[0],
@@ -74,16 +73,10 @@ static enum err thicken_line(struct sampler *sampler, const struct region *wall,
     const double thick = dp * ceil(KERNEL_REACH * scene->h / dp - 1e-9);
     const bool left_turning = polygon_area(line->n, line->pt) > 0; /* of a closed line */
     const bool closed = line->n > 3 && first[0] == last[0] && first[1] == last[1];
-    double left[2], right[2];
-    const bool wet_left = is_wet(sampler, line, 1, left),
-               wet_right = is_wet(sampler, line, -1, right);
+    const bool wet_left = is_wet(sampler, line, 1), wet_right = is_wet(sampler, line, -1);
     bool fluid_left = !wet_right;
-    if (wet_left && wet_right)
-        return fail_at(sampler->diag, scene, line->line,
-                       "this line of [wall %s] has fluid on both sides, at (%.4g, %.4g) and (%.4g, "
-                       "%.4g) m. Draw such a wall as a `box` or `polyline thickness T`, 2 h = %.4g "
-                       "m thick or more, and subtract it from the fluid with `minus`",
-                       wall->name, left[0], left[1], right[0], right[1], KERNEL_REACH * scene->h);
+    line->thin = wet_left && wet_right;
+    if (line->thin) return ERR_OK;
     if (closed && !wet_left && !wet_right) {
         TRY(find_inside(sampler, line, &fluid_left));
         fluid_left = fluid_left == left_turning;
@@ -100,8 +93,8 @@ enum err geometry_thicken(struct sampler *sampler, const struct region *wall)
 {
     for (int k = 0; k < wall->list->n; k++) {
         struct shape *const shape = &wall->list->item[k];
-        if (shape->bare && shape->kind == SHAPE_POLYLINE && shape->size == 0)
-            TRY(thicken_line(sampler, wall, shape));
+        if (shape->bare && !shape->thin && shape->kind == SHAPE_POLYLINE && shape->size == 0)
+            TRY(thicken_line(sampler, shape));
     }
     return ERR_OK;
 }

@@ -15,6 +15,7 @@
 struct sampling {
     const struct simulation *sim;
     enum kind kind; /* of the particles visited */
+    double place[2];
     struct sample sum;
     double dx, dy;         /* to the place from the fluid within reach, m */
     double rho;            /* of this fluid, kg/m^3 */
@@ -28,6 +29,7 @@ static void add_to_sample(void *context, int64_t i, double x, double y, double r
     const struct particles *const particles = &at->sim->kind[at->kind];
     const struct fluid_constants *const k = &at->sim->fluid.k;
     const double w = kernel_w(r, k->h) * square(k->dp);
+    if (!fluid_sees(&at->sim->fluid, &at->sim->cells, at->place, at->kind, i, x, y)) return;
     if (at->kind != KIND_FLUID) {
         at->sum.occupied += w;
         at->wall_x += w * (particles->ax ? particles->ax[i] : 0);
@@ -59,7 +61,7 @@ static double rise_to_place(const struct simulation *sim, const struct sampling 
 
 struct sample fluid_sample(const struct simulation *sim, double x, double y)
 {
-    struct sampling at = {.sim = sim};
+    struct sampling at = {.sim = sim, .place = {x, y}};
     struct sample *const sum = &at.sum;
     if (!(sim->effects & FX_FLUID)) return *sum;
     for (int kind = 0; kind < KIND_COUNT; kind++) {

@@ -162,7 +162,7 @@ static double repulsion_held(double r, double r0, double h)
 struct repulsion {
     const struct simulation *sim;
     enum kind kind; /* of the dummies */
-    double sum;
+    double place[2], sum;
 };
 
 /* Adds that of a dummy at the distance r, times its volume, m^2. */
@@ -171,7 +171,7 @@ static void add_repulsion(void *context, int64_t i, double x, double y, double r
     struct repulsion *const at = context;
     const struct fluid *const fluid = &at->sim->fluid;
     const struct particles *const particles = &at->sim->kind[at->kind];
-    (void)x, (void)y;
+    if (!fluid_sees(fluid, &at->sim->cells, at->place, at->kind, i, x, y)) return;
     const double over = fluid->volume[at->kind][particles->body[i]];
     const double r0 = REPULSION_REACH * 0.5 * (1 + sqrt(over)) * fluid->k.dp;
     if (r < r0)
@@ -190,13 +190,12 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
         const int32_t cell = list->active[n];
         if (!sim->fluid.near_dummies[cell]) continue;
         for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-            struct repulsion at = {.sim = sim};
+            struct repulsion at = {.sim = sim, .place = {particles->x[i], particles->y[i]}};
             for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
                 if (!sim->cells.kind[kind].n_active) continue;
                 at.kind = (enum kind)kind;
-                cells_each_near(&sim->cells, at.kind, &sim->kind[kind],
-                                (double[]){particles->x[i], particles->y[i]}, reach, add_repulsion,
-                                &at);
+                cells_each_near(&sim->cells, at.kind, &sim->kind[kind], at.place, reach,
+                                add_repulsion, &at);
             }
             of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
                                       k->model->wall_repulsion * square(k->c0) * at.sum;

@@ -12,6 +12,13 @@ void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], time);
+    for (int k = 0; k < sim->wall_motion.n; k++)
+        for (int j = 0; j < sim->fluid.lines.n; j++) {
+            struct thin_line *const line = &sim->fluid.lines.line[j];
+            if (line->scene->wall != sim->wall_motion.body[k].section) continue;
+            line_follow(line, &sim->wall_motion.body[k].placed);
+            line_place(line, &sim->kind[KIND_WALL]);
+        }
 }
 
 void find_external(struct simulation *sim, enum kind kind, double time)

@@ -235,8 +235,8 @@ static const struct {
      "bad.cfg:8: clamp = polyline 0, 0; 1, 1: write `polyline thickness T: X, Y; X, Y; ...`; "
      "`thickness T` may be left out in a `shape` of a [wall]"},
     {TOP SOLID "clamp = polyline thickness 0: 0, 0; 1, 1\n", NULL,
-     "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must not be 0 and at most "
-     "1e9 m"},
+     "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must be at most 1e9 m, "
+     "and 0 only in a `shape` of a [wall] or [rigid]"},
     {TOP SOLID "clamp = polyline thickness 1 mm: 0, 0; 0, 0\n", NULL,
      "bad.cfg:8: clamp = polyline thickness 1 mm: 0, 0; 0, 0: points 1 and 2 are the same"},
     {TOP SOLID "clamp = polyline thickness 1 mm: 0, 0; 1, 0; 0, 0.1\n", NULL,

@@ -72,6 +72,8 @@ static const struct {
     {TOP FLUID WALL, FX_FLUID | FX_WALL, EFFECT_WALL, "line 6: [wall bed]"},
     {TOP FLUID WALL "motion = m\n[motion m]\nvelocity = 1, 0\n", FX_FLUID | FX_WALL | FX_MOTION,
      EFFECT_MOTION, "line 8: [wall bed] motion"},
+    {TOP FLUID "[wall bed]\nshape = polyline thickness 0: 0, 0.3; 0.1, 0.3\n",
+     FX_FLUID | FX_WALL | FX_THIN, EFFECT_THIN, "line 7: [wall bed] shape"},
     {TOP FLUID "[rigid r]\nshape = box 0, 0.2, 0.1, 0.3\ndensity = 500\n",
      FX_FLUID | FX_WALL | FX_MOTION | FX_RIGID, EFFECT_RIGID, "line 6: [rigid r]"},
     {TOP FLUID "[damping d]\nto = 1, 0\nrate = 5\n", FX_FLUID | FX_DAMPING_ZONE,

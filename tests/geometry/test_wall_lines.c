@@ -134,10 +134,6 @@ static void test_what_is_refused(void)
     static const struct {
         const char *text, *message;
     } refused[] = {
-        {TOP WATER "[wall t]\nshape = polyline: 0.1, 0; 0.1, 0.1\n",
-         "l.cfg:7: this line of [wall t] has fluid on both sides, at (0.095, 0.01) and (0.105, "
-         "0.01) m. Draw such a wall as a `box` or `polyline thickness T`, 2 h = 0.04 m thick or "
-         "more, and subtract it from the fluid with `minus`"},
         {TOP WATER "[wall t]\nshape = polyline: 0, 0.2; 0, 0; 0.4, 0\n"
                    "[wall end]\nshape = polyline: 0.4, 0.2; 0.4, 0\n",
          "l.cfg:9: this line meets that of line 7 at (0.4, 0) m with the wall on the other side; "

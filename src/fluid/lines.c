@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+#include "fluid/lines.h"
+
+#include "base/elementary.h"
+
+#include <string.h>
+
+static int parts_of(const struct thin_line *line) { return line->scene->n - 1; }
+
+/* The ends as the scene has them, at rest. */
+static void start_ends(struct thin_line *line)
+{
+    for (int k = 0; k < parts_of(line); k++) {
+        const double *const a = line->scene->pt[k], *const b = line->scene->pt[k + 1];
+        const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
+        for (int last = 0; last < 2; last++)
+            line->end[2 * k + last] =
+                (struct line_end){.x = {(last ? b : a)[0], (last ? b : a)[1]},
+                                  .normal = {-(b[1] - a[1]) / length, (b[0] - a[0]) / length}};
+    }
+}
+
+void line_follow(struct thin_line *line, const struct motion_state *motion)
+{
+    start_ends(line);
+    for (int k = 0; k < 2 * parts_of(line); k++) {
+        struct line_end *const end = &line->end[k];
+        const struct motion_point at = motion_of_point(motion, end->x[0], end->x[1]);
+        const double n[2] = {end->normal[0], end->normal[1]};
+        memcpy(end->x, at.x, sizeof end->x);
+        memcpy(end->v, at.v, sizeof end->v);
+        memcpy(end->a, at.a, sizeof end->a);
+        end->normal[0] = motion->turn[0] * n[0] - motion->turn[1] * n[1];
+        end->normal[1] = motion->turn[1] * n[0] + motion->turn[0] * n[1];
+        end->rate = motion->rate;
+        end->angular_acceleration = motion->angular_acceleration;
+    }
+}
+
+/* A dummy's place relative to an end of its part. */
+SPHFSI_INLINE void arm_of(const struct line_dummy *dummy, const struct line_end *end, double arm[2])
+{
+    arm[0] = dummy->off * end->normal[0] + dummy->beyond * end->normal[1];
+    arm[1] = dummy->off * end->normal[1] - dummy->beyond * end->normal[0];
+}
+
+static void place_dummy(const struct thin_line *line, int64_t j, struct particles *walls)
+{
+    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const int64_t i = line->first + j;
+    double x[2] = {0}, v[2] = {0}, a[2] = {0};
+    for (int last = 0; last < 2; last++) {
+        const struct line_end *const end = &line->end[2 * dummy->part + last];
+        const double weight = last ? dummy->along : 1 - dummy->along;
+        double arm[2];
+        arm_of(dummy, end, arm);
+        for (int c = 0; c < 2; c++) {
+            const double across = c ? arm[0] : -arm[1];
+            x[c] += weight * (end->x[c] + arm[c]);
+            v[c] += weight * (end->v[c] + end->rate * across);
+            a[c] += weight *
+                    (end->a[c] + end->angular_acceleration * across - square(end->rate) * arm[c]);
+        }
+    }
+    walls->x[i] = x[0];
+    walls->y[i] = x[1];
+    if (!walls->ax) return;
+    walls->vx[i] = v[0];
+    walls->vy[i] = v[1];
+    walls->ax[i] = a[0];
+    walls->ay[i] = a[1];
+}
+
+/* The pieces: the parts, and the extensions straight on from its first and last end. */
+static void place_pieces(struct thin_line *line)
+{
+    const int parts = parts_of(line);
+    struct box2 box = box2_empty();
+    for (int k = 0; k < parts; k++) {
+        memcpy(line->piece[k + 1].from, line->end[2 * k].x, sizeof line->piece->from);
+        memcpy(line->piece[k + 1].to, line->end[2 * k + 1].x, sizeof line->piece->to);
+    }
+    const struct line_end *const start = &line->end[0], *const last = &line->end[2 * parts - 1];
+    const double *const extend = line->scene->extend;
+    struct line_piece *const before = &line->piece[0], *const after = &line->piece[parts + 1];
+    for (int c = 0; c < 2; c++) {
+        const double along[2] = {c ? -start->normal[0] : start->normal[1],
+                                 c ? -last->normal[0] : last->normal[1]};
+        before->from[c] = start->x[c] - extend[0] * along[0];
+        before->to[c] = start->x[c];
+        after->from[c] = last->x[c];
+        after->to[c] = last->x[c] + extend[1] * along[1];
+    }
+    line->n_pieces = parts + 2;
+    line->length = 0;
+    for (int k = 0; k < line->n_pieces; k++) {
+        struct line_piece *const piece = &line->piece[k];
+        piece->start = line->length;
+        piece->length =
+            elementary_hypot(piece->to[0] - piece->from[0], piece->to[1] - piece->from[1]);
+        line->length += piece->length;
+        box2_include(&box, piece->from[0], piece->from[1]);
+        box2_include(&box, piece->to[0], piece->to[1]);
+    }
+    line->box = box;
+}
+
+void line_place(struct thin_line *line, struct particles *walls)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t j = 0; j < line->scene->n_dummies; j++) place_dummy(line, j, walls);
+    place_pieces(line);
+}
+
+void line_load(const struct thin_line *line, const double *fx, const double *fy, double (*load)[3])
+{
+    for (int64_t j = 0; j < line->scene->n_dummies; j++) {
+        const struct line_dummy *const dummy = &line->scene->dummy[j];
+        const double f[2] = {fx[line->first + j], fy[line->first + j]};
+        for (int last = 0; last < 2; last++) {
+            const int k = 2 * dummy->part + last;
+            const double weight = last ? dummy->along : 1 - dummy->along;
+            double arm[2];
+            arm_of(dummy, &line->end[k], arm);
+            load[k][0] += weight * f[0];
+            load[k][1] += weight * f[1];
+            load[k][2] += weight * (arm[0] * f[1] - arm[1] * f[0]);
+        }
+    }
+}
+
+enum err lines_create(struct lines *lines, struct arena *a, const struct scene *scene,
+                      struct particles *walls, struct diag *d)
+{
+    static const char what[] = "thin walls";
+    lines->n = scene->n_line;
+    lines->line = arena_alloc(a, (size_t)lines->n, sizeof *lines->line, what, d);
+    lines->of_wall = arena_alloc(a, (size_t)walls->n, sizeof *lines->of_wall, what, d);
+    if (!lines->line || !lines->of_wall) return ERR_MEMORY;
+    int64_t end = walls->n; /* of the dummies that have no line yet */
+    for (int k = lines->n - 1; k >= 0; k--) {
+        struct thin_line *const line = &lines->line[k];
+        line->scene = &scene->line[k];
+        const int parts = parts_of(line);
+        while (walls->body[end - 1] != line->scene->wall) end--;
+        end = line->first = end - line->scene->n_dummies;
+        for (int64_t j = 0; j < line->scene->n_dummies; j++) lines->of_wall[end + j] = k + 1;
+        line->end = arena_alloc(a, 2 * (size_t)parts, sizeof *line->end, what, d);
+        line->piece = arena_alloc(a, (size_t)parts + 2, sizeof *line->piece, what, d);
+        if (!line->end || !line->piece) return ERR_MEMORY;
+        lines->n_pieces += parts + 2;
+        start_ends(line);
+        line_place(line, walls);
+    }
+    return ERR_OK;
+}
+
+/* Twice the area of the triangle of two vectors, positive if the second is on the left. */
+static double cross(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+
+int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
+                  double x, double y)
+{
+    const double to[2] = {x, y};
+    for (int k = 0; k < lines->n; k++) {
+        const struct thin_line *const line = &lines->line[k];
+        bool odd = false;
+        for (int image = 0; image < LINE_IMAGES; image++) {
+            double shift[2];
+            if (!line_image(cells, image, shift)) continue;
+            for (int m = 0; m < line->n_pieces; m++) {
+                const double *const start = line->piece[m].from, *const end = line->piece[m].to;
+                const double one[2] = {start[0] + shift[0] - from[0],
+                                       start[1] + shift[1] - from[1]},
+                             other[2] = {end[0] + shift[0] - from[0], end[1] + shift[1] - from[1]};
+                const double a = cross(to, one), b = cross(to, other), here = cross(one, other);
+                odd ^= CROSSES(here, here + a - b, a, b);
+            }
+        }
+        if (odd) return k + 1;
+    }
+    return 0;
+}

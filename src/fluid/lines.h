@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT
+ * Thin lines (T-110): walls thinner than a particle with fluid on both sides. Particles that a line
+ * separates do not interact; behind the line each side has dummies of its own. The nodes of a line
+ * may move in any way; its dummies follow them, and hand their forces back. */
+#ifndef SPHFSI_FLUID_LINES_H
+#define SPHFSI_FLUID_LINES_H
+
+#include "base/box2.h"
+#include "case/scene.h"
+#include "particles/cells.h"
+
+/* An end of a part of a line. Parts that meet have one each: they turn together, or form a
+ * corner. */
+struct line_end {
+    double x[2], normal[2]; /* unit vector to the left */
+    double v[2], rate;      /* rate: of the normal's angle */
+    double a[2], angular_acceleration;
+};
+
+struct thin_line {
+    const struct scene_line *scene;
+    int64_t first;        /* number of its first dummy among the particles of walls */
+    struct line_end *end; /* [2 * parts]: those of part k are 2k and 2k + 1 */
+    int n_pieces;
+    struct line_piece {
+        double from[2], to[2], start, length; /* start: along the line, m */
+    } * piece; /* its parts between its extensions, which may have no length */
+    double length;
+    struct box2 box;
+};
+
+struct lines {
+    int n, n_pieces; /* of all lines */
+    struct thin_line *line;
+    int32_t *of_wall; /* [particles of walls]: 1 + number of the line that a dummy belongs to, or
+                         0 */
+};
+
+enum err lines_create(struct lines *lines, struct arena *a, const struct scene *scene,
+                      struct particles *walls, struct diag *d) SPHFSI_CHECKED;
+
+/* Moves a line's ends as a wall with that motion. */
+void line_follow(struct thin_line *line, const struct motion_state *motion);
+
+/* Sets a line and its dummies from its ends. A dummy is tied to both ends of its part, as if it
+ * were rigid with each, by linear shape functions (T-111). */
+void line_place(struct thin_line *line, struct particles *walls);
+
+/* Adds the forces on the dummies to the ends by the same functions: force per depth, N/m, and
+ * moment about the end, N. load: [2 * parts]. */
+void line_load(const struct thin_line *line, const double *fx, const double *fy, double (*load)[3]);
+
+/* Image m of all lines, which lie `shift` from the lines themselves, m; false: there is none. */
+enum { LINE_IMAGES = 9 };
+SPHFSI_INLINE bool line_image(const struct cells *cells, int m, double shift[2])
+{
+    const int times[2] = {m % 3 - 1, m / 3 - 1};
+    for (int c = 0; c < 2; c++) {
+        if (times[c] && !cells->periodic[c]) return false;
+        shift[c] = times[c] * cells->side[c] * (c ? cells->ny : cells->nx);
+    }
+    return true;
+}
+
+/* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
+ * 0: none. (x, y) is the second place less the first, `from`. */
+int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
+                  double x, double y);
+
+/* T-110: whether a connection crosses a piece: its ends lie on both sides of the piece, and the
+ * piece's on both sides of it. For doubles and for vectors; the negative sides are computed by the
+ * caller, so that pieces with a common point have the same one there. */
+#define CROSSES(one, other, piece_one, piece_other) \
+    ((((one) < 0) ^ ((other) < 0)) & (((piece_one) < 0) ^ ((piece_other) < 0)))
+
+#endif

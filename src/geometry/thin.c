@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT
+ * Thin lines and their dummies (T-110). Behind the line, as seen from either side, dummies lie in
+ * rows as deep as the kernel. They continue beyond the ends, where only fluid sees them whose view
+ * the line blocks. */
+#include "geometry/sampling.h"
+
+#include "base/elementary.h"
+#include "particles/kernel.h"
+
+#include <math.h>
+
+/* A part of a line: its length and its direction. */
+struct part {
+    const double *from;
+    double length, t[2];
+};
+
+static struct part line_part(const struct scene_line *line, int k)
+{
+    const double *const a = line->pt[k], *const b = line->pt[k + 1];
+    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
+    return (struct part){a, length, {(b[0] - a[0]) / length, (b[1] - a[1]) / length}};
+}
+
+/* Distance of a place from a part; `left` of the part's line by so much, m. */
+static double distance_from(const struct part *part, const double at[2], double *left)
+{
+    const double x = at[0] - part->from[0], y = at[1] - part->from[1],
+                 along = x * part->t[0] + y * part->t[1];
+    *left = part->t[0] * y - part->t[1] * x;
+    return elementary_hypot(*left, along - min2(max2(along, 0), part->length));
+}
+
+static void place_of(const struct scene_line *line, const struct line_dummy *dummy, double at[2])
+{
+    const struct part part = line_part(line, dummy->part);
+    const double along = dummy->along * part.length + dummy->beyond;
+    at[0] = part.from[0] + along * part.t[0] - dummy->off * part.t[1];
+    at[1] = part.from[1] + along * part.t[1] + dummy->off * part.t[0];
+}
+
+/* Whether a place beside a part is nearer to another one. A place as far from both belongs to the
+ * first of them that has it on the same side. */
+static bool belongs_elsewhere(const struct scene_line *line, const struct line_dummy *dummy,
+                              double dp)
+{
+    const struct part own = line_part(line, dummy->part);
+    double at[2], left;
+    place_of(line, dummy, at);
+    const double distance = distance_from(&own, at, &left), tie = 1e-6 * dp;
+    for (int k = 0; k + 1 < line->n; k++) {
+        const struct part other = line_part(line, k);
+        const double its = distance_from(&other, at, &left);
+        if (k != dummy->part &&
+            (its < distance - tie || (its < distance + tie && k < dummy->part &&
+                                      left * dummy->off > 0 && fabs(left) > tie)))
+            return true;
+    }
+    return false;
+}
+
+/* The dummies of a part on one side (1: left, -1: right), in rows along the line, which share the
+ * stations (j + 1/2) step of the whole line; `start`: where the part begins. */
+static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k, double start,
+                         double step, double side)
+{
+    const struct scene *const scene = sampler->scene;
+    const double dp = scene->top.dp, length = line_part(line, k).length;
+    const int rows = (int)ceil(KERNEL_REACH * scene->h / dp - 1e-9);
+    const int64_t first = (int64_t)ceil((start - rows * dp) / step - 0.5),
+                  end = (int64_t)ceil((start + length + rows * dp) / step - 0.5);
+    for (int row = 0; row < rows; row++)
+        for (int64_t j = first; j < end; j++) {
+            const double along = ((double)j + 0.5) * step - start,
+                         on_part = min2(max2(along, 0), length);
+            const struct line_dummy dummy = {k, on_part / length, side * (row + 0.5) * dp,
+                                             along - on_part};
+            if (belongs_elsewhere(line, &dummy, dp)) continue;
+            line->dummy = arena_grow(&sampler->scene->arena, line->dummy, (size_t)line->n_dummies,
+                                     sizeof dummy, "thin walls", sampler->diag);
+            if (!line->dummy) return ERR_MEMORY;
+            line->dummy[line->n_dummies++] = dummy;
+        }
+    return ERR_OK;
+}
+
+/* A line that ends at a wall continues into it, so that the fluid of one side does not see the
+ * wall's particles below the other side. */
+static double extension(const struct sampler *sampler, const struct scene_line *line, bool last)
+{
+    const struct part part = line_part(line, last ? line->n - 2 : 0);
+    const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp,
+                 along = last ? part.length + 0.5 * dp : -0.5 * dp,
+                 x = part.from[0] + along * part.t[0], y = part.from[1] + along * part.t[1];
+    for (int k = 0; k < sampler->n_regions; k++) {
+        const struct region *const region = &sampler->regions[k];
+        if (region->kind == KIND_WALL && outlines_find(&region->add, x, y) >= 0 &&
+            outlines_find(&region->minus, x, y) < 0)
+            return reach;
+    }
+    return 0;
+}
+
+/* Whether an end of a line lies on another part of it or of another line, also through a periodic
+ * side: no fluid flows round it. */
+static bool is_joined(const struct scene *scene, const struct scene_line *line, bool last)
+{
+    const double *const end = line->pt[last ? line->n - 1 : 0];
+    for (int j = 0; j < scene->n_line; j++)
+        for (int k = 0; k + 1 < scene->line[j].n; k++) {
+            const struct part part = line_part(&scene->line[j], k);
+            for (int image = 0; image < 9; image++) {
+                const int times[2] = {image % 3 - 1, image / 3 - 1};
+                double at[2], left;
+                for (int c = 0; c < 2; c++)
+                    at[c] = end[c] + times[c] * scene_periodic(scene, c) *
+                                         (scene->domain.upper[c] - scene->domain.lower[c]);
+                const bool own = &scene->line[j] == line && k == (last ? line->n - 2 : 0) &&
+                                 at[0] == end[0] && at[1] == end[1];
+                if (!own && distance_from(&part, at, &left) < 0.5 * scene->top.dp) return true;
+            }
+        }
+    return false;
+}
+
+static enum err add_line(struct sampler *sampler, int wall, const struct shape *shape)
+{
+    struct scene *const scene = sampler->scene;
+    scene->line = arena_grow(&scene->arena, scene->line, (size_t)scene->n_line, sizeof *scene->line,
+                             "thin walls", sampler->diag);
+    if (!scene->line) return ERR_MEMORY;
+    struct scene_line *const line = &scene->line[scene->n_line++];
+    *line = (struct scene_line){.wall = wall, .n = shape->n, .pt = shape->pt};
+    const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
+    const bool closed = a[0] == b[0] && a[1] == b[1];
+    double length = 0, start = 0;
+    for (int k = 0; k + 1 < line->n; k++) length += line_part(line, k).length;
+    const double step = length / max2(1, round(length / scene->top.dp));
+    for (int last = 0; last < 2 && !closed; last++) {
+        line->extend[last] = extension(sampler, line, last);
+        line->tip[last] = !closed && line->extend[last] == 0;
+    }
+    for (int k = 0; k + 1 < line->n; start += line_part(line, k++).length)
+        for (int side = -1; side < 2; side += 2) TRY(lay_part(sampler, line, k, start, step, side));
+    return ERR_OK;
+}
+
+enum err geometry_thin(struct sampler *sampler)
+{
+    struct scene *const scene = sampler->scene;
+    for (int k = 0; k < scene->n_wall; k++)
+        for (int j = 0; j < scene->wall[k].shape.n; j++)
+            if (scene->wall[k].shape.item[j].thin)
+                TRY(add_line(sampler, k, &scene->wall[k].shape.item[j]));
+    for (int k = 0; k < scene->n_line; k++)
+        for (int last = 0; last < 2; last++)
+            if (is_joined(scene, &scene->line[k], last)) scene->line[k].tip[last] = false;
+    return ERR_OK;
+}
+
+int64_t geometry_thin_count(const struct scene *scene, int wall)
+{
+    int64_t n = 0;
+    for (int k = 0; k < scene->n_line; k++)
+        if (scene->line[k].wall == wall) n += scene->line[k].n_dummies;
+    return n;
+}
+
+void geometry_thin_points(const struct scene *scene, int wall, double *x, double *y)
+{
+    for (int k = 0; k < scene->n_line; k++)
+        for (int64_t j = 0; j < scene->line[k].n_dummies && scene->line[k].wall == wall; j++) {
+            double at[2];
+            place_of(&scene->line[k], &scene->line[k].dummy[j], at);
+            *x++ = at[0];
+            *y++ = at[1];
+        }
+}

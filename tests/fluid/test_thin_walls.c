@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT
+ * Thin lines (T-110, T-111): walls of no thickness with fluid on both sides. */
+#include "rig.h"
+#include "unity.h"
+
+#include "fluid/lines.h"
+
+#include <math.h>
+
+#define TOP "dp = 20 mm\nend_time = 9\ngravity = 0, -9.81\nscheme = standard\n"
+#define LIKE "max_speed = 2\nmax_pressure = 4 kPa\n"
+#define WATER(box) "[fluid water]\nshape = box " box "\nsurface = 0.4\n" LIKE
+#define TANK "[wall tank]\nshape = polyline: -0.4, 0.6; -0.4, 0; 0.4, 0; 0.4, 0.6\n"
+#define LINE "[wall line]\nshape = polyline: "
+#define FORCE "[probe f]\nquantity = force\nbody = line\n"
+
+static struct rig rig;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+/* The present force on the wall number `body`. */
+static void force_on(int body, double f[2])
+{
+    const struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    simulation_refresh(&rig.sim);
+    f[0] = f[1] = 0;
+    for (int64_t i = 0; i < walls->n; i++) {
+        f[0] += walls->body[i] == body ? walls->fx[i] : 0;
+        f[1] += walls->body[i] == body ? walls->fy[i] : 0;
+    }
+}
+
+static double mean_square_speed(void)
+{
+    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    double sum = 0;
+    for (int64_t i = 0; i < fluid->n; i++) sum += square(fluid->vx[i]) + square(fluid->vy[i]);
+    return sum / (double)fluid->n;
+}
+
+/* Two levels: the difference of rho g H^2/2. */
+static void test_force_of_two_levels(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        double f[2], mean = 0;
+        rig_open(&rig,
+                 TOP WATER("-0.4, 0, 0, 0.4") "[fluid low]\nshape = box 0, 0, 0.4, 0.2\n" LIKE
+                                              "surface = 0.2\n" TANK LINE "0, 0; 0, 0.6\n" FORCE,
+                 integrators[k], NULL);
+        force_on(1, f);
+        const double expected = 0.5 * 1000 * 9.81 * (0.16 - 0.04);
+        assert_near(0.01 * expected, expected, f[0], "force at the start");
+        for (int n = 1; n <= 20; n++) {
+            rig_run(&rig, 0.2 + 0.01 * n);
+            force_on(1, f);
+            mean += f[0] / 20;
+        }
+        assert_near(0.015 * expected, expected, mean, "mean force");
+        assert_at_most(square(0.01), mean_square_speed(), "speed^2");
+        const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < fluid->n; i++)
+            TEST_ASSERT_TRUE((fluid->x[i] > 0) == (fluid->body[i] == 1));
+    }
+}
+
+/* Water at rest stays so around a tip, a line that stands free and a cup, whose corners are of both
+ * kinds; and nothing pushes these. Without T-110b the speed is 0.04 m/s. */
+static void test_water_at_rest(void)
+{
+    static const char *const lines[] = {"0, 0; 0, 0.2\n", "-0.1, 0.16; 0.1, 0.16\n",
+                                        "-0.1, 0.5; -0.1, 0.16; 0.1, 0.16; 0.1, 0.3\n"};
+    for (size_t k = 0; k < COUNT_OF(lines); k++) {
+        char text[1000];
+        double f[2];
+        snprintf(text, sizeof text, "%s%s%s", TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE, lines[k],
+                 FORCE);
+        rig_open(&rig, text, NULL);
+        rig_run(&rig, 0.3);
+        assert_at_most(square(0.01), mean_square_speed(), lines[k]);
+        force_on(1, f);
+        assert_at_most(8, fabs(f[0]), lines[k]);
+    }
+}
+
+/* A line that stands on another one: each side has its own pressure. */
+static void test_two_lines_that_meet(void)
+{
+    double f[2];
+    rig_open(&rig,
+             TOP WATER("-0.4, 0.1, 0, 0.4") "[fluid right]\nshape = box 0, 0.1, 0.4, 0.24\n" LIKE
+                                            "surface = 0.24\n[fluid below]\nshape = box -0.4, 0, "
+                                            "0.4, 0.1\npressure = 9810*(0.3 - y)\n" LIKE TANK LINE
+                                            "-0.4, 0.1; 0.4, 0.1\n[wall post]\nshape = polyline: "
+                                            "0, 0.1; 0, 0.5\n" FORCE,
+             NULL);
+    rig_run(&rig, 0.2);
+    force_on(2, f);
+    const double post = 0.5 * 9810 * (square(0.3) - square(0.14));
+    assert_near(0.02 * post, post, f[0], "post");
+    force_on(1, f);
+    const double up = 9810 * 0.2 * 0.8, down = 9810 * (0.3 + 0.14) * 0.4;
+    assert_near(0.02 * down, up - down, f[1], "shelf");
+    assert_at_most(square(0.02), mean_square_speed(), "speed^2");
+}
+
+/* What crosses the line x = 0, which moves with `motion`, below `top` within a step. */
+static int crossings(double top, bool first)
+{
+    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    const double place = rig.sim.fluid.lines.line[0].end[0].x[0];
+    static int8_t side[20000];
+    int n = 0;
+    for (int64_t i = 0; i < fluid->n; i++) {
+        const int8_t now = fluid->x[i] > place ? 1 : -1, before = side[fluid->id[i]];
+        n += !first && now != before && fluid->y[i] < top;
+        side[fluid->id[i]] = now;
+    }
+    return n;
+}
+
+/* A piston between two volumes: what it takes from one level it adds to the other. */
+static void test_a_piston(void)
+{
+    rig_open(&rig,
+             TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE "0, 0; 0, 0.7\nmotion = m\n[motion m]\n"
+                                                      "kind = sine\namplitude = 0.04, 0\n"
+                                                      "period = 2\nphase = -pi/2\n" FORCE,
+             NULL);
+    while (rig.sim.state.time < 0.5) {
+        rig_steps(&rig, 1, 9);
+        TEST_ASSERT_EQUAL_INT(0, crossings(1, rig.sim.state.steps == 1));
+    }
+    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    double mean[2] = {0}, n[2] = {0};
+    for (int64_t i = 0; i < fluid->n; i++) {
+        const int right = fluid->x[i] > rig.sim.fluid.lines.line[0].end[0].x[0];
+        mean[right] += fluid->y[i];
+        n[right]++;
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(n[0], n[1]);
+    TEST_ASSERT_TRUE(mean[1] / n[1] - mean[0] / n[0] > 0.02);
+}
+
+/* A dam break against a baffle: water passes over its tip only. */
+static void test_a_dam_break(void)
+{
+    rig_open(&rig,
+             TOP WATER("-0.4, 0, -0.16, 0.4") TANK "[wall line]\nshape = polyline thickness 0: 0, "
+                                                   "0; 0, 0.2\n" FORCE,
+             NULL);
+    double largest = 0, f[2];
+    while (rig.sim.state.time < 0.6) {
+        rig_steps(&rig, 1, 9);
+        TEST_ASSERT_EQUAL_INT(0, crossings(0.2 - rig.sim.fluid.k.h, rig.sim.state.steps == 1));
+        if (rig.sim.state.steps % 10) continue;
+        force_on(1, f);
+        largest = max2(largest, f[0]);
+    }
+    TEST_ASSERT_TRUE(largest > 300);
+}
+
+/* Particles out of order around a tip, a corner and a junction: the forces of fluid and walls have
+ * no sum. */
+static void test_action_and_reaction(void)
+{
+    static const char *const precision[] = {"precision=double", "precision=mixed"};
+    for (int k = 0; k < 2; k++) {
+        uint64_t seed = 5;
+        double sum[2] = {0}, size = 0;
+        rig_open(&rig,
+                 "dp = 20 mm\nend_time = 9\nscheme = standard\n[domain]\nlower = -1, -1\nupper = "
+                 "1, 1\n" WATER("-0.2, -0.2, 0.2, 0.2") LINE
+                 "-0.1, 0.03; 0.02, 0; 0.06, 0.1\n"
+                 "shape = polyline: 0.02, 0; 0.01, -0.1\n" FORCE,
+                 precision[k], NULL);
+        struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < fluid->n; i++) {
+            fluid->x[i] += 0.005 * noise(&seed);
+            fluid->y[i] += 0.005 * noise(&seed);
+            fluid->vx[i] = noise(&seed);
+            fluid->vy[i] = noise(&seed);
+            fluid->dens[i] = 0.01 + 0.01 * noise(&seed);
+        }
+        rig_sort(&rig);
+        rig_evaluate(&rig);
+        force_on(0, sum);
+        for (int64_t i = 0; i < fluid->n; i++) {
+            const double m = particle_mass(&rig.sim.fluid.k, fluid, i);
+            sum[0] += m * fluid->ax[i];
+            sum[1] += m * fluid->ay[i];
+            size += m * hypot(fluid->ax[i], fluid->ay[i]);
+        }
+        for (int c = 0; c < 2; c++) assert_near((k ? 1e-6 : 1e-13) * size, 0, sum[c], precision[k]);
+    }
+}
+
+/* T-111: dummies follow a wall as its other particles do, and hand over their force and moment. */
+static void test_places_and_loads(void)
+{
+    rig_open(&rig,
+             TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE
+             "-0.05, 0.15; 0.05, 0.2; 0.05, 0.3\nmotion = m\n[motion m]\nkind = rotation\n"
+             "centre = 0.1, 0.1\nangle = 0.5, 2\n",
+             NULL);
+    struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
+    const struct motion_state motion = motion_at(&rig.scene, 0, 0.3);
+    rig_run(&rig, 0.1);
+    line_follow(&rig.sim.fluid.lines.line[0], &motion);
+    line_place(&rig.sim.fluid.lines.line[0], walls);
+    double sum[3] = {0}, load[4][3] = {{0}}, handed[3] = {0};
+    for (int64_t j = line->first; j < walls->n; j++) {
+        const struct motion_point at = motion_of_point(&motion, walls->X[j], walls->Y[j]);
+        assert_near(1e-12, at.x[0], walls->x[j], "x");
+        assert_near(1e-12, at.x[1], walls->y[j], "y");
+        assert_near(1e-12, at.v[0], walls->vx[j], "vx");
+        assert_near(1e-12, at.v[1], walls->vy[j], "vy");
+        assert_near(1e-11, at.a[0], walls->ax[j], "ax");
+        assert_near(1e-11, at.a[1], walls->ay[j], "ay");
+        sum[0] += walls->fx[j];
+        sum[1] += walls->fy[j];
+        sum[2] += walls->x[j] * walls->fy[j] - walls->y[j] * walls->fx[j];
+    }
+    TEST_ASSERT_EQUAL_INT64(walls->n - line->first, line->scene->n_dummies);
+    line_load(line, walls->fx, walls->fy, load);
+    for (int k = 0; k < 4; k++) {
+        handed[0] += load[k][0];
+        handed[1] += load[k][1];
+        handed[2] += load[k][2] + line->end[k].x[0] * load[k][1] - line->end[k].x[1] * load[k][0];
+    }
+    for (int c = 0; c < 3; c++) assert_near(1e-9, sum[c], handed[c], "load");
+    TEST_ASSERT_TRUE(fabs(sum[0]) > 1);
+}
+
+static void test_what_is_refused(void)
+{
+    rig_refuses(TOP "[fluid w]\nsound_speed = 20\nshape = polyline thickness 0: 0, 0; 1, 0\n",
+                "the thickness must be at most 1e9 m, and 0 only in a `shape` of a [wall] or "
+                "[rigid]");
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_force_of_two_levels);
+    RUN_TEST(test_water_at_rest);
+    RUN_TEST(test_two_lines_that_meet);
+    RUN_TEST(test_a_piston);
+    RUN_TEST(test_a_dam_break);
+    RUN_TEST(test_action_and_reaction);
+    RUN_TEST(test_places_and_loads);
+    RUN_TEST(test_what_is_refused);
+    return UNITY_END();
+}
