@@ -26,6 +26,7 @@
 #define vspread vspread_double
 #define vsum_four vsum_four_double
 #define vtop vtop_double
+#define four_widen four_widen_double
 #define vput vput_double
 #define vwiden vwiden_double
 

@@ -26,6 +26,7 @@
 #define vspread vspread_float
 #define vsum_four vsum_four_float
 #define vtop vtop_float
+#define four_widen four_widen_float
 #define vput vput_float
 #define vwiden vwiden_float
 

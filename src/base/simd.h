@@ -229,6 +229,28 @@ SPHFSI_INLINE four_double four_sqrt(four_double a)
 #endif
 }
 
+/* a > b ? a : b in each lane. */
+SPHFSI_INLINE four_double four_max(four_double a, four_double b)
+{
+#ifdef SIMD_AVX2
+    return (four_double)_mm256_max_pd((__m256d)a, (__m256d)b);
+#else
+    const four_long more = a > b;
+    return (four_double)(((four_long)a & more) | ((four_long)b & ~more));
+#endif
+}
+
+/* Four numbers of a sweep's precision as doubles. gcc 12 converts four floats by way of memory. */
+SPHFSI_INLINE four_double four_widen_float(four_float a)
+{
+#ifdef SIMD_AVX2
+    return (four_double)_mm256_cvtps_pd((__m128)a);
+#else
+    return __builtin_convertvector(a, four_double);
+#endif
+}
+SPHFSI_INLINE four_double four_widen_double(four_double a) { return a; }
+
 /* Sum of the lanes by halving: lane k + lane k + n/2, until one remains. vtop: the largest lane. */
 SPHFSI_INLINE double vsum_double(vdouble a)
 {

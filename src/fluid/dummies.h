@@ -2,12 +2,15 @@
  * Walls and structures in the fluid's sweeps: pressures, mirrored velocities and forces from the
  * fluid around them. Included by fluid/sweep.h, once for each precision. */
 
-/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with
- * accelerations (ax, ay) from the fluid within reach; 0 if there is none. */
-SPHFSI_INLINE void extrapolated_pressure(const struct fluid *fluid,
-                                         const struct neighbours *neighbours,
-                                         const struct receiver *s, const double *ax,
-                                         const double *ay, double pressure[GROUPS])
+/* Sums over the fluid within reach of wall or solid particles: of the kernel, and times it of the
+ * pressure and of rho/rho0 times the vector from the fluid. */
+struct fluid_around {
+    real w[CLUSTER], p[CLUSTER], x[CLUSTER], y[CLUSTER];
+};
+
+/* For the receivers from number r on. */
+SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct receiver *s, int r,
+                              struct fluid_around *sum)
 {
     vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     for (int k = 0; k < neighbours->n; k++)
@@ -22,20 +25,26 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *fluid,
             sum_x[part] = vfma(mass, d.x, sum_x[part]);
             sum_y[part] = vfma(mass, d.y, sum_y[part]);
         }
-    real weight[GROUPS], p[GROUPS], x[GROUPS], y[GROUPS];
-    total(sum_w, weight);
-    total(sum_p, p);
-    total(sum_x, x);
-    total(sum_y, y);
-    for (int g = 0; g < GROUPS; g++) {
-        const double lift = (fluid->k.gravity[0] - ax[g]) * (double)x[g] +
-                            (fluid->k.gravity[1] - ay[g]) * (double)y[g];
-        const double mean = ((double)p[g] + fluid->k.rho0 * fluid->k.h * lift) / (double)weight[g];
-        /* A particle alone on a wall interacts with its own pressure only. With suction as well as
-         * pressure its bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third
-         * of c0. */
-        pressure[g] = has_fluid_near(weight[g]) ? max2(fluid->k.lowest_wall_pressure, mean) : 0;
-    }
+    total(sum_w, &sum->w[r]);
+    total(sum_p, &sum->p[r]);
+    total(sum_x, &sum->x[r]);
+    total(sum_y, &sum->y[r]);
+}
+
+/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with
+ * accelerations (ax, ay) from the fluid within reach; 0 if there is none. A particle alone on a
+ * wall interacts with its own pressure only. With suction as well as pressure its bouncing grew on
+ * the gate's bed (dp = 1 mm) to 20 % of density and a third of c0. */
+SPHFSI_INLINE four_double extrapolated_pressure(const struct fluid_constants *k,
+                                                const struct fluid_around *sum, four_double ax,
+                                                four_double ay)
+{
+    const four_double w = four_widen(FOUR_REAL(sum->w));
+    const four_double lift = (k->gravity[0] - ax) * four_widen(FOUR_REAL(sum->x)) +
+                             (k->gravity[1] - ay) * four_widen(FOUR_REAL(sum->y));
+    const four_double mean = (four_widen(FOUR_REAL(sum->p)) + k->rho0 * k->h * lift) / w;
+    const four_double lowest = k->lowest_wall_pressure + 0 * w;
+    return (four_double)((four_long)four_max(lowest, mean) & (w > LEAST_WEIGHT));
 }
 
 /* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less
@@ -60,7 +69,7 @@ static void mirrored_velocity(const struct neighbours *neighbours, const struct 
     total(sum_u, fluid_u);
     total(sum_v, fluid_v);
     for (int g = 0; g < GROUPS; g++) {
-        if (!has_fluid_near(weight[g])) continue;
+        if (!((double)weight[g] > LEAST_WEIGHT)) continue;
         u[g] = 2 * u[g] - (double)fluid_u[g] / (double)weight[g];
         v[g] = 2 * v[g] - (double)fluid_v[g] / (double)weight[g];
     }
@@ -175,6 +184,15 @@ static void no_slip(const struct fluid *fluid, const struct particles *particles
     pack_four(d, sticks, PACKED_STICKS);
 }
 
+/* What the effects of a surface need. */
+SPHFSI_INLINE void dummies_surface(const struct fluid *fluid, const struct particles *particles,
+                                   const struct dummies *d, const struct neighbours *neighbours,
+                                   const struct cell_sides *sides)
+{
+    pack_surface_fields(fluid, particles, d);
+    if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, d, neighbours, sides);
+}
+
 /* A cluster of a cell. */
 SPHFSI_INLINE struct dummies dummies_at(const struct fluid *fluid, const struct cells *cells,
                                         enum kind kind, int32_t cell, int32_t m)
@@ -191,14 +209,15 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
                                     const struct dummies *d, const struct neighbours *neighbours,
                                     const struct cell_sides *sides, double pressure[CLUSTER])
 {
+    struct fluid_around sum;
     double ax[CLUSTER], ay[CLUSTER];
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
-    for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
-    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+    for (int r = 0; r < CLUSTER; r += GROUPS) {
         const struct receiver s = dummy_at(sides, d->packed + r);
-        extrapolated_pressure(fluid, neighbours, &s, &ax[r], &ay[r], &pressure[r]);
+        sum_around(neighbours, &s, r, &sum);
     }
+    *(four_double_at *)pressure = extrapolated_pressure(&fluid->k, &sum, FOUR(ax, 0), FOUR(ay, 0));
 }
 
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
@@ -230,16 +249,18 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
 
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
-/* Pressures and state of the dummies of a cell. */
-SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct particles *particles,
-                                         enum kind kind, const struct cells *cells, int32_t cell)
+/* Pressures and state of the dummies of a cell. No fluid reads a cluster that none is near to; at
+ * rest none of it changes anyway. */
+SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *particles,
+                                   enum kind kind, const struct cells *cells, int32_t cell)
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
     const bool rests = kind == KIND_WALL && !(fluid->effects & FX_MOTION);
-    double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
-    bool wet[CELL_CAPACITY / CLUSTER];
+    static const double none[CLUSTER] = {0};
+    double pressure[CELL_CAPACITY], dens[CELL_CAPACITY]; /* of the clusters near fluid */
+    int32_t wet[CELL_CAPACITY / CLUSTER], n = 0;
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
@@ -247,35 +268,25 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *fluid, struct parti
             place_dummies(fluid, particles, cells, cell, &d);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[m * CLUSTER]);
-        wet[m] = neighbours.n > 0;
+        if (fluid->effects & SURFACE_EFFECTS)
+            dummies_surface(fluid, particles, &d, &neighbours, &sides);
+        if (neighbours.n > 0) {
+            dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);
+            wet[n++] = m;
+            continue;
+        }
+        scatter(&d, none, particles->p);
+        scatter(&d, none, particles->dens);
+        if (!rests) dummies_state(fluid, particles, &d, none, none);
     }
-    for (int32_t m = clusters * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
-    for (int32_t m = 0; m < clusters * CLUSTER; m += EOS_BLOCK)
+    for (int32_t m = n * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
+    for (int32_t m = 0; m < n * CLUSTER; m += EOS_BLOCK)
         eos_dens_of_block(&pressure[m], fluid->k.rho0, fluid->k.c0, &dens[m]);
-    for (int32_t m = 0; m < clusters; m++) {
-        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
+    for (int32_t m = 0; m < n; m++) {
+        const struct dummies d = dummies_at(fluid, cells, kind, cell, wet[m]);
         scatter(&d, &pressure[m * CLUSTER], particles->p);
         scatter(&d, &dens[m * CLUSTER], particles->dens);
-        /* No fluid reads a cluster that none is near to; at rest none of it changes anyway. */
-        if (wet[m] || !rests)
-            dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
-    }
-}
-
-/* After it: what the effects of a surface need. */
-static void dummies_surface_of_cell(const struct fluid *fluid, const struct particles *particles,
-                                    enum kind kind, const struct cells *cells, int32_t cell)
-{
-    struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
-    for (int32_t m = 0; m < clusters_in(&cells->kind[kind], cell); m++) {
-        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
-        pack_surface_fields(fluid, particles, &d);
-        if (!(fluid->effects & FX_NO_SLIP)) continue;
-        const struct neighbours neighbours =
-            gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        no_slip(fluid, particles, &d, &neighbours, &sides);
+        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
     }
 }
 
@@ -284,9 +295,6 @@ static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIN
 {
     struct particles *const particles = &kinds[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++) {
-        dummies_state_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
-        if (fluid->effects & SURFACE_EFFECTS)
-            dummies_surface_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
-    }
+    for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++)
+        dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
 }

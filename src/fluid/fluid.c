@@ -111,18 +111,17 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
     if (effects & FX_THIN) TRY(lines_create(&fluid->lines, a, scene, &kinds[KIND_WALL], d));
     for (int k = 0; k < KIND_COUNT; k++) fluid->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(fluid, a, cells_clusters(cells, kinds[KIND_FLUID].capacity), d));
-    fluid->near_dummies =
-        arena_alloc(a, (size_t)cells->nx * (size_t)cells->ny, sizeof *fluid->near_dummies,
-                    "cells near walls and structures", d);
-    if (!fluid->near_dummies) return ERR_MEMORY;
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(packed_create(&fluid->packed[k], a, cells_clusters(cells, kinds[k].capacity),
                           fluid->sweeps->packed_item_size, d));
         if (k == KIND_FLUID) continue;
+        fluid->near_dummies[k] =
+            arena_alloc(a, (size_t)cells->nx * (size_t)cells->ny, sizeof *fluid->near_dummies[k],
+                        "cells near walls and structures", d);
         fluid->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity,
                                            sizeof *fluid->near_fluid[k], "cells near fluid", d);
-        if (!fluid->near_fluid[k]) return ERR_MEMORY;
+        if (!fluid->near_dummies[k] || !fluid->near_fluid[k]) return ERR_MEMORY;
         TRY(describe_bodies(fluid, a, scene, (enum kind)k, d));
     }
     return ERR_OK;
@@ -136,19 +135,20 @@ double fluid_shift(const struct fluid *fluid, struct particles *particles, doubl
     const double full = 2, none = 1.5, given = fluid->k.shifting_speed,
                  of_speed = given > 0 ? 0 : 1, fills = fluid->k.fills_domain ? 2 : 0,
                  size = -fluid->k.model->shifting * fluid->k.h * dt;
+    /* Pointers of their own: gcc would gather what it loads through the structure. */
+    const double *const cx = particles->grad_c_x, *const cy = particles->grad_c_y,
+                        *const div_r = particles->div_r;
+    const double *const vx = particles->vx, *const vy = particles->vy;
+    double *const x = particles->x, *const y = particles->y, *const dens = particles->dens;
     double longest2 = 0;
 #pragma omp parallel for simd schedule(static) num_threads(fluid->threads) reduction(max : longest2)
     for (int64_t i = 0; i < particles->n; i++) {
-        const bool held = particles->open && particles->open[i]; /* T-50: given motion */
-        const double fade = min2(1, max2(0, (particles->div_r[i] - none) / (full - none)));
-        const double speed =
-            given + of_speed * sqrt(square(particles->vx[i]) + square(particles->vy[i]));
-        const double step = (held ? 0 : size) * speed * fade, dens = particles->dens[i];
-        const double dx = step * particles->grad_c_x[i], dy = step * particles->grad_c_y[i];
-        particles->x[i] += dx;
-        particles->y[i] += dy;
-        particles->dens[i] = dens + fills * (1 + dens) * /* L-9 */
-                                        (dx * particles->grad_c_x[i] + dy * particles->grad_c_y[i]);
+        const double fade = min2(1, max2(0, (div_r[i] - none) / (full - none)));
+        const double speed = given + of_speed * sqrt(square(vx[i]) + square(vy[i]));
+        const double step = size * speed * fade, dx = step * cx[i], dy = step * cy[i];
+        x[i] += dx;
+        y[i] += dy;
+        dens[i] += fills * (1 + dens[i]) * (dx * cx[i] + dy * cy[i]); /* L-9 */
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
     return sqrt(longest2);
@@ -165,7 +165,7 @@ void fluid_follow_density(const struct fluid *fluid, struct particles *particles
 
 /* Marks the nine cells around a cell of walls or structures; returns whether any of them contains
  * fluid. */
-static bool mark_around(struct fluid *fluid, const struct cells *cells, int32_t cell)
+static bool mark_around(const struct cells *cells, int32_t cell, bool *near_dummies)
 {
     const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
     bool wet = false;
@@ -173,7 +173,7 @@ static bool mark_around(struct fluid *fluid, const struct cells *cells, int32_t 
         for (int x = cx - 1; x <= cx + 1; x++) {
             const int32_t other = cell_at(cells, x, y);
             if (other < 0) continue;
-            fluid->near_dummies[other] = true;
+            near_dummies[other] = true;
             wet |= cells->kind[KIND_FLUID].count[other] > 0;
         }
     }
@@ -182,13 +182,14 @@ static bool mark_around(struct fluid *fluid, const struct cells *cells, int32_t 
 
 void fluid_find_near(struct fluid *fluid, const struct cells *cells)
 {
-    memset(fluid->near_dummies, 0,
-           (size_t)cells->nx * (size_t)cells->ny * sizeof *fluid->near_dummies);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         const struct cell_list *list = &cells->kind[kind];
+        bool *const near_dummies = fluid->near_dummies[kind];
         int32_t n = 0;
+        if (!near_dummies) continue;
+        memset(near_dummies, 0, (size_t)cells->nx * (size_t)cells->ny * sizeof *near_dummies);
         for (int32_t k = 0; k < list->n_active; k++)
-            if (mark_around(fluid, cells, list->active[k]) || fluid->never_skip)
+            if (mark_around(cells, list->active[k], near_dummies) || fluid->never_skip)
                 fluid->near_fluid[kind][n++] = list->active[k];
         fluid->n_near_fluid[kind] = n;
     }

@@ -175,16 +175,26 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    struct lines lines;       /* thin lines; unused without any */
-    bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
-    bool walls_placed;        /* walls rest, and their packed positions are valid */
-    bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
-    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; with NO_SLIP */
+    struct lines lines; /* thin lines; unused without any */
+    bool keeps_slopes;  /* L-5a: the gradients of dens are those of an earlier evaluation */
+    bool walls_placed;  /* walls rest, and their packed positions are valid */
+    bool *near_dummies[KIND_COUNT]; /* [cells]: walls or solids in the nine cells around */
+    bool *sticks[KIND_COUNT];       /* by body: whether fluid sticks to it; with NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
     int threads;
     struct fluid_extremes extremes;
 };
+
+/* Whether there are walls or solids in the nine cells around a cell of fluid; of any kind. */
+SPHFSI_INLINE bool fluid_near_kind(const struct fluid *fluid, enum kind kind, int32_t cell)
+{
+    return fluid->n_near_fluid[kind] && fluid->near_dummies[kind][cell];
+}
+SPHFSI_INLINE bool fluid_near_dummies(const struct fluid *fluid, int32_t cell)
+{
+    return fluid_near_kind(fluid, KIND_WALL, cell) || fluid_near_kind(fluid, KIND_SOLID, cell);
+}
 
 /* Chooses the kernel and allocates packed fields. */
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,

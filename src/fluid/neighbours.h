@@ -14,6 +14,9 @@ enum { ROWS = (int)CLUSTER / (int)GROUPS };
 /* A field of the particles at b, in every group. */
 #define lane(b, field) vfour((b) + (field)*CLUSTER)
 
+/* Four numbers at p. */
+#define FOUR_REAL(p) (*(const four_real *)(const void *)(p))
+
 /* The packed fields of a cluster; those of its field m are at packed + m CLUSTER. */
 SPHFSI_INLINE real *cluster_packed(const struct packed_fields *packed, size_t cluster)
 {

@@ -74,7 +74,7 @@ enum err open_copy(struct open *o, int n, struct arena *a, struct diag *d) SPHFS
  * alone. `counts`: the state is that between two steps, and its change counts in the account. */
 void open_set(struct open *o, double time, bool counts);
 
-/* After it: forces do not move buffers; the rates store the constraint forces. */
+/* After it: neither forces nor shifts move buffers; the rates store the constraint forces. */
 void open_hold(struct open *o);
 
 /* After a step: impulse and work of the last rates, and the mean flow. */

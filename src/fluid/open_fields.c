@@ -11,13 +11,15 @@
 
 /* --- the fluid across a line --- */
 
-/* Sums of the kernel, without its norm, over the fluid around a point: of pressure and velocity,
- * which times the vector to the particles; of that vector and its products; of rho/rho0 times the
- * vector back. */
-enum { S_W, S_P, S_U, S_UX, S_UY, S_V, S_VX, S_VY, S_X, S_Y, S_XX, S_XY, S_YY, S_GX, S_GY, S_SUMS };
+/* Sums of the kernel, without its norm, over the fluid around a point: of the pressure and of
+ * rho/rho0 times the vector back; or of the flow, which are those of the velocity, which times the
+ * vector to the particles, of that vector and of its products. */
+enum { S_W, S_P, S_GX, S_GY };
+enum { S_U = S_W + 1, S_UX, S_UY, S_V, S_VX, S_VY, S_X, S_Y, S_XX, S_XY, S_YY, S_SUMS };
 
-/* Adds up to four particles of a cell from i on, at vectors (x, y) from the point. */
-SPHFSI_INLINE void add_across(four_double sum[S_SUMS], double inv_h,
+/* Adds up to four particles of a cell from i on, at vectors (x, y) from the point, but not those of
+ * the buffers. */
+SPHFSI_INLINE void add_across(four_double sum[S_SUMS], bool flow, double inv_h,
                               const struct particles *particles, int32_t i, int count,
                               four_double x, four_double y)
 {
@@ -25,14 +27,20 @@ SPHFSI_INLINE void add_across(four_double sum[S_SUMS], double inv_h,
     const four_double r2 = x * x + y * y;
     const four_long seen = (four_long)(r2 < square(KERNEL_REACH / inv_h)) & (lane < count);
     if (!(seen[0] | seen[1] | seen[2] | seen[3])) return;
+    const int32_t *const open = &particles->open[i];
+    const four_long of = {open[0], open[1], open[2], open[3]}, fluid = (four_long)(of == 0) & seen;
     const four_double q = four_sqrt(r2) * inv_h, t = 1 - 0.5 * q;
-    four_double w = t * t * (t * t) * (2 * q + 1);
-    for (int r = 0; r < CLUSTER; r++)
-        w[r] = seen[r] && particles->open[i + r] == 0 ? w[r] : 0; /* not the buffers */
-    const four_double u = FOUR(particles->vx, i), v = FOUR(particles->vy, i), wx = w * x,
-                      wy = w * y, mass = 1 + FOUR(particles->dens, i);
+    const four_double w = (four_double)((four_long)(t * t * (t * t) * (2 * q + 1)) & fluid);
+    const four_double wx = w * x, wy = w * y;
     sum[S_W] += w;
-    sum[S_P] += w * FOUR(particles->p, i);
+    if (!flow) {
+        const four_double mass = 1 + FOUR(particles->dens, i);
+        sum[S_P] += w * FOUR(particles->p, i);
+        sum[S_GX] -= wx * mass;
+        sum[S_GY] -= wy * mass;
+        return;
+    }
+    const four_double u = FOUR(particles->vx, i), v = FOUR(particles->vy, i);
     sum[S_U] += w * u;
     sum[S_UX] += wx * u;
     sum[S_UY] += wy * u;
@@ -44,12 +52,11 @@ SPHFSI_INLINE void add_across(four_double sum[S_SUMS], double inv_h,
     sum[S_XX] += wx * x;
     sum[S_XY] += wx * y;
     sum[S_YY] += wy * y;
-    sum[S_GX] -= wx * mass;
-    sum[S_GY] -= wy * mass;
 }
 
 /* The fluid within reach of a point, without the buffers. */
-static void state_across(const struct open *o, const double at[2], double sum[S_SUMS])
+SPHFSI_INLINE void state_across(const struct open *o, const double at[2], bool flow,
+                                double sum[S_SUMS])
 {
     const struct cells *const cells = o->cells;
     const struct particles *const particles = o->particles;
@@ -63,7 +70,7 @@ static void state_across(const struct open *o, const double at[2], double sum[S_
         const double dx = cells_minimum_image(cells, 0, cx - at[0]) - cx,
                      dy = cells_minimum_image(cells, 1, cy - at[1]) - cy;
         for (int32_t n = 0, i = list->start[cell]; n < list->count[cell]; n += 4, i += 4)
-            add_across(s, 1 / o->k->h, particles, i, list->count[cell] - n,
+            add_across(s, flow, 1 / o->k->h, particles, i, list->count[cell] - n,
                        FOUR(particles->x, i) + dx, FOUR(particles->y, i) + dy);
     }
     for (int m = 0; m < S_SUMS; m++) sum[m] = (s[m][0] + s[m][2]) + (s[m][1] + s[m][3]);
@@ -86,7 +93,7 @@ static double flow_along(const struct open *o, const double at[2], const double 
                          double otherwise)
 {
     double s[S_SUMS];
-    state_across(o, at, s);
+    state_across(o, at, true, s);
     if (!(s[S_W] > 0)) return otherwise;
     return linear_value(s, S_U) * n[0] + linear_value(s, S_V) * n[1];
 }
@@ -154,7 +161,7 @@ static void mirror_fields(const struct open *o, struct open_member *m)
     double in, on_line[2], mirror[2], v[2], a[2], s[S_SUMS];
     const struct scene_open *const b = project(o, i, &in, on_line);
     for (int c = 0; c < 2; c++) mirror[c] = on_line[c] + fabs(in) * b->inward[c];
-    state_across(o, mirror, s);
+    state_across(o, mirror, false, s);
     const double w = s[S_W];
     if (b->kind == OPEN_PRESSURE) {
         m->v[0] = particles->vx[i];
@@ -278,6 +285,7 @@ void open_hold(struct open *o)
         r->power -=
             mass * (particles->ax[i] * particles->vx[i] + particles->ay[i] * particles->vy[i]);
         particles->ax[i] = particles->ay[i] = 0;
+        if (particles->div_r) particles->div_r[i] = 0; /* no shift */
     }
 }
 

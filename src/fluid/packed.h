@@ -34,39 +34,62 @@ SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
     *(four_real *)(void *)(packed + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
 }
 
+/* Stores the first `count` of four. */
+SPHFSI_INLINE void store_four(double *to, four_double four, int count)
+{
+    if (count == CLUSTER)
+        *(four_double_at *)to = four;
+    else
+        for (int r = 0; r < count; r++) to[r] = four[r];
+}
+
+/* Constants of packing. */
+struct packing {
+    double inv_h, volume;  /* 1/m; of a particle at rest, in units of h^2 */
+    double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
+    effect_set effects;
+};
+
+SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
+{
+    const struct fluid_constants *const k = &fluid->k;
+    const double inv_h = 1 / k->h;
+    return (struct packing){inv_h, k->mass / k->rho0 * square(inv_h),
+                            k->c0 * k->c0 * k->rho0 / EOS_GAMMA, k->rho0 * square(k->c0),
+                            fluid->effects};
+}
+
 /* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
  * acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with
  * delay. */
-SPHFSI_INLINE four_double acting_pressure(const struct fluid *fluid,
+SPHFSI_INLINE four_double acting_pressure(const struct packing *by,
                                           const struct particles *particles, int32_t i)
 {
-    const struct fluid_constants *const k = &fluid->k;
-    const four_double dens = FOUR(particles->dens, i);
-    const four_double pressure = k->c0 * k->c0 * k->rho0 / EOS_GAMMA * EOS_POWER(dens);
-    if (!(fluid->effects & FX_DAMPER)) return pressure;
-    return pressure + k->rho0 * square(k->c0) * (dens - FOUR(particles->dens_slow, i));
+    const four_double dens = FOUR(particles->dens, i), pressure = by->tait * EOS_POWER(dens);
+    if (!(by->effects & FX_DAMPER)) return pressure;
+    return pressure + by->acoustic * (dens - FOUR(particles->dens_slow, i));
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
  * next cell. */
-SPHFSI_INLINE void pack_cluster(const struct fluid *fluid, const struct particles *particles,
+SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles *particles,
                                 int32_t i, const double centre[2], real *out)
 {
-    const double inv_h = 1 / fluid->k.h, volume = fluid->k.mass / fluid->k.rho0 * square(inv_h);
     const four_double dens = FOUR(particles->dens, i);
-    put_four(out, PACKED_X, (FOUR(particles->x, i) - centre[0]) * inv_h);
-    put_four(out, PACKED_Y, (FOUR(particles->y, i) - centre[1]) * inv_h);
+    put_four(out, PACKED_X, (FOUR(particles->x, i) - centre[0]) * by->inv_h);
+    put_four(out, PACKED_Y, (FOUR(particles->y, i) - centre[1]) * by->inv_h);
     put_four(out, PACKED_U, FOUR(particles->vx, i));
     put_four(out, PACKED_V, FOUR(particles->vy, i));
-    const four_double specific = 1 / (1 + dens), own = volume * specific;
-    put_four(out, PACKED_VOLUME, fluid->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
-    if (fluid->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
-    put_four(out, PACKED_P, acting_pressure(fluid, particles, i));
+    const four_double specific = 1 / (1 + dens), own = by->volume * specific;
+    put_four(out, PACKED_VOLUME, by->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
+    if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
+    put_four(out, PACKED_P, acting_pressure(by, particles, i));
     put_four(out, PACKED_DENS, dens);
 }
 
-SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *particles,
-                             const struct cells *cells, int32_t cell)
+SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by,
+                             const struct particles *particles, const struct cells *cells,
+                             int32_t cell)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const struct packed_fields *const packed = &fluid->packed[KIND_FLUID];
@@ -76,9 +99,13 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct particles *
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(fluid, particles, list->start[cell] + first, centre, out);
-        if (own < CLUSTER) cluster_close(out, packed->n, own);
-        for (int32_t r = own; r < CLUSTER && fluid->effects & FX_VISCOSITY; r++)
+        pack_cluster(by, particles, list->start[cell] + first, centre, out);
+        if (own == CLUSTER) { /* a compile-time constant */
+            cluster_box(&packed->boxes, cluster, out, CLUSTER);
+            continue;
+        }
+        cluster_close(out, packed->n, own);
+        for (int32_t r = own; r < CLUSTER && by->effects & FX_VISCOSITY; r++)
             out[PACKED_SPECIFIC * CLUSTER + r] = 1; /* the sum of two is a divisor */
         cluster_box(&packed->boxes, cluster, out, own);
     }
@@ -88,9 +115,10 @@ static void SWEEP(packed)(struct fluid *fluid, struct particles kinds[KIND_COUNT
                           const struct cells *cells)
 {
     const int32_t n = cells->kind[KIND_FLUID].n_active;
+    const struct packing by = packing_of(fluid);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < n; k++)
-        pack_cell(fluid, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
+        pack_cell(fluid, &by, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
 }
 
 /* V t^3 of the candidates. */
@@ -100,42 +128,46 @@ SPHFSI_INLINE vreal gradient_weight(const struct separation *r, const real *b)
     return lane(b, PACKED_VOLUME) * (t * t * t);
 }
 
-/* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
- * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
- * neighbours span no plane (a determinant below a thousandth of the trace squared) the inverse
- * is taken as 0. */
-static void slopes_of(const struct neighbours *neighbours, const struct receiver *a,
-                      double slope[GROUPS][2])
+/* Sums over the neighbours of a particle: of V x_ab (x) grad W and V (dens_a - dens_b) grad W,
+ * without their common factor. */
+enum { SLOPE_XX, SLOPE_XY, SLOPE_YY, SLOPE_X, SLOPE_Y, SLOPE_SUMS };
+
+/* For the receivers from number r of a cluster on. */
+SPHFSI_INLINE void sum_slopes(const struct neighbours *neighbours, const struct receiver *a, int r,
+                              real out[SLOPE_SUMS][CLUSTER])
 {
-    vreal xx[PARTS] = {{0}}, xy[PARTS] = {{0}}, yy[PARTS] = {{0}}, dx[PARTS] = {{0}},
-          dy[PARTS] = {{0}};
+    vreal sum[SLOPE_SUMS][PARTS] = {{{0}}};
     for (int k = 0; k < neighbours->n; k++)
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[k];
             const real *const b = candidates(neighbours, code, part);
-            const struct separation r = separation_from(a, code, b);
-            const vreal w = weight_seen(a, &r, gradient_weight(&r, b));
+            const struct separation d = separation_from(a, code, b);
+            const vreal w = weight_seen(a, &d, gradient_weight(&d, b));
             const vreal step = w * (a->dens - lane(b, PACKED_DENS));
-            xx[part] = vfma(w * r.x, r.x, xx[part]);
-            xy[part] = vfma(w * r.x, r.y, xy[part]);
-            yy[part] = vfma(w * r.y, r.y, yy[part]);
-            dx[part] = vfma(step, r.x, dx[part]);
-            dy[part] = vfma(step, r.y, dy[part]);
+            sum[SLOPE_XX][part] = vfma(w * d.x, d.x, sum[SLOPE_XX][part]);
+            sum[SLOPE_XY][part] = vfma(w * d.x, d.y, sum[SLOPE_XY][part]);
+            sum[SLOPE_YY][part] = vfma(w * d.y, d.y, sum[SLOPE_YY][part]);
+            sum[SLOPE_X][part] = vfma(step, d.x, sum[SLOPE_X][part]);
+            sum[SLOPE_Y][part] = vfma(step, d.y, sum[SLOPE_Y][part]);
         }
-    real A[GROUPS], B[GROUPS], C[GROUPS], U[GROUPS], V[GROUPS];
-    total(xx, A);
-    total(xy, B);
-    total(yy, C);
-    total(dx, U);
-    total(dy, V);
-    for (int g = 0; g < GROUPS; g++) {
-        const double a_xx = (double)A[g], a_xy = (double)B[g], a_yy = (double)C[g],
-                     x = (double)U[g], y = (double)V[g];
-        const double det = a_xx * a_yy - square(a_xy);
-        const bool plane = det > 1e-3 * square(a_xx + a_yy);
-        slope[g][0] = plane ? (a_yy * x - a_xy * y) / det : 0;
-        slope[g][1] = plane ? (a_xx * y - a_xy * x) / det : 0;
-    }
+    for (int k = 0; k < SLOPE_SUMS; k++) total(sum[k], &out[k][r]);
+}
+
+/* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
+ * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
+ * neighbours span no plane (a determinant below a thousandth of the trace squared) the inverse
+ * is taken as 0. */
+SPHFSI_INLINE void slopes_from(real sum[SLOPE_SUMS][CLUSTER], four_double slope[2])
+{
+    four_double s[SLOPE_SUMS];
+    for (int k = 0; k < SLOPE_SUMS; k++) s[k] = four_widen(FOUR_REAL(sum[k]));
+    const four_double xx = s[SLOPE_XX], xy = s[SLOPE_XY], yy = s[SLOPE_YY];
+    const four_double det = xx * yy - xy * xy, trace = xx + yy;
+    const four_long plane = (four_long)(det > 1e-3 * (trace * trace));
+    const four_double x = (yy * s[SLOPE_X] - xy * s[SLOPE_Y]) / det,
+                      y = (xx * s[SLOPE_Y] - xy * s[SLOPE_X]) / det;
+    slope[0] = (four_double)((four_long)x & plane);
+    slope[1] = (four_double)((four_long)y & plane);
 }
 
 static void slopes_of_cell(const struct fluid *fluid, struct particles *particles,
@@ -147,20 +179,19 @@ static void slopes_of_cell(const struct fluid *fluid, struct particles *particle
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
-        const int count = particles_in(list, cell, m);
+        const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, KIND_FLUID, cluster);
-        for (int r = 0; r < count; r += GROUPS) {
-            const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster) + r;
-            struct receiver a = receiver_at(&sides, own);
-            a.dens = vspread(own + PACKED_DENS * CLUSTER);
-            double slope[GROUPS][2];
-            slopes_of(&neighbours, &a, slope);
-            for (int g = 0; g < GROUPS && r + g < count; g++) {
-                particles->slope_x[i + r + g] = slope[g][0] / fluid->k.h;
-                particles->slope_y[i + r + g] = slope[g][1] / fluid->k.h;
-            }
+        real sum[SLOPE_SUMS][CLUSTER];
+        for (int r = 0; r < CLUSTER; r += GROUPS) {
+            struct receiver a = receiver_at(&sides, own + r);
+            a.dens = vspread(own + r + PACKED_DENS * CLUSTER);
+            sum_slopes(&neighbours, &a, r, sum);
         }
+        four_double slope[2];
+        slopes_from(sum, slope);
+        store_four(particles->slope_x + i, slope[0] / fluid->k.h, particles_in(list, cell, m));
+        store_four(particles->slope_y + i, slope[1] / fluid->k.h, particles_in(list, cell, m));
     }
 }
 

@@ -167,7 +167,7 @@ SPHFSI_INLINE four_double own_sum(const struct cluster_sums *s, enum pair_sum wh
         for (int part = 0; part < PARTS; part++) parts[part] = s->of[row][part][which];
         total(parts, sum + row * GROUPS);
     }
-    return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double);
+    return four_widen(FOUR_REAL(sum));
 }
 
 /* The same sum of the contributions deferred for them; resets it to zero for the next chunk. */
@@ -176,5 +176,5 @@ SPHFSI_INLINE four_double take_deferred(real *at)
     four_real *const by = (four_real *)(void *)at; /* [receiver] */
     const four_real sum = (by[0] + by[2]) + (by[1] + by[3]);
     memset(at, 0, CLUSTER * CLUSTER * sizeof *at);
-    return __builtin_convertvector(sum, four_double);
+    return four_widen(sum);
 }

@@ -25,8 +25,8 @@ SPHFSI_INLINE vreal kernel_of(vreal q)
     return t2 * t2 * vfma(vset(2), q, vset(1));
 }
 
-/* Whether there is fluid within reach of a dummy, from the sum of the kernel over it. */
-SPHFSI_INLINE bool has_fluid_near(real weight) { return (double)weight > 1e-12; }
+/* Sum of the kernel over the fluid within reach of a dummy, below which there is none. */
+#define LEAST_WEIGHT 1e-12
 
 #include "fluid/dummies.h"
 
@@ -39,19 +39,10 @@ struct chunk {
 /* Of a chunk: largest values, reduced over the SIMD lanes once. */
 struct chunk_totals {
     vreal approach;
-    double acceleration2[CLUSTER];
+    four_double acceleration2;
 };
 
 #include "fluid/pair_sums.h"
-
-/* Stores the first `count` of four. */
-SPHFSI_INLINE void store_four(double *to, four_double four, int count)
-{
-    if (count == CLUSTER)
-        *(four_double_at *)to = four;
-    else
-        for (int r = 0; r < count; r++) to[r] = four[r];
-}
 
 /* A sum of `count` particles as receivers and candidates, which have its opposite. */
 SPHFSI_INLINE four_double odd_sum(const struct cluster_sums *s, real *deferred, enum pair_sum which)
@@ -91,7 +82,10 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
     store_four(particles->ax + i, ax, count);
     store_four(particles->ay + i, ay, count);
     store_four(particles->ddens + i, ddens, count);
-    for (int r = 0; r < count; r++) top->acceleration2[r] = max2(top->acceleration2[r], a2[r]);
+    if (count == CLUSTER)
+        top->acceleration2 = four_max(top->acceleration2, a2);
+    else
+        for (int r = 0; r < count; r++) top->acceleration2[r] = max2(top->acceleration2[r], a2[r]);
     if (!(PAIR_HAS(fx, SHIFTING))) return;
     store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
     store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
@@ -154,7 +148,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                &fluid->packed[KIND_FLUID].boxes, cells, KIND_FLUID, cell,
                                fluid->k.h, chunk->range);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        around[kind] = fluid->near_dummies[cell] && fluid->n_near_fluid[kind];
+        around[kind] = fluid_near_kind(fluid, (enum kind)kind, cell);
         if (around[kind])
             gather_around_cell(neighbour_scratch, fluid, cells, (enum kind)kind, cell);
     }

@@ -125,9 +125,10 @@ SPHFSI_INLINE int64_t cells_clusters(const struct cells *cells, int64_t n)
 }
 
 /* Clusters of one kind in a cell; the last one may be partly filled. */
+SPHFSI_INLINE int32_t clusters_of_count(int32_t count) { return (count + CLUSTER - 1) / CLUSTER; }
 SPHFSI_INLINE int32_t clusters_in(const struct cell_list *list, int32_t cell)
 {
-    return (list->count[cell] + CLUSTER - 1) / CLUSTER;
+    return clusters_of_count(list->count[cell]);
 }
 
 /* Minimum image: the smallest difference of positions along an axis, if it is periodic. */

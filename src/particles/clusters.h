@@ -6,6 +6,7 @@
 #define SPHFSI_PARTICLES_CLUSTERS_H
 
 #include "particles/cells.h"
+#include "particles/kernel.h"
 #include "base/simd.h"
 
 enum {
@@ -75,13 +76,51 @@ void neighbour_clusters_collect(struct neighbour_clusters *s, const struct clust
                                 const struct cells *cells, enum kind kind, int32_t cell, double h,
                                 struct cluster_range range);
 
+/* Covers the rounding of boxes and positions in single precision. */
+#define REACH_MARGIN 1.001
+#define FAR_AWAY 1e18f
+
+/* Appends the collected clusters whose box is within reach of the box of `cluster`. */
+SPHFSI_INLINE void append_near(struct cluster_list *near, const struct neighbour_clusters *s,
+                               const struct cluster_boxes *boxes, size_t cluster)
+{
+    const vfloat none = vset_float(0), left = vset_float(boxes->side[BOX_LEFT][cluster]),
+                 right = vset_float(boxes->side[BOX_RIGHT][cluster]),
+                 down = vset_float(boxes->side[BOX_DOWN][cluster]),
+                 up = vset_float(boxes->side[BOX_UP][cluster]);
+    const float reach2 = (float)square(REACH_MARGIN * KERNEL_REACH);
+    const int collected = s->n;
+    int n = near->n;
+    for (int k = 0; k < collected; k += LANES_FLOAT) {
+        const vfloat dx = vmax_float(none, vmax_float(vload_float(&s->side[BOX_LEFT][k]) - right,
+                                                      left - vload_float(&s->side[BOX_RIGHT][k])));
+        const vfloat dy = vmax_float(none, vmax_float(vload_float(&s->side[BOX_DOWN][k]) - up,
+                                                      down - vload_float(&s->side[BOX_UP][k])));
+        n += vkeep_below(&near->code[n], &s->code[k], vfma_float(dy, dy, dx * dx), reach2);
+    }
+    near->n = n;
+}
+
 /* Lists the collected clusters within reach (2h) of the box of `cluster`. */
-void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
-                        const struct cluster_boxes *boxes, int32_t cluster);
+SPHFSI_INLINE void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
+                                      const struct cluster_boxes *boxes, int32_t cluster)
+{
+    near->n = 0;
+    append_near(near, s, boxes, (size_t)cluster);
+}
 
 /* With a range: each call serves the next cluster of the cell, the last one first: first itself (no
  * flag), then its neighbours. */
-void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,
-                             const struct cluster_boxes *boxes);
+SPHFSI_INLINE void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,
+                                           const struct cluster_boxes *boxes)
+{
+    const uint32_t own = s->code[s->n];
+    near->code[0] = own & ~(uint32_t)NEIGHBOUR_HALF;
+    near->n = 1;
+    append_near(near, s, boxes, neighbour_number(own));
+    /* Removes the next own cluster from the collection. Here and not at the next call: a vector
+     * load right after this scalar store would stall. */
+    if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
+}
 
 #endif

@@ -188,7 +188,7 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
     for (int32_t n = 0; n < list->n_active; n++) {
         const int32_t cell = list->active[n];
-        if (!sim->fluid.near_dummies[cell]) continue;
+        if (!fluid_near_dummies(&sim->fluid, cell)) continue;
         for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
             struct repulsion at = {.sim = sim, .place = {particles->x[i], particles->y[i]}};
             for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {

@@ -451,7 +451,7 @@ int64_t penetration_count(const struct simulation *sim, int64_t *first)
 #pragma omp parallel for schedule(static) reduction(+ : count) reduction(min : lowest)
     for (int32_t k = 0; k < fluid->n_active; k++) {
         const int32_t cell = fluid->active[k];
-        if (!sim->fluid.near_dummies[cell]) continue;
+        if (!fluid_near_dummies(&sim->fluid, cell)) continue;
         int32_t near[9];
         int n = 0;
         for (int m = 0; m < 9; m++) {
