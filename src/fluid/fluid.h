@@ -131,12 +131,14 @@ extern const struct fluid_sweeps fluid_sweeps_mixed, fluid_sweeps_double;
 /* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its
  * particles. The order of sums follows from the chunks, so their number depends on the number n of
  * cells only. A chunk has at most 64 cells. The number of chunks is a multiple of 24, which most
- * numbers of threads divide; fewer cells than 24 chunks hold make do with a multiple of 8, because
- * pairs across chunks are computed twice. */
+ * numbers of threads divide; fewer cells make do with a multiple of 8, or with 4, because pairs
+ * across chunks are computed twice. */
 enum { CHUNK_CELLS = 64 };
 SPHFSI_INLINE int32_t fluid_chunk_count(int32_t n)
 {
-    const int32_t full = (n + CHUNK_CELLS - 1) / CHUNK_CELLS, unit = full > 24 ? 24 : 8;
+    const int32_t full = (n + CHUNK_CELLS - 1) / CHUNK_CELLS, unit = full > 24  ? 24
+                                                                     : full > 2 ? 8
+                                                                                : 4;
     return (full + unit - 1) / unit * unit;
 }
 

@@ -154,7 +154,9 @@ static void test_shares_hold_all_cells(void)
 {
     for (int32_t n = 1; n < 5000; n += n < 40 ? 1 : 37) {
         const int32_t shares = fluid_chunk_count(n);
-        TEST_ASSERT_EQUAL_INT(0, shares % (n > 24 * CHUNK_CELLS ? 24 : 8));
+        TEST_ASSERT_EQUAL_INT(0, shares % (n > 24 * CHUNK_CELLS  ? 24
+                                           : n > 2 * CHUNK_CELLS ? 8
+                                                                 : 4));
         TEST_ASSERT_EQUAL_INT(0, fluid_chunk_start(n, 0));
         TEST_ASSERT_EQUAL_INT(n, fluid_chunk_start(n, shares));
         for (int32_t m = 0; m < shares; m++) {
