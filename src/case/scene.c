@@ -55,13 +55,24 @@ double scene_solid_dp(const struct scene *scene, int solid)
     return scene->solid[solid].dp > 0 ? scene->solid[solid].dp : scene->top.dp;
 }
 
+void scene_bonds(const struct scene *scene, int bond[SCENE_MAX_SECTIONS])
+{
+    for (int k = 0; k < scene->n_solid; k++) bond[k] = k;
+    for (int k = 0; k < scene->n_solid; k++) {
+        const int to = scene_find_solid(scene, scene->solid[k].joined);
+        if (to < 0) continue;
+        const int a = bond[k], b = bond[to];
+        for (int j = 0; j < scene->n_solid; j++)
+            if (bond[j] == a || bond[j] == b) bond[j] = a < b ? a : b;
+    }
+}
+
 bool scene_is_bonded(const struct scene *scene, int solid)
 {
-    for (int k = 0; k < scene->n_solid; k++) {
-        const char *const to = scene->solid[k].joined;
-        if (to[0] && (k == solid || scene_find_solid(scene, to) == solid)) return true;
-    }
-    return false;
+    int bond[SCENE_MAX_SECTIONS], n = 0;
+    scene_bonds(scene, bond);
+    for (int k = 0; k < scene->n_solid; k++) n += bond[k] == bond[solid];
+    return n > 1;
 }
 
 /* Whether a section applies to two bodies, walls after solids; one without names applies to all. */

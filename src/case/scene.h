@@ -377,6 +377,9 @@ int scene_find_spring(const struct scene *scene, const char *name);
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */
 double scene_solid_h(const struct scene *scene, int solid);
+/* Gives solids that are bonded to each other, directly or through others, the number of the first
+ * of them. */
+void scene_bonds(const struct scene *scene, int bond[SCENE_MAX_SECTIONS]);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *scene, int solid);
 

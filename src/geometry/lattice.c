@@ -403,18 +403,6 @@ static enum err common_lattice(struct sampler *sampler, struct region **list)
     return ERR_OK;
 }
 
-/* Gives solids that are bonded to each other, directly or through others, the same number. */
-static void number_bonds(const struct scene *scene, int *bond)
-{
-    for (int k = 0; k < scene->n_solid; k++) bond[k] = k;
-    for (int k = 0; k < scene->n_solid; k++) {
-        if (!scene->solid[k].joined[0]) continue;
-        const int a = bond[k], b = bond[scene_find_solid(scene, scene->solid[k].joined)];
-        for (int j = 0; j < scene->n_solid; j++)
-            if (bond[j] == a || bond[j] == b) bond[j] = a < b ? a : b;
-    }
-}
-
 static enum err solid_lattice(struct sampler *sampler, const int *bond, int number,
                               struct region **list)
 {
@@ -436,11 +424,11 @@ enum err geometry_choose_lattices(struct sampler *sampler)
     struct scene *scene = sampler->scene;
     const size_t n = (size_t)scene->n_solid;
     struct region **list = geometry_alloc(sampler, (size_t)sampler->n_regions, sizeof *list);
-    int *bond = geometry_alloc(sampler, n, sizeof *bond);
+    int bond[SCENE_MAX_SECTIONS];
     struct scene_lattice *const to =
         arena_alloc(&scene->arena, n, sizeof *scene->solid_lattice, "lattice", sampler->diag);
-    if (!list || !bond || !to) return ERR_MEMORY;
-    number_bonds(scene, bond);
+    if (!list || !to) return ERR_MEMORY;
+    scene_bonds(scene, bond);
     TRY(common_lattice(sampler, list));
     for (int k = 0; k < scene->n_solid; k++) TRY(solid_lattice(sampler, bond, k, list));
     for (int k = 0; k < scene->n_solid; k++) to[k] = sampler->regions[k].lattice;

@@ -39,18 +39,11 @@ static struct solid_body body_of(const struct scene *scene, int k)
     };
 }
 
-/* Bodies joined directly or through others get the number of the first of them. */
 static void join_bodies(struct solid *solid, const struct scene *scene)
 {
-    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].bond = k;
-    for (int k = 0; k < solid->n_bodies; k++) {
-        if (!scene->solid[k].joined[0]) continue;
-        const int a = solid->body[k].bond,
-                  b = solid->body[scene_find_solid(scene, scene->solid[k].joined)].bond;
-        for (int j = 0; j < solid->n_bodies; j++)
-            if (solid->body[j].bond == a || solid->body[j].bond == b)
-                solid->body[j].bond = a < b ? a : b;
-    }
+    int bond[SCENE_MAX_SECTIONS];
+    scene_bonds(scene, bond);
+    for (int k = 0; k < solid->n_bodies; k++) solid->body[k].bond = bond[k];
     for (int k = 0; k < solid->n_bodies; k++)
         for (int j = 0; j < solid->n_bodies; j++)
             solid->body[k].mixed |= solid->body[j].bond == solid->body[k].bond &&
