@@ -30,10 +30,11 @@ static double elastic_stiffness(double stiffness, double min_reach, double r)
 }
 
 /* Velocity of a point relative to a place on an edge. */
-static void relative_velocity(const struct contact_foot *foot, double v[2])
+static void relative_velocity(const struct contact_closest *closest, double v[2])
 {
     for (int c = 0; c < 2; c++)
-        v[c] = foot->point->v[c] - ((1 - foot->at) * foot->a->v[c] + foot->at * foot->b->v[c]);
+        v[c] = closest->point->v[c] -
+               ((1 - closest->at) * closest->a->v[c] + closest->at * closest->b->v[c]);
 }
 
 /* --- forces of a pair --- */
@@ -41,37 +42,38 @@ static void relative_velocity(const struct contact_foot *foot, double v[2])
 /* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach
  * `reach`, with the relative velocity v. The dashpot may reduce the repulsion but not turn it
  * into attraction. */
-static void point_force(const struct contact_constants *q, const struct contact_foot *foot,
+static void point_force(const struct contact_constants *q, const struct contact_closest *closest,
                         const double offset[2], double reach, const double v[2], double f[2])
 {
     f[0] = f[1] = 0;
     const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
-                 left = r - (reach - foot->min_reach);
-    if (!(left < foot->min_reach) || left <= 0) return;
+                 left = r - (reach - closest->min_reach);
+    if (!(left < closest->min_reach) || left <= 0) return;
     const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
     const double normal =
-        max2(0, elastic_force(q->stiffness, foot->min_reach, left) - q->damping * along);
+        max2(0, elastic_force(q->stiffness, closest->min_reach, left) - q->damping * along);
     f[0] = normal * n[0];
     f[1] = normal * n[1];
 }
 
 /* The same for an end of the edge. */
-static void end_force(const struct contact_constants *q, const struct contact_foot *foot,
+static void end_force(const struct contact_constants *q, const struct contact_closest *closest,
                       const struct contact_point *end, double reach, double f[2])
 {
-    const struct contact_point *const p = foot->point;
+    const struct contact_point *const p = closest->point;
     const double offset[2] = {p->x[0] - end->x[0], p->x[1] - end->x[1]};
     const double v[2] = {p->v[0] - end->v[0], p->v[1] - end->v[1]};
-    point_force(q, foot, offset, reach, v, f);
+    point_force(q, closest, offset, reach, v, f);
 }
 
 /* Whether the point of a pair is within reach of the edge. */
 static bool touches(const struct contact *contact, const struct contact_pair *pair,
-                    struct contact_foot *foot, struct contact_constants *q)
+                    struct contact_closest *closest, struct contact_constants *q)
 {
-    if (!contact_foot(contact, pair->point, pair->edge, foot) || !(foot->distance < foot->reach))
+    if (!contact_find_closest(contact, pair->point, pair->edge, closest) ||
+        !(closest->distance < closest->reach))
         return false;
-    *q = contact_constants_of(foot->law, foot->point);
+    *q = contact_constants_of(closest->law, closest->point);
     return true;
 }
 
@@ -80,43 +82,43 @@ static bool touches(const struct contact *contact, const struct contact_pair *pa
  * overlap (T-61b), so its change contributes nothing to the derivative of the potential. */
 static void pair_force(const struct contact *contact, struct contact_pair *pair)
 {
-    struct contact_foot foot;
+    struct contact_closest closest;
     struct contact_constants q;
     double v[2], f[2], fa[2], fb[2];
-    pair->touches = touches(contact, pair, &foot, &q);
+    pair->touches = touches(contact, pair, &closest, &q);
     if (!pair->touches) return;
-    relative_velocity(&foot, v);
-    point_force(&q, &foot, foot.offset, foot.reach, v, f);
-    end_force(&q, &foot, foot.a, foot.reach_a, fa);
-    end_force(&q, &foot, foot.b, foot.reach_b, fb);
-    pair->distance = foot.distance;
+    relative_velocity(&closest, v);
+    point_force(&q, &closest, closest.offset, closest.reach, v, f);
+    end_force(&q, &closest, closest.a, closest.reach_a, fa);
+    end_force(&q, &closest, closest.b, closest.reach_b, fb);
+    pair->distance = closest.distance;
     for (int c = 0; c < 2; c++) {
-        const double ga = foot.a->share * fa[c], gb = foot.b->share * fb[c];
+        const double ga = closest.a->share * fa[c], gb = closest.b->share * fb[c];
         pair->force[0][c] = f[c] - ga - gb;
-        pair->force[1][c] = ga - (1 - foot.at) * f[c];
-        pair->force[2][c] = gb - foot.at * f[c];
+        pair->force[1][c] = ga - (1 - closest.at) * f[c];
+        pair->force[2][c] = gb - closest.at * f[c];
     }
 }
 
 /* Of T-61 at the place s of an edge from a to b where the reach is `reach`. */
-static double place_energy(const struct contact_constants *q, const struct contact_foot *foot,
+static double place_energy(const struct contact_constants *q, const struct contact_closest *closest,
                            const struct contact_point *a, const struct contact_point *b, double s,
                            double reach)
 {
-    const double *const x = foot->point->x;
+    const double *const x = closest->point->x;
     const double r = elementary_hypot(x[0] - ((1 - s) * a->x[0] + s * b->x[0]),
                                       x[1] - ((1 - s) * a->x[1] + s * b->x[1]));
-    return elastic_energy(q->stiffness, foot->min_reach, r - (reach - foot->min_reach));
+    return elastic_energy(q->stiffness, closest->min_reach, r - (reach - closest->min_reach));
 }
 
 static double pair_energy(const struct contact *contact, const struct contact_pair *pair)
 {
-    struct contact_foot foot;
+    struct contact_closest closest;
     struct contact_constants q;
-    if (!touches(contact, pair, &foot, &q)) return 0;
-    return place_energy(&q, &foot, foot.a, foot.b, foot.at, foot.reach) -
-           foot.a->share * place_energy(&q, &foot, foot.a, foot.a, 0, foot.reach_a) -
-           foot.b->share * place_energy(&q, &foot, foot.b, foot.b, 0, foot.reach_b);
+    if (!touches(contact, pair, &closest, &q)) return 0;
+    return place_energy(&q, &closest, closest.a, closest.b, closest.at, closest.reach) -
+           closest.a->share * place_energy(&q, &closest, closest.a, closest.a, 0, closest.reach_a) -
+           closest.b->share * place_energy(&q, &closest, closest.b, closest.b, 0, closest.reach_b);
 }
 
 /* --- forces --- */
@@ -199,27 +201,30 @@ static double moves_freely(const struct contact *contact, const struct particles
 /* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
  * step. */
 static void add_rows(struct contact *contact, const struct particles *particles,
-                     const struct contact_pair *pair, const struct contact_foot *foot, double left)
+                     const struct contact_pair *pair, const struct contact_closest *closest,
+                     double left)
 {
     const struct contact_edge *const e = &contact->edge[pair->edge];
-    const struct contact_constants q = contact_constants_of(foot->law, foot->point);
-    const double s = foot->at;
-    const double own = s == 0 ? 1 - foot->a->share : s == 1 ? 1 - foot->b->share : 1;
-    const double both = moves_freely(contact, particles, foot->point) +
-                        (1 - s) * moves_freely(contact, particles, foot->a) +
-                        s * moves_freely(contact, particles, foot->b);
-    const double stiffness = own * both * elastic_stiffness(q.stiffness, foot->min_reach, left);
+    const struct contact_constants q = contact_constants_of(closest->law, closest->point);
+    const double s = closest->at;
+    const double own = s == 0 ? 1 - closest->a->share : s == 1 ? 1 - closest->b->share : 1;
+    const double both = moves_freely(contact, particles, closest->point) +
+                        (1 - s) * moves_freely(contact, particles, closest->a) +
+                        s * moves_freely(contact, particles, closest->b);
+    const double stiffness = own * both * elastic_stiffness(q.stiffness, closest->min_reach, left);
     const double damping = own * both * q.damping;
     contact_add_row(contact, particles, pair->point, 1, stiffness, damping);
     contact_add_row(contact, particles, e->a, 1 - s, stiffness, damping);
     contact_add_row(contact, particles, e->b, s, stiffness, damping);
 }
 
-static void find_depth(struct contact *contact, const struct contact_foot *foot, double overlap)
+static void find_depth(struct contact *contact, const struct contact_closest *closest,
+                       double overlap)
 {
     if (overlap > contact->deepest.overlap)
-        contact->deepest = (struct contact_depth){overlap, foot->point->x[0], foot->point->x[1],
-                                                  foot->point->body, foot->a->body};
+        contact->deepest =
+            (struct contact_depth){overlap, closest->point->x[0], closest->point->x[1],
+                                   closest->point->body, closest->a->body};
 }
 
 /* Distance beyond the reach within which a pair matters in the coming time `span`. */
@@ -231,19 +236,19 @@ static double distance_near(const struct contact *contact, double speed, double 
 static void watch_pair(struct contact *contact, const struct particles *particles,
                        struct contact_pair *pair, double longest, double span)
 {
-    struct contact_foot foot;
+    struct contact_closest closest;
     double v[2];
     pair->near = false;
-    if (!contact_foot(contact, pair->point, pair->edge, &foot)) return;
-    const double r = foot.distance, left = foot.left, min_reach = foot.min_reach;
-    relative_velocity(&foot, v);
-    if (r > foot.reach + distance_near(contact, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
+    if (!contact_find_closest(contact, pair->point, pair->edge, &closest)) return;
+    const double r = closest.distance, left = closest.left, min_reach = closest.min_reach;
+    relative_velocity(&closest, v);
+    if (r > closest.reach + distance_near(contact, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     contact->near = true;
     /* The overlap in parts of that at which the law of a pair that begins apart is infinite. */
-    const double gap = foot.law->reach - foot.law->spacing;
-    find_depth(contact, &foot, (min_reach - left - gap) / (foot.reach_apart - gap));
+    const double gap = closest.law->reach - closest.law->spacing;
+    find_depth(contact, &closest, (min_reach - left - gap) / (closest.reach_apart - gap));
     const double closing =
-        r > 0 ? max2(0, -(v[0] * foot.offset[0] + v[1] * foot.offset[1]) / r) : 0;
+        r > 0 ? max2(0, -(v[0] * closest.offset[0] + v[1] * closest.offset[1]) / r) : 0;
     if (closing > 0)
         contact->approach =
             min2(contact->approach,
@@ -252,18 +257,18 @@ static void watch_pair(struct contact *contact, const struct particles *particle
     if (then > NEAR * min_reach) return;
     pair->near = true;
     pair->distance = r;
-    add_rows(contact, particles, pair, &foot, then);
+    add_rows(contact, particles, pair, &closest, then);
 }
 
 /* Notes the depth of a point behind the nearest edge of another body if it has passed the
  * surface, from the pairs of this point. */
 static void watch_side(struct contact *contact, int64_t first, int64_t end)
 {
-    struct contact_foot nearest = {.distance = (double)INFINITY};
+    struct contact_closest nearest = {.distance = (double)INFINITY};
     bool inside = false;
     for (int64_t k = first; k < end; k++) {
         const struct contact_pair *const pair = &contact->pair[k];
-        const struct contact_foot f = contact_nearest(contact, pair->point, pair->edge);
+        const struct contact_closest f = contact_nearest(contact, pair->point, pair->edge);
         if (f.point->group == f.a->group || !(f.distance < nearest.distance)) continue;
         const double side =
             (f.b->x[0] - f.a->x[0]) * f.offset[1] - (f.b->x[1] - f.a->x[1]) * f.offset[0];
@@ -404,9 +409,9 @@ static void set_laws(struct contact *contact)
 /* Whether a pair of the list is of two groups and begins within its reach. */
 static bool begins_near(const struct contact *contact, const struct contact_pair *pair)
 {
-    struct contact_foot foot;
-    return contact_foot(contact, pair->point, pair->edge, &foot) &&
-           foot.point->group != foot.a->group && foot.distance < foot.reach;
+    struct contact_closest closest;
+    return contact_find_closest(contact, pair->point, pair->edge, &closest) &&
+           closest.point->group != closest.a->group && closest.distance < closest.reach;
 }
 
 /* Bodies that begin with less than a layer of fluid between them anywhere need not keep one. */
@@ -431,7 +436,7 @@ static void set_initial_distances(struct contact *contact)
     contact_list(contact, 0);
     for (int64_t k = 0; k < contact->n_pairs; k++) {
         const struct contact_pair *const pair = &contact->pair[k];
-        const struct contact_foot f = contact_nearest(contact, pair->point, pair->edge);
+        const struct contact_closest f = contact_nearest(contact, pair->point, pair->edge);
         struct contact_point *const point = &contact->point[pair->point];
         if (!begins_near(contact, pair)) continue;
         if (point->initial_group >= 0 && f.distance >= point->initial) continue;
@@ -480,7 +485,7 @@ enum err contact_create(struct contact *contact, struct arena *a, const struct s
     TRY(bodies_create(contact, a, d));
     set_laws(contact);
     TRY(contact_surface_create(contact, a, particles, d));
-    contact->reach += 2 * contact->max_outer;
+    contact->reach += 2 * contact->max_inset;
     const size_t edges = (size_t)contact->n_edges;
     contact->middle_x = arena_alloc(a, edges, sizeof *contact->middle_x, "contact", d);
     contact->middle_y = arena_alloc(a, edges, sizeof *contact->middle_y, "contact", d);

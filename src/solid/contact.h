@@ -29,7 +29,7 @@ struct contact_point {
     double listed[2];        /* position when the list was made */
     double width;            /* length of outline that it stands for, m, T-61 */
     double share;            /* (n - 1)/n of the n edges that end here, T-61a */
-    double outer;            /* distance from the outline less half a spacing, m, T-61b */
+    double inset;            /* distance from the outline less half a spacing, m, T-61b */
     double initial;          /* initial distance from another group if below the reach, m */
     int32_t initial_group;   /* and that group; -1: none */
     bool near_clamp;         /* within the kernel of a clamped particle of its group */
@@ -75,7 +75,7 @@ struct contact {
     int64_t n_solid_points, n_moving_points, n_points;
     struct contact_point *point;
     int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: inside */
-    double max_outer;    /* the largest of them, m */
+    double max_inset;    /* the largest of them, m */
     int64_t n_edges;
     struct contact_edge *edge;
     struct point_grid grid; /* of the edges' middles */

@@ -99,20 +99,21 @@ static double across(const double n[2], const double v[2], int c)
 }
 
 /* A tangential spring with the displacement u across the normal n, a dashpot and a slider. */
-struct spring {
+struct friction_spring {
     int32_t edge; /* that its place moves with */
     double n[2], u[2], normal_force, force, stiffness, damping, friction;
 };
 
 /* Both halves of the force between a solid and a wall act on the points of the solid. */
-static struct spring spring_constants(const struct contact *contact, int32_t point, int32_t edge)
+static struct friction_spring spring_constants(const struct contact *contact, int32_t point,
+                                               int32_t edge)
 {
     const struct contact_point *const p = &contact->point[point];
     const int body = contact->point[contact->edge[edge].a].body;
     const struct contact_law *const law = contact_law_of(contact, p->body, body);
     const struct contact_constants q = contact_constants_of(law, p);
     const double halves = body < contact->n_solids ? 1 : 1 / CONTACT_HALF;
-    return (struct spring){
+    return (struct friction_spring){
         .edge = edge,
         .stiffness = halves * law->shear * q.stiffness,
         .damping = halves * q.tangential_damping,
@@ -130,12 +131,13 @@ static int32_t spring_edge(const struct contact *contact, const struct particles
 }
 
 /* normal_force = 0: there is no friction. */
-static struct spring spring_at(const struct contact *contact, const struct particles *particles,
-                               int32_t point, const struct normal_load *on)
+static struct friction_spring spring_at(const struct contact *contact,
+                                        const struct particles *particles, int32_t point,
+                                        const struct normal_load *on)
 {
     const int32_t edge = spring_edge(contact, particles, point, on->group),
                   i = contact->point[point].index;
-    struct spring h = spring_constants(contact, point, edge < 0 ? on->edge : edge);
+    struct friction_spring h = spring_constants(contact, point, edge < 0 ? on->edge : edge);
     const double *const f = on->force;
     h.normal_force = h.friction > 0 ? sqrt(f[0] * f[0] + f[1] * f[1]) : 0;
     if (!(h.normal_force > 0)) return h;
@@ -156,7 +158,7 @@ static struct spring spring_at(const struct contact *contact, const struct parti
 /* The edge bears the opposite force as if it reached to the point: both act along one line, and
  * the work of the spring is that of its energy. */
 static void add_friction(struct contact *contact, struct particles *particles, int32_t point,
-                         const struct spring *h)
+                         const struct friction_spring *h)
 {
     const int32_t a = contact->edge[h->edge].a, b = contact->edge[h->edge].b;
     const double *const vp = contact->point[point].v, *const va = contact->point[a].v,
@@ -185,7 +187,7 @@ void contact_friction_forces(struct contact *contact, struct particles *particle
         struct normal_load on[MAX_LOADS];
         const int n = loads_on(contact, point, on);
         for (int k = 0; k < n; k++) {
-            const struct spring h = spring_at(contact, particles, point, &on[k]);
+            const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
             if (h.normal_force > 0) add_friction(contact, particles, point, &h);
         }
     }
@@ -199,7 +201,7 @@ double contact_friction_energy(struct contact *contact, const struct particles *
         struct normal_load on[MAX_LOADS];
         const int n = loads_on(contact, point, on);
         for (int k = 0; k < n; k++) {
-            const struct spring h = spring_at(contact, particles, point, &on[k]);
+            const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
             if (h.force > 0)
                 sum += 0.5 * square(min2(h.force, h.friction * h.normal_force)) / h.stiffness;
         }
@@ -235,7 +237,7 @@ void contact_slide(struct contact *contact, struct particles *particles)
             particles->stick_edge[i] = 0;
             continue;
         }
-        const struct spring h = spring_at(contact, particles, point, &on[k]);
+        const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
         const double most = h.friction * h.normal_force, less = h.force > most ? most / h.force : 1;
         const double *const x = contact->point[point].x;
         double place[2];
@@ -251,7 +253,7 @@ void contact_slide(struct contact *contact, struct particles *particles)
 
 /* The rows of T-62a of a point that holds to a solid: the weights are those of add_friction(). */
 static void add_spring_rows(struct contact *contact, const struct particles *particles,
-                            int32_t point, const struct spring *h)
+                            int32_t point, const struct friction_spring *h)
 {
     const int32_t a = contact->edge[h->edge].a, b = contact->edge[h->edge].b;
     double at[2];
@@ -270,7 +272,7 @@ static void add_spring_rows(struct contact *contact, const struct particles *par
 static void add_wall_spring(struct contact *contact, const struct particles *particles,
                             int32_t point, int32_t edge)
 {
-    const struct spring h = spring_constants(contact, point, edge);
+    const struct friction_spring h = spring_constants(contact, point, edge);
     struct contact_point *const p = &contact->point[point];
     const double per_mass = contact_inv_mass(contact, particles, p);
     if (!(h.friction > 0)) return;
@@ -298,7 +300,7 @@ void contact_friction_rows(struct contact *contact, const struct particles *part
         }
     }
     for (int k = 0; k < n; k++) {
-        const struct spring h = spring_constants(contact, point, on[k].edge);
+        const struct friction_spring h = spring_constants(contact, point, on[k].edge);
         if (h.friction > 0) add_spring_rows(contact, particles, point, &h);
     }
 }

@@ -12,15 +12,15 @@
 
 /* The place on an edge where the distance less the reach is smallest if the reach rises by
  * `rise` from a to b (T-61c). */
-static struct contact_foot foot_of(const struct contact *contact, int32_t point, int32_t edge,
-                                   double rise)
+static struct contact_closest closest_of(const struct contact *contact, int32_t point, int32_t edge,
+                                         double rise)
 {
     const struct contact_point *const p = &contact->point[point],
                                       *const a = &contact->point[contact->edge[edge].a],
                                       *const b = &contact->point[contact->edge[edge].b];
     const double ex = b->x[0] - a->x[0], ey = b->x[1] - a->x[1], length2 = ex * ex + ey * ey;
     const double px = p->x[0] - a->x[0], py = p->x[1] - a->x[1];
-    struct contact_foot f = {.point = p, .a = a, .b = b, .offset = {px, py}};
+    struct contact_closest f = {.point = p, .a = a, .b = b, .offset = {px, py}};
     if (length2 > 0) f.at = (px * ex + py * ey) / length2;
     if (length2 > rise * rise)
         f.at += fabs(px * ey - py * ex) / length2 * rise / sqrt(length2 - rise * rise);
@@ -39,9 +39,9 @@ static struct contact_foot foot_of(const struct contact *contact, int32_t point,
     return f;
 }
 
-struct contact_foot contact_nearest(const struct contact *contact, int32_t point, int32_t edge)
+struct contact_closest contact_nearest(const struct contact *contact, int32_t point, int32_t edge)
 {
-    return foot_of(contact, point, edge, 0);
+    return closest_of(contact, point, edge, 0);
 }
 
 /* Distance below which a point and an end of an edge repel each other (T-61b). At least half a
@@ -49,7 +49,7 @@ struct contact_foot contact_nearest(const struct contact *contact, int32_t point
 static double reach_of(const struct contact_law *law, const struct contact_point *point,
                        const struct contact_point *end)
 {
-    return law->reach + max2(point->outer + end->outer, -0.5 * law->spacing);
+    return law->reach + max2(point->inset + end->inset, -0.5 * law->spacing);
 }
 
 /* --- law --- */
@@ -95,8 +95,8 @@ static double initial_distance(const struct contact *contact, const struct conta
     return point->initial_group == end[0]->group ? point->initial : (double)INFINITY;
 }
 
-bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
-                  struct contact_foot *foot)
+bool contact_find_closest(const struct contact *contact, int32_t point, int32_t edge,
+                          struct contact_closest *closest)
 {
     const struct contact_point *const p = &contact->point[point],
                                       *const end[2] = {&contact->point[contact->edge[edge].a],
@@ -106,14 +106,14 @@ bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
     if (!(initial > 0)) return false;
     const double apart[2] = {reach_of(law, p, end[0]), reach_of(law, p, end[1])};
     const double at_a = min2(initial, apart[0]), at_b = min2(initial, apart[1]);
-    *foot = foot_of(contact, point, edge, at_b - at_a);
-    foot->law = law;
-    foot->reach_a = at_a;
-    foot->reach_b = at_b;
-    foot->reach = foot->at == 1 ? at_b : at_a + foot->at * (at_b - at_a);
-    foot->min_reach = min2(at_a, at_b);
-    foot->reach_apart = min2(apart[0], apart[1]);
-    foot->left = foot->distance - (foot->reach - foot->min_reach);
+    *closest = closest_of(contact, point, edge, at_b - at_a);
+    closest->law = law;
+    closest->reach_a = at_a;
+    closest->reach_b = at_b;
+    closest->reach = closest->at == 1 ? at_b : at_a + closest->at * (at_b - at_a);
+    closest->min_reach = min2(at_a, at_b);
+    closest->reach_apart = min2(apart[0], apart[1]);
+    closest->left = closest->distance - (closest->reach - closest->min_reach);
     return true;
 }
 
@@ -189,9 +189,9 @@ enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct 
  * `first`, in ascending order. */
 static void list_pair(struct contact *contact, int32_t point, int32_t edge, int64_t first)
 {
-    struct contact_foot foot;
-    if (!contact_foot(contact, point, edge, &foot) ||
-        !(foot.distance < foot.reach + contact->margin))
+    struct contact_closest closest;
+    if (!contact_find_closest(contact, point, edge, &closest) ||
+        !(closest.distance < closest.reach + contact->margin))
         return;
     struct diag d = {0};
     /* Without memory for a longer list the run stops. */

@@ -17,7 +17,7 @@ enum err contact_surface_create(struct contact *contact, struct arena *a,
 
 /* A place on an edge: 0 to 1 from a to b, the vector from there to the point, and the reach
  * there. */
-struct contact_foot {
+struct contact_closest {
     const struct contact_law *law;
     const struct contact_point *point, *a, *b;
     double at, offset[2], distance, reach;
@@ -28,11 +28,11 @@ struct contact_foot {
 };
 
 /* The place where the distance less the reach is smallest; false: they do not interact. */
-bool contact_foot(const struct contact *contact, int32_t point, int32_t edge,
-                  struct contact_foot *foot);
+bool contact_find_closest(const struct contact *contact, int32_t point, int32_t edge,
+                          struct contact_closest *closest);
 
 /* The nearest place, without law and reach. */
-struct contact_foot contact_nearest(const struct contact *contact, int32_t point, int32_t edge);
+struct contact_closest contact_nearest(const struct contact *contact, int32_t point, int32_t edge);
 
 /* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
  * of the other. */

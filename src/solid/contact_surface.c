@@ -227,12 +227,12 @@ static enum err find_surface(struct contact *contact, struct arena *a,
 /* --- how far surface points lie inside the outlines of the shapes that they sample (T-61b) --- */
 
 /* Shapes of a solid or wall. */
-struct region {
+struct body_outlines {
     struct outlines add, minus;
 };
 
-static enum err find_regions(const struct contact *contact, struct region *region, struct arena *a,
-                             struct diag *d)
+static enum err find_regions(const struct contact *contact, struct body_outlines *region,
+                             struct arena *a, struct diag *d)
 {
     const struct scene *const scene = contact->scene;
     for (int k = 0; k < contact->n_bodies; k++) {
@@ -246,14 +246,14 @@ static enum err find_regions(const struct contact *contact, struct region *regio
 }
 
 /* A point of a group in search of the nearest place of the outline. */
-struct nearest {
+struct outline_search {
     const struct contact *contact;
-    const struct region *region; /* [bodies] */
+    const struct body_outlines *region; /* [bodies] */
     int group;
     double x, y, distance;
 };
 
-static bool inside(const struct nearest *n, double x, double y)
+static bool inside(const struct outline_search *n, double x, double y)
 {
     for (int k = 0; k < n->contact->n_bodies; k++)
         if (n->contact->group[k] == n->group && outlines_find(&n->region[k].add, x, y) >= 0 &&
@@ -264,7 +264,7 @@ static bool inside(const struct nearest *n, double x, double y)
 
 /* Takes a place of a piece if it is nearer and on the outline of the union: just beyond it is
  * outside. */
-static void try_place(struct nearest *n, double x, double y)
+static void try_place(struct outline_search *n, double x, double y)
 {
     const double dx = x - n->x, dy = y - n->y, distance = elementary_hypot(dx, dy);
     const double beyond = 1 + 1e-6;
@@ -272,7 +272,7 @@ static void try_place(struct nearest *n, double x, double y)
         n->distance = distance;
 }
 
-static void try_piece(struct nearest *n, const struct outline *o)
+static void try_piece(struct outline_search *n, const struct outline *o)
 {
     if (n->x < o->box.low[0] - n->distance || n->x > o->box.high[0] + n->distance ||
         n->y < o->box.low[1] - n->distance || n->y > o->box.high[1] + n->distance)
@@ -296,7 +296,7 @@ static void try_piece(struct nearest *n, const struct outline *o)
 
 /* Distance to the outline less half a spacing. On a lattice that fits it is zero, but for
  * round-off. */
-static double outer_of(struct nearest n, double dp)
+static double inset_of(struct outline_search n, double dp)
 {
     n.distance = dp;
     for (int k = 0; k < n.contact->n_bodies; k++) {
@@ -304,8 +304,8 @@ static double outer_of(struct nearest n, double dp)
         for (int j = 0; j < n.region[k].add.n; j++) try_piece(&n, &n.region[k].add.item[j]);
         for (int j = 0; j < n.region[k].minus.n; j++) try_piece(&n, &n.region[k].minus.item[j]);
     }
-    const double outer = n.distance - 0.5 * dp;
-    return !(n.distance < dp) || fabs(outer) < 1e-6 * dp ? 0 : outer;
+    const double inset = n.distance - 0.5 * dp;
+    return !(n.distance < dp) || fabs(inset) < 1e-6 * dp ? 0 : inset;
 }
 
 /* The length of outline that each point stands for: half of both edges, as seen from the
@@ -317,7 +317,7 @@ static void find_width(struct contact *contact)
         struct contact_point *const a = &contact->point[contact->edge[k].a],
                                     *const b = &contact->point[contact->edge[k].b];
         const double length2 = square(b->X[0] - a->X[0]) + square(b->X[1] - a->X[1]);
-        const double along = sqrt(max2(0, length2 - square(b->outer - a->outer)));
+        const double along = sqrt(max2(0, length2 - square(b->inset - a->inset)));
         a->width += (1 - a->share) * along;
         b->width += (1 - b->share) * along;
     }
@@ -330,15 +330,15 @@ static void find_width(struct contact *contact)
 
 static enum err find_outlines(struct contact *contact, struct arena *temp, struct diag *d)
 {
-    struct region *const region =
+    struct body_outlines *const region =
         arena_alloc(temp, (size_t)contact->n_bodies, sizeof *region, "contact", d);
     if (!region) return ERR_MEMORY;
     TRY(find_regions(contact, region, temp, d));
     for (int64_t k = 0; k < contact->n_points; k++) {
         struct contact_point *const p = &contact->point[k];
-        p->outer = outer_of((struct nearest){contact, region, p->group, p->X[0], p->X[1], 0},
+        p->inset = inset_of((struct outline_search){contact, region, p->group, p->X[0], p->X[1], 0},
                             contact_dp(contact, p->body));
-        contact->max_outer = max2(contact->max_outer, p->outer);
+        contact->max_inset = max2(contact->max_inset, p->inset);
     }
     find_width(contact);
     return ERR_OK;

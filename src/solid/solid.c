@@ -142,25 +142,25 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
 
 /* The packs of a thread in a parallel region. Each particle is written by one thread and sums over
  * its neighbours in the order of its slots, so the bits do not depend on the threads. */
-struct chunk {
+struct pack_range {
     const struct solid *s;
     struct particles *p;
     int64_t first, last;
 };
 
-static struct chunk chunk_of(const struct solid *solid, struct particles *particles)
+static struct pack_range packs_of_thread(const struct solid *solid, struct particles *particles)
 {
     const int64_t threads = thread_team(), me = thread_index();
-    return (struct chunk){solid, particles, solid->n_packs * me / threads,
-                          solid->n_packs * (me + 1) / threads};
+    return (struct pack_range){solid, particles, solid->n_packs * me / threads,
+                               solid->n_packs * (me + 1) / threads};
 }
 
-static void sweep(const struct chunk *own, solid_sweep *f)
+static void sweep(const struct pack_range *own, solid_sweep *f)
 {
     f(own->s, own->p, own->first, own->last);
 }
 
-static void stress_sweeps(const struct chunk *own, bool displaced)
+static void stress_sweeps(const struct pack_range *own, bool displaced)
 {
     const struct solid *const solid = own->s;
     if (displaced || solid->kelvin_voigt) sweep(own, solid->sweeps->stress);
@@ -174,16 +174,16 @@ static void stress_sweeps(const struct chunk *own, bool displaced)
 }
 
 /* The particles of the next packs that are of one body. */
-struct run {
+struct body_range {
     const struct solid_body *body;
     int64_t first, end;
 };
 
-static struct run next_run(const struct solid *solid, int64_t *pack, int64_t last)
+static struct body_range next_body_range(const struct solid *solid, int64_t *pack, int64_t last)
 {
     const struct solid_pack *const from = &solid->pack[*pack], *to = from;
     while (++*pack < last && solid->pack[*pack].body == from->body) to = &solid->pack[*pack];
-    return (struct run){&solid->body[from->body], from->i, to->i + to->lanes};
+    return (struct body_range){&solid->body[from->body], from->i, to->i + to->lanes};
 }
 
 /* Forces other than those of neighbours; clamped particles do not move. */
@@ -193,19 +193,19 @@ static void add_own_forces(const struct solid *solid, struct particles *particle
     double *const sx = particles->sx, *const sy = particles->sy, *const free = particles->free;
     const double *const *const external = solid->external;
     for (int64_t k = first; k < last;) {
-        const struct run run = next_run(solid, &k, last);
-        const double per_mass = 1 / run.body->mass;
-        const double gx = run.body->gravity[0], gy = run.body->gravity[1];
-        for (int64_t i = run.first; i < run.end && solid->coupled; i++) {
+        const struct body_range range = next_body_range(solid, &k, last);
+        const double per_mass = 1 / range.body->mass;
+        const double gx = range.body->gravity[0], gy = range.body->gravity[1];
+        for (int64_t i = range.first; i < range.end && solid->coupled; i++) {
             sx[i] += particles->fx[i] * per_mass;
             sy[i] += particles->fy[i] * per_mass;
         }
-        for (int64_t i = run.first; i < run.end && external[0]; i++) {
+        for (int64_t i = range.first; i < range.end && external[0]; i++) {
             sx[i] += external[0][i];
             sy[i] += external[1][i];
         }
 #pragma omp simd
-        for (int64_t i = run.first; i < run.end; i++) {
+        for (int64_t i = range.first; i < range.end; i++) {
             sx[i] = (sx[i] + gx) * free[i];
             sy[i] = (sy[i] + gy) * free[i];
         }
@@ -217,16 +217,16 @@ static void add_mass_damping(const struct solid *solid, struct particles *partic
                              int64_t last)
 {
     for (int64_t k = first; k < last;) {
-        const struct run run = next_run(solid, &k, last);
-        const double beta = run.body->mass_damping;
-        for (int64_t i = run.first; i < run.end; i++) {
+        const struct body_range range = next_body_range(solid, &k, last);
+        const double beta = range.body->mass_damping;
+        for (int64_t i = range.first; i < range.end; i++) {
             particles->sx[i] += particles->free[i] * (-beta * particles->vx[i]);
             particles->sy[i] += particles->free[i] * (-beta * particles->vy[i]);
         }
     }
 }
 
-static void force_sweeps(const struct chunk *own)
+static void force_sweeps(const struct pack_range *own)
 {
     sweep(own, own->s->sweeps->forces);
     sweep(own, add_own_forces);
@@ -279,7 +279,7 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
 }
 
 /* Packs new positions and velocities for the sweeps immediately. */
-static void pack_all_motion(const struct chunk *own)
+static void pack_all_motion(const struct pack_range *own)
 {
     sweep(own, own->s->sweeps->pack_motion);
 #pragma omp barrier
@@ -297,7 +297,7 @@ void solid_free_kick(const struct particles *particles, int64_t first, int64_t e
     }
 }
 
-static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, double drift,
+static void kick_and_drift(const struct pack_range *own, solid_kick *f, double kick, double drift,
                            double next)
 {
     const struct particles *const particles = own->p;
@@ -312,7 +312,7 @@ void solid_stress(struct solid *solid, struct particles *particles)
 {
 #pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         pack_all_motion(&own);
         stress_sweeps(&own, true);
         sweep(&own, solid->sweeps->write_stress);
@@ -323,7 +323,7 @@ void solid_gradient(const struct solid *solid, struct particles *particles)
 {
 #pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         pack_all_motion(&own);
         sweep(&own, solid->sweeps->stress);
     }
@@ -333,7 +333,7 @@ void solid_forces_within(const struct solid *solid, struct particles *particles,
 {
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         pack_all_motion(&own);
         stress_sweeps(&own, true);
         force_sweeps(&own);
@@ -345,7 +345,7 @@ void solid_operator(struct solid *solid, struct particles *particles, bool displ
 {
 #pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         pack_all_motion(&own);
         stress_sweeps(&own, displaced);
         sweep(&own, solid->sweeps->forces);
@@ -362,7 +362,7 @@ void solid_forces(const struct solid *solid, struct particles *particles)
 {
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         force_sweeps(&own);
         outer_forces(solid, particles, solid->time, 0);
     }
@@ -388,7 +388,7 @@ void solid_place_clamps(const struct solid *solid, struct particles *particles, 
 }
 
 /* Between the sub-steps: all threads together. */
-static void place_clamps(const struct chunk *own, double time)
+static void place_clamps(const struct pack_range *own, double time)
 {
     const struct solid *const solid = own->s;
     if (!solid->loads) return;
@@ -401,7 +401,7 @@ static void place_clamps(const struct chunk *own, double time)
 static void substeps(struct solid *solid, struct particles *particles, double dt, int n,
                      bool centred)
 {
-    const struct chunk chunk = chunk_of(solid, particles), *const own = &chunk;
+    const struct pack_range packs = packs_of_thread(solid, particles), *const own = &packs;
     const double first = centred ? 0.5 * dt : 0;
     double time = solid->time;
     kick_and_drift(own, solid_free_kick, 0, 0, first);
@@ -445,7 +445,7 @@ void solid_show(const struct solid *solid, struct particles *particles)
 {
 #pragma omp parallel num_threads(solid->threads)
     {
-        const struct chunk own = chunk_of(solid, particles);
+        const struct pack_range own = packs_of_thread(solid, particles);
         sweep(&own, solid->sweeps->write_stress);
     }
 }

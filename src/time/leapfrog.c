@@ -21,14 +21,14 @@ static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2,
 
 /* The interval of an update, s, from half a step behind to half a step ahead; its ratio to the
  * previous one, and the previous one's ratio. */
-struct step_sizes {
+struct leapfrog_sizes {
     double dt, kick, r, r_old;
 };
 
 static void update_leapfrog_rows(struct particles *particles, const void *by, int64_t from,
                                  int64_t end)
 {
-    const struct step_sizes *const step = by;
+    const struct leapfrog_sizes *const step = by;
     const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
                  r_old = step->r_old;
 #pragma omp simd
@@ -47,8 +47,8 @@ static void update_leapfrog_rows(struct particles *particles, const void *by, in
 static void update_fluid(struct simulation *sim, double dt, double dt_old, double dt_older)
 {
     struct particles *const particles = &sim->kind[KIND_FLUID];
-    const struct step_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
-                                  step_ratio(dt_old, dt_older)};
+    const struct leapfrog_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
+                                      step_ratio(dt_old, dt_older)};
     if (!(dt_old > 0)) { /* the first step has no earlier rates */
         memcpy(particles->ddens_old, particles->ddens,
                (size_t)particles->n * sizeof *particles->ddens);

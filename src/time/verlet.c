@@ -7,7 +7,7 @@
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
-struct step_sizes {
+struct verlet_sizes {
     double dt, dt_old;
     bool euler;
 };
@@ -15,7 +15,7 @@ struct step_sizes {
 static void update_verlet_rows(struct particles *particles, const void *by, int64_t from,
                                int64_t end)
 {
-    const struct step_sizes *const step = by;
+    const struct verlet_sizes *const step = by;
     const bool euler = step->euler;
     const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
 #pragma omp simd
@@ -41,7 +41,7 @@ static void verlet_step(struct simulation *sim, double t_limit)
     const bool euler = sim->state.verlet_count == 0;
     sim->state.verlet_count = (sim->state.verlet_count + 1) % sim->scene->numerics.verlet_reset;
     energy_of_step(sim, dt);
-    advance_fluid(sim, update_verlet_rows, &(struct step_sizes){dt, sim->state.dt, euler});
+    advance_fluid(sim, update_verlet_rows, &(struct verlet_sizes){dt, sim->state.dt, euler});
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
     if (sim->effects & FX_RIGID)

@@ -15,8 +15,8 @@ static void test_nothing_is_added_on_a_lattice_that_fits(void)
               "[solid a]\nshape = box 0, 0.1, 0.05, 0.2\nshape = box 0.03, 0.1, 0.1, 0.15\n"
               "minus = box 0.06, 0.1, 0.08, 0.13\n" RUBBER
               "[solid b]\nlike = a\nshape = box 0.1, 0.1, 0.15, 0.15\njoined = a\n");
-    for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->point[k].outer == 0);
-    TEST_ASSERT_TRUE(c->max_outer == 0);
+    for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->point[k].inset == 0);
+    TEST_ASSERT_TRUE(c->max_inset == 0);
 }
 
 static void test_outline_of_a_disc(void)
@@ -27,9 +27,9 @@ static void test_outline_of_a_disc(void)
     for (int64_t k = 0; k < c->n_points; k++) {
         const double r = hypot(c->point[k].X[0], c->point[k].X[1] - 0.06);
         const double depth = fmin(0.05 - r, r - 0.022);
-        assert_near(1e-12, depth - 0.0025, c->point[k].outer, "outline");
-        within |= c->point[k].outer > 1e-4;
-        without |= c->point[k].outer < -1e-4;
+        assert_near(1e-12, depth - 0.0025, c->point[k].inset, "outline");
+        within |= c->point[k].inset > 1e-4;
+        without |= c->point[k].inset < -1e-4;
     }
     TEST_ASSERT_TRUE(within && without);
 }
@@ -53,7 +53,7 @@ static void test_no_outline_near(void)
 {
     open_case("dp = 1 cm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.06, 0.1, 0\n"
               "[solid a]\nshape = box -0.02, -0.05, 0.02, 0.1\nclamp = box -1, -1, 1, 0\n" RUBBER);
-    for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->point[k].outer == 0);
+    for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->point[k].inset == 0);
 }
 
 /* Flat faces, the lattice of one of which is turned, touch with all points at once, and both
