@@ -327,6 +327,6 @@ if have brew && [ ${#formulas[@]} -gt 0 ]; then
     case "${formulas[*]}" in *gcc*) say "and then: make CC=gcc-14 (or its version)" ;; esac
 elif [ ${#packages[@]} -gt 0 ]; then
     say "to install it on Debian or Ubuntu: sudo apt-get install $(echo $(unique "${packages[@]}"))"
-    have apt-get || say "elsewhere the packages have similar names"
+    have apt-get || say "elsewhere the packages have similar names (Fedora: docs/guide.md, Sec. 1)"
 fi
 exit 1
