@@ -27,11 +27,14 @@ static const char *const section_meanings[][2] = {
      "their other values must be equal."},
     {"wall", "Rigid bodies, at rest or with a prescribed motion."},
     {"rigid", "Rigid bodies that move freely."},
+    {"beam",
+     "Elastic beams and plates that may be far thinner than a particle, as lines of nodes with any "
+     "rotation and small strains."},
     {"damping", "A zone in which the fluid is damped, so that waves leave."},
     {"spring", "Springs, dampers and mooring lines between rigid bodies, or from one to a place."},
     {"solid", "Elastic bodies."},
     {"contact", "Parameters of contact between bodies, or no contact."},
-    {"load", "A force on a region of a solid."},
+    {"load", "A force on a region of a solid or beam."},
     {"motion",
      "A prescribed motion of walls or clamps: the displacement from their initial position."},
     {"probe", "A measurement."},
@@ -306,7 +309,8 @@ static bool probes_material(const struct scene *scene)
 {
     bool any = false;
     for (int k = 0; k < scene->n_probe; k++)
-        any |= scene_probe_target(&scene->probe[k]) == TARGET_SOLID_POINT;
+        any |= scene_probe_target(&scene->probe[k]) == TARGET_SOLID_POINT &&
+               scene_find_solid(scene, scene->probe[k].body) >= 0;
     return any;
 }
 
@@ -367,6 +371,9 @@ static enum err cite(struct session *session, const struct sphfsi_options *o, co
         {"li_2020", contact},
         {"barnes", fx & FX_RELAX},
         {"rayleigh", fx & FX_MASS_DAMPING},
+        {"simo_1986", fx & FX_BEAM},
+        {"simo_1995", fx & FX_BEAM},
+        {"macneal", fx & FX_BEAM},
     };
     for (size_t k = 0; k < COUNT_OF(source); k++)
         if (source[k].used) say_source(source[k].key, o);

@@ -126,7 +126,7 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     const struct scene_points *const p = &scene->points[kind];
     const struct scene_section_common *const common = section_at(scene, sections[kind], body);
     const char *const motion = kind == KIND_WALL ? scene->wall[body].motion : "";
-    const int rigid = kind == KIND_WALL ? body - scene_rigid_wall(scene, 0) : -1;
+    const int rigid = common->section == SECTION_rigid ? common->index : -1;
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     const int64_t n = extend_box(scene, kind, body, low, high);
     put_particles(g, kind, body, false, motion[0] ? moving : fills[kind]);
@@ -138,9 +138,8 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     int64_t i = 0, before = n / 2; /* the number stands at the middle one of the particles */
     while (i < p->n && (p->body[i] != body || before-- > 0)) i++;
     begin_legend(g, n ? px(g, p->x[i]) : -99, n ? py(g, p->y[i]) + 4 : 0);
-    fprintf(g->file, "%s %s: %.4g x %.4g m, %lld particles",
-            rigid >= 0 ? "rigid" : kind_names[kind], common->name, n ? high[0] - low[0] : 0,
-            n ? high[1] - low[1] : 0, (long long)n);
+    fprintf(g->file, "%s %s: %.4g x %.4g m, %lld particles", section_table[common->section].word,
+            common->name, n ? high[0] - low[0] : 0, n ? high[1] - low[1] : 0, (long long)n);
     if (kind == KIND_FLUID) fprintf(g->file, "; %g kg/m^3, c0 %.4g m/s", scene->rho0, scene->c0);
     if (rigid >= 0)
         fprintf(g->file, "; %.4g kg/m, moves by itself", scene->rigid_mass[rigid].mass);

@@ -135,8 +135,9 @@ extern const char *const shape_words[];
 void case_apply_presets(struct reader *r);
 void case_apply_defaults(struct scene *scene);
 
-/* case/rigid.c: rigid bodies as walls with a motion; sections of a kind without these. */
-enum err case_place_rigid(struct reader *r) SPHFSI_CHECKED;
+/* case/rigid.c: rigid bodies as walls with a motion, beams as walls; sections of a kind without
+ * these. */
+enum err case_place_bodies(struct reader *r) SPHFSI_CHECKED;
 int case_given_count(const struct scene *scene, enum section_id id);
 
 /* case/check.c: names of other sections; then conditions on a valid scene, on each section by a
@@ -144,6 +145,7 @@ int case_given_count(const struct scene *scene, enum section_id id);
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
+enum err case_check_beam(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;

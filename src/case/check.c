@@ -27,12 +27,18 @@ static enum err check_name(struct reader *r, const struct param *param, const ch
                    two ? section_table[also].word : "", nearest_hint(&near));
 }
 
-/* The other kind of section that a probe of a pose or reaction may name. */
-static enum section_id rigid_or_spring(const struct scene *scene, const struct scene_probe *probe)
+/* The other kind of section that a probe of one body may name. */
+static enum section_id other_kind(const struct scene *scene, const struct scene_probe *probe)
 {
-    const bool spring =
-        probe->quantity == PROBE_REACTION && scene_find_spring(scene, probe->body) >= 0;
-    return spring ? SECTION_spring : SECTION_rigid;
+    switch ((enum probe_quantity)probe->quantity) {
+    case PROBE_REACTION:
+        if (scene_find_spring(scene, probe->body) >= 0) return SECTION_spring;
+        return scene_find_beam(scene, probe->body) >= 0 ? SECTION_beam : SECTION_rigid;
+    case PROBE_POSE: return SECTION_rigid;
+    case PROBE_STRESS:
+    case PROBE_STRAIN: return SECTION_solid;
+    default: return SECTION_beam;
+    }
 }
 
 /* What is measured of a body but for forces is that of one solid. */
@@ -47,11 +53,7 @@ static enum err check_names(struct reader *r, const struct param *param, const v
         if (*hinges->item[k].other) TRY(check_name(r, param, hinges->item[k].other, param->also));
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
-        return check_name(r, param, text,
-                          !one ? param->also
-                          : probe->quantity == PROBE_POSE || probe->quantity == PROBE_REACTION
-                              ? rigid_or_spring(r->scene, probe)
-                              : param->kind);
+        return check_name(r, param, text, !one ? param->also : other_kind(r->scene, probe));
     for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, param, name, param->also));
     return ERR_OK;
 }
@@ -189,7 +191,10 @@ static enum err check_contact(struct reader *r, const void *section)
 static enum err check_load(struct reader *r, const void *section)
 {
     const struct scene_load *const l = section;
+    if (l->moment.e[0] && scene_find_beam(r->scene, l->body) < 0)
+        return bad_section(r, "has a `moment`, which acts on a [beam]; %s is none", l->body);
     if (!l->force.e[0] != !l->traction.e[0]) return ERR_OK;
+    if (!l->force.e[0] && l->moment.e[0]) return ERR_OK;
     return bad_section(r, "needs either `force` or `traction`, and has %s",
                        l->force.e[0] ? "both" : "neither");
 }
@@ -306,7 +311,17 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
                 return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
     const int body = scene_find_solid(r->scene, p->body),
               rigid = scene_find_wall(r->scene, p->body) - scene_rigid_wall(r->scene, 0);
-    const struct scene_rigid *const of = rigid >= 0 ? &r->scene->rigid[rigid] : NULL;
+    const int beam = scene_find_beam(r->scene, p->body);
+    const struct scene_rigid *const of = rigid >= 0 && beam < 0 ? &r->scene->rigid[rigid] : NULL;
+    if (p->quantity == PROBE_SECTION_FORCE && beam < 0)
+        return bad_section(r, "measures the force in a cross-section of a [beam]; %s is none",
+                           p->body);
+    if (p->quantity == PROBE_REACTION && beam >= 0 &&
+        r->scene->beam[beam].clamp.n + r->scene->beam[beam].hinge.n == 0)
+        return bad_section(r,
+                           "measures the force of the clamps and hinges of [beam %s], which has "
+                           "none; give the beam a `clamp` or a `hinge`",
+                           p->body);
     if (p->quantity == PROBE_REACTION && of && of->hinge.n == 0 && of->guide[0] == 0 &&
         of->guide[1] == 0 && of->turns)
         return bad_section(r,
@@ -514,19 +529,28 @@ enum err case_check(struct reader *r)
         enum section_id section;
         enum err (*check)(struct reader *r, const void *section);
     } checks[] = {
-        {SECTION_top, check_top},          {SECTION_numerics, check_numerics},
-        {SECTION_output, check_output},    {SECTION_relax, check_relax},
-        {SECTION_fluid, check_fluid},      {SECTION_solid, check_solid},
-        {SECTION_rigid, case_check_rigid}, {SECTION_spring, case_check_spring},
-        {SECTION_damping, check_damping},  {SECTION_motion, check_motion},
-        {SECTION_inflow, case_check_open}, {SECTION_outflow, case_check_open},
-        {SECTION_probe, check_probe},      {SECTION_contact, check_contact},
-        {SECTION_load, check_load},        {SECTION_reference, check_reference},
+        {SECTION_top, check_top},
+        {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},
+        {SECTION_relax, check_relax},
+        {SECTION_fluid, check_fluid},
+        {SECTION_solid, check_solid},
+        {SECTION_rigid, case_check_rigid},
+        {SECTION_spring, case_check_spring},
+        {SECTION_beam, case_check_beam},
+        {SECTION_damping, check_damping},
+        {SECTION_motion, check_motion},
+        {SECTION_inflow, case_check_open},
+        {SECTION_outflow, case_check_open},
+        {SECTION_probe, check_probe},
+        {SECTION_contact, check_contact},
+        {SECTION_load, check_load},
+        {SECTION_reference, check_reference},
     };
-    if (r->scene->n_fluid == 0 && r->scene->n_solid == 0 && r->scene->n_rigid == 0)
+    if (r->scene->n_fluid + r->scene->n_solid + r->scene->n_rigid + r->scene->n_beam == 0)
         return bad_line(r, 1,
-                        "nothing to simulate: the case needs a [fluid NAME], a [solid NAME] or a "
-                        "[rigid NAME] section");
+                        "nothing to simulate: the case needs a [fluid NAME], a [solid NAME], a "
+                        "[rigid NAME] or a [beam NAME] section");
     for (size_t n = 0; n < COUNT_OF(checks); n++)
         for (int k = 0; k < section_count(r->scene, checks[n].section); k++) {
             r->section = section_at(r->scene, checks[n].section, k);

@@ -192,10 +192,11 @@ static const struct rule {
     {EFFECT_CONTACT, NEEDS, EFFECT_SOLID, "walls do not interact with each other"},
     {EFFECT_INFLOW, NEEDS, EFFECT_FLUID, "fluid enters through it"},
     {EFFECT_OUTFLOW, NEEDS, EFFECT_FLUID, "fluid leaves through it"},
-    {EFFECT_LOAD, NEEDS, EFFECT_SOLID, "a load acts on a body"},
     {EFFECT_DAMPING_ZONE, NEEDS, EFFECT_FLUID, "it damps the fluid"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX, "a rigid body moves while rest is sought"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX, "a beam moves while rest is sought"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_FLUID, "fluid does not act on beams"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary is no state of rest"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
 };

@@ -230,7 +230,8 @@ bool has_usual_name(const char *key, const char *word)
         {"cfl", "courant"},
         /* sections */
         {"fluid", "water liquid"},
-        {"solid", "body structure beam plate"},
+        {"solid", "body structure"},
+        {"beam", "plate shell rod frame"},
         {"wall", "boundary tank rigid"},
         {"load", "force"},
         {"probe", "gauge sensor"},

@@ -31,7 +31,7 @@ static enum err allocate_sections(struct reader *r)
     struct scene *const scene = r->scene;
     int count[SECTION_COUNT + 1] = {0};
     for (int k = 0; k < r->n_sections; k++) count[r->sections[k].id]++;
-    count[SECTION_wall] += count[SECTION_rigid];
+    count[SECTION_wall] += count[SECTION_rigid] + count[SECTION_beam];
     count[SECTION_motion] += count[SECTION_rigid];
     for (int id = 0; id < SECTION_COUNT; id++) {
         const struct section_info *const info = &section_table[id];
@@ -185,7 +185,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
         return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
     const bool valid = r->n_problems == 0;
     TRY(check_needed(r));
-    TRY(case_place_rigid(r));
+    TRY(case_place_bodies(r));
     case_apply_defaults(scene);
     TRY(case_check_names(r));
     if (valid) TRY(case_check(r));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A [rigid] section is a wall and a motion of the same name, the last of their kinds: all that
- * knows moving walls knows rigid bodies. */
+ * A [rigid] section is a wall and a motion of the same name, the last of their kinds but for beams:
+ * all that knows moving walls knows rigid bodies. A [beam] section is a wall. */
 #include "case/case.h"
 
 #include <math.h>
@@ -9,26 +9,30 @@
 
 int case_given_count(const struct scene *scene, enum section_id id)
 {
-    const bool more = id == SECTION_wall || id == SECTION_motion;
-    return section_count(scene, id) - (more ? scene->n_rigid : 0);
+    const int added = id == SECTION_wall     ? scene->n_rigid + scene->n_beam
+                      : id == SECTION_motion ? scene->n_rigid
+                                             : 0;
+    return section_count(scene, id) - added;
 }
 
 /* A name that another body has would be that of both. */
-static enum err check_own_name(struct reader *r, const struct scene_rigid *rigid)
+static enum err check_own_name(struct reader *r, const struct scene_section_common *common)
 {
-    static const enum section_id kinds[] = {SECTION_wall, SECTION_motion, SECTION_solid};
-    for (size_t n = 0; n < COUNT_OF(kinds); n++)
+    static const enum section_id kinds[] = {SECTION_wall, SECTION_motion, SECTION_solid,
+                                            SECTION_rigid};
+    const size_t n_kinds = common->section == SECTION_rigid ? COUNT_OF(kinds) - 1 : COUNT_OF(kinds);
+    for (size_t n = 0; n < n_kinds; n++)
         for (int k = 0; k < case_given_count(r->scene, kinds[n]); k++) {
             const struct scene_section_common *const other = section_at(r->scene, kinds[n], k);
             char title[TITLE_TEXT];
-            if (strcmp(other->name, rigid->common.name) == 0)
+            if (strcmp(other->name, common->name) == 0)
                 return bad_section(r, "has the name of %s; rename one of them",
                                    section_title(other, title));
         }
     return ERR_OK;
 }
 
-enum err case_place_rigid(struct reader *r)
+enum err case_place_bodies(struct reader *r)
 {
     struct scene *const scene = r->scene;
     scene->rigid_motion = arena_alloc(&scene->arena, (size_t)scene->n_rigid,
@@ -37,21 +41,29 @@ enum err case_place_rigid(struct reader *r)
                                     sizeof *scene->rigid_mass, "rigid bodies", r->diag);
     if (!scene->rigid_motion || !scene->rigid_mass) return ERR_MEMORY;
     if (scene->n_wall > SCENE_MAX_SECTIONS || scene->n_motion > SCENE_MAX_SECTIONS)
-        return bad_line(r, scene->rigid[0].common.line,
-                        "more than %d [wall] and [rigid], or [motion] and [rigid] sections are "
-                        "given; merge some of them",
+        return bad_line(r,
+                        scene->n_rigid ? scene->rigid[0].common.line : scene->beam[0].common.line,
+                        "more than %d [wall], [rigid] and [beam], or [motion] and [rigid] sections "
+                        "are given; merge some of them",
                         SCENE_MAX_SECTIONS);
     for (int k = 0; k < scene->n_rigid; k++) {
         const struct scene_rigid *const from = &scene->rigid[k];
         struct scene_wall *const wall = &scene->wall[scene_rigid_wall(scene, k)];
         struct scene_motion *const motion = &scene->motion[scene_rigid_motion(scene, k)];
         r->section = from;
-        TRY(case_go_on(r, check_own_name(r, from)));
+        TRY(case_go_on(r, check_own_name(r, &from->common)));
         wall->common = motion->common = from->common;
         wall->shape = from->shape;
         wall->minus = from->minus;
         wall->slip = from->slip;
         snprintf(wall->motion, sizeof wall->motion, "%s", from->common.name);
+    }
+    for (int k = 0; k < scene->n_beam; k++) {
+        struct scene_wall *const wall = &scene->wall[scene_beam_wall(scene, k)];
+        r->section = &scene->beam[k];
+        TRY(case_go_on(r, check_own_name(r, &scene->beam[k].common)));
+        wall->common = scene->beam[k].common;
+        wall->shape = scene->beam[k].shape;
     }
     return ERR_OK;
 }

@@ -43,6 +43,11 @@ int scene_find_spring(const struct scene *scene, const char *name)
     return find_section(scene, SECTION_spring, name);
 }
 
+int scene_find_beam(const struct scene *scene, const char *name)
+{
+    return find_section(scene, SECTION_beam, name);
+}
+
 double scene_solid_h(const struct scene *scene, int solid)
 {
     const double own = scene->numerics.solid_h_over_dp;
@@ -139,6 +144,7 @@ const enum probe_target probe_targets[PROBE_QUANTITIES] = {
     [PROBE_FLUX] = TARGET_FLUID_LINE,
     [PROBE_STRAIN] = TARGET_SOLID_POINT,
     [PROBE_ACCELERATION] = TARGET_SOLID_POINT,
+    [PROBE_SECTION_FORCE] = TARGET_SOLID_POINT,
     [PROBE_POSE] = TARGET_SOLID,
     [PROBE_REACTION] = TARGET_SOLID,
     [PROBE_SURFACE_PRESSURE] = TARGET_FLUID_LINE,

@@ -127,11 +127,12 @@ enum probe_quantity {
     PROBE_POSE,
     PROBE_REACTION,
     PROBE_SURFACE_PRESSURE,
+    PROBE_SECTION_FORCE,
     PROBE_QUANTITIES
 };
 /* What a quantity is measured of. */
 enum probe_target {
-    TARGET_SOLID_POINT, /* a material point of a solid */
+    TARGET_SOLID_POINT, /* a material point of a solid or beam */
     TARGET_FLUID_POINT,
     TARGET_ANY_POINT, /* one of these, depending on `body` */
     TARGET_SOLID,
@@ -345,11 +346,16 @@ struct rigid_motion {
     double time;
     struct motion_state now; /* its velocity and accelerations continue it */
 };
-/* The wall and the motion of a rigid body. */
+/* The wall of a rigid body, and of a beam: the last ones, in this order. */
 SPHFSI_INLINE int scene_rigid_wall(const struct scene *scene, int rigid)
 {
-    return scene->n_wall - scene->n_rigid + rigid;
+    return scene->n_wall - scene->n_beam - scene->n_rigid + rigid;
 }
+SPHFSI_INLINE int scene_beam_wall(const struct scene *scene, int beam)
+{
+    return scene->n_wall - scene->n_beam + beam;
+}
+/* The motion of a rigid body. */
 SPHFSI_INLINE int scene_rigid_motion(const struct scene *scene, int rigid)
 {
     return scene->n_motion - scene->n_rigid + rigid;
@@ -373,6 +379,7 @@ int scene_find_motion(const struct scene *scene, const char *name);
 int scene_find_solid(const struct scene *scene, const char *name);
 int scene_find_wall(const struct scene *scene, const char *name);
 int scene_find_spring(const struct scene *scene, const char *name);
+int scene_find_beam(const struct scene *scene, const char *name);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */

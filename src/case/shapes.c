@@ -101,7 +101,7 @@ static enum err read_thickness(struct reader *r, struct slice *text, struct shap
     const int section = r->sections[r->entry->section].id;
     const bool given = text->length >= length && memcmp(text->at, word, length) == 0,
                shaped = strcmp(r->entry->key, "shape") == 0,
-               wall = section == SECTION_wall && shaped;
+               wall = (section == SECTION_wall || section == SECTION_beam) && shaped;
     shape->bare = text->at[0] == ':' && wall;
     if ((!given && !shape->bare) || !slice_next(text, ':', &number) || !text->at)
         return bad_value(r, "write `polyline thickness T: X, Y; X, Y; ...`; `thickness T` may be "

@@ -175,7 +175,8 @@ static enum err check_probes(struct sampler *sampler)
         const struct scene_probe *probe = &scene->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (target == TARGET_SOLID_POINT) TRY(check_body_probe(sampler, probe));
+        if (target == TARGET_SOLID_POINT && scene_find_beam(scene, probe->body) < 0)
+            TRY(check_body_probe(sampler, probe));
         if (target == TARGET_FLUID_POINT || line)
             TRY(check_place(sampler, probe, "point", probe->point));
         if (line) TRY(check_place(sampler, probe, "to", probe->to));

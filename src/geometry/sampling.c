@@ -82,13 +82,13 @@ static enum err draw_region(struct sampler *sampler, struct region *region)
 static enum err list_regions(struct sampler *sampler)
 {
     const struct scene *scene = sampler->scene;
-    const int n = scene->n_solid + scene->n_wall + scene->n_fluid;
+    const int n_wall = scene_beam_wall(scene, 0), n = scene->n_solid + n_wall + scene->n_fluid;
     sampler->regions = geometry_alloc(sampler, (size_t)n, sizeof *sampler->regions);
     if (!sampler->regions) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++)
         add_region(sampler, KIND_SOLID, k, &scene->solid[k].common, &scene->solid[k].shape,
                    &scene->solid[k].minus);
-    for (int k = 0; k < scene->n_wall; k++)
+    for (int k = 0; k < n_wall; k++)
         add_region(sampler, KIND_WALL, k, &scene->wall[k].common, &scene->wall[k].shape,
                    &scene->wall[k].minus);
     for (int k = 0; k < scene->n_fluid; k++)

@@ -125,6 +125,9 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
     if (zones > 0) add_part(list, "zones", run, ITEM_DOUBLE, sim->damping.taken, zones, FORK_LOADS);
     if (n_rigid > 0)
         add_part(list, "rigid", run, ITEM_DOUBLE, sim->rigid.state, n_rigid, FORK_LOADS);
+    if (sim->beams.n > 0)
+        add_part(list, "beams", run, ITEM_DOUBLE, sim->beams.state,
+                 (size_t)sim->beams.n_nodes * BEAM_NUMBERS, FORK_LOADS);
     if (n_carried > 0)
         add_part(list, "rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS);
 }

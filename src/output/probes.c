@@ -10,7 +10,7 @@
 
 const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
     [PROBE_DISPLACEMENT] = {"displacement", "dx_m,dy_m",
-                            "displacement of a material point of a solid"},
+                            "displacement of a material point of a solid or beam"},
     [PROBE_VELOCITY] =
         {"velocity", "vx_m_per_s,vy_m_per_s",
          "velocity of a material point of `body`. Without `body`: velocity of the fluid at a fixed "
@@ -30,14 +30,16 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
                      "coordinate of the foremost fluid in `direction`; drops of one or two "
                      "particles do not count"},
     [PROBE_ENERGY] = {"energy", "kinetic_J_per_m,elastic_J_per_m,hourglass_J_per_m",
-                      "kinetic energy, strain energy and energy of the hourglass force of a solid"},
+                      "kinetic energy, strain energy and energy of the hourglass force of a solid; "
+                      "of a beam the first two"},
     [PROBE_FLUX] = {"flux", "q_m2_per_s",
                     "volume flow rate per metre of depth through the line from `point` to `to`; "
                     "positive from left to right, seen from `point` towards `to`"},
     [PROBE_STRAIN] = {"strain", "Exx_1,Eyy_1,Exy_1",
                       "Green-Lagrange strain at a material point of a solid"},
     [PROBE_ACCELERATION] = {"acceleration", "ax_m_per_s2,ay_m_per_s2",
-                            "acceleration of a material point of a solid"},
+                            "acceleration of a material point of a solid; of a beam its mean over "
+                            "the last step"},
     [PROBE_POSE] = {"pose", "cx_m,cy_m,angle_rad",
                     "position of the centre of mass of a solid or rigid body, and its "
                     "counter-clockwise rotation: of a solid by least squares over its particles, "
@@ -45,13 +47,18 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
     [PROBE_REACTION] =
         {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
          "reaction force and its counter-clockwise moment about `point`: of clamps and "
-         "hinges on a solid, of a hinge or guide on a rigid body, or of a spring at "
+         "hinges on a solid or beam, of a hinge or guide on a rigid body, or of a spring at "
          "its end `to`"},
     [PROBE_SURFACE_PRESSURE] =
         {"surface_pressure", "p_Pa,fx_N_per_m,fy_N_per_m",
          "mean pressure of the fluid along the line from `point` to `to`, such as the face of a "
          "wall. The force is that of this pressure on a surface with the fluid to the left of the "
          "line. Where it is dry, the pressure is 0"},
+    [PROBE_SECTION_FORCE] =
+        {"section_force", "n_N_per_m,q_N_per_m,m_N,curvature_1_per_m",
+         "axial force (tension is positive), shear force and moment in the cross-section of a beam "
+         "at `point`, per depth, and its change of curvature; counter-clockwise along its line is "
+         "positive"},
 };
 
 /* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;
@@ -134,6 +141,22 @@ static enum err attach(struct probe *probe, const struct scene_probe *sp,
     return ERR_OK;
 }
 
+/* A point within half of the beam's thickness, or of an element, of its line. */
+static enum err attach_to_beam(struct probe *probe, const struct scene_probe *sp,
+                               const struct simulation *sim, struct diag *d)
+{
+    const struct beams *const beams = &sim->beams;
+    const struct scene_beam *const given = &sim->scene->beam[probe->beam];
+    probe->place = beam_find(beams, probe->beam, probe->point);
+    const double off = probe->place.distance;
+    if (probe->target != TARGET_SOLID_POINT ||
+        off <= 0.5 * beams->element[probe->place.element].length || off <= 0.5 * given->thickness)
+        return ERR_OK;
+    return fail_at(d, sim->scene, sp->common.line,
+                   "[probe %s] point = %g, %g is %.3g m from the line of [beam %s]; move it there",
+                   sp->common.name, probe->point[0], probe->point[1], off, given->common.name);
+}
+
 static int quantity_columns(int quantity)
 {
     int n = 1;
@@ -193,9 +216,11 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                             .average = sp->average,
                             .motion = -1,
                             .kind = KIND_SOLID,
-                            .body = scene_find_solid(sim->scene, sp->body)};
+                            .body = scene_find_solid(sim->scene, sp->body),
+                            .beam = scene_find_beam(sim->scene, sp->body)};
     memcpy(probe->point, sp->point, sizeof probe->point);
     memcpy(probe->to, sp->to, sizeof probe->to);
+    if (probe->beam >= 0 && probe->target != TARGET_BODY) return attach_to_beam(probe, sp, sim, d);
     if (probe->target == TARGET_SOLID && probe->body < 0) {
         probe->kind = KIND_WALL;
         probe->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
@@ -439,12 +464,46 @@ static void surface_pressure(const struct probe *probe, const struct simulation 
     fluid_pressure_on(sim, from, to, out);
 }
 
+/* Of a beam: linear between its nodes. */
+static void evaluate_beam(const struct probe *probe, const struct simulation *sim, double *row,
+                          double *rate)
+{
+    const struct beams *const beams = &sim->beams;
+    const int *const node = beams->element[probe->place.element].node;
+    const struct beam_state *const a = &beams->state[node[0]], *const b = &beams->state[node[1]];
+    const double part = probe->place.part;
+    struct body_energy energy;
+    switch ((enum probe_quantity)probe->quantity) {
+    case PROBE_SECTION_FORCE: beam_section(beams, &probe->place, row); return;
+    case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->point, row); return;
+    case PROBE_ENERGY:
+        energy = beam_energy(beams, probe->beam);
+        row[0] = energy.kinetic, row[1] = energy.elastic, row[2] = 0;
+        return;
+    default: break;
+    }
+    for (int c = 0; c < 2; c++) {
+        const double v = a->v[c] + part * (b->v[c] - a->v[c]);
+        row[c] = v;
+        if (probe->quantity == PROBE_DISPLACEMENT) {
+            row[c] = a->x[c] + part * (b->x[c] - a->x[c]);
+            rate[c] = v;
+        } else if (probe->quantity == PROBE_ACCELERATION) {
+            row[c] = a->a[c] + part * (b->a[c] - a->a[c]);
+        }
+    }
+}
+
 /* Values, and their rates where these are known. */
 static void evaluate(const struct probe *probe, struct simulation *sim, double *row, double *rate)
 {
     struct particles *const solid = &sim->kind[KIND_SOLID];
     struct solid_forces_now now;
     double at[2] = {0};
+    if (probe->beam >= 0 && probe->target != TARGET_BODY) {
+        evaluate_beam(probe, sim, row, rate);
+        return;
+    }
     if (probe->target == TARGET_FLUID_POINT) present_point(probe, sim, at);
     switch ((enum probe_quantity)probe->quantity) {
     case PROBE_DISPLACEMENT:
@@ -482,6 +541,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
     case PROBE_STRAIN: strain(probe, sim, row); break;
     case PROBE_POSE: (probe->kind == KIND_WALL ? rigid_pose : pose)(probe, sim, row, rate); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(probe, sim, row); break;
+    case PROBE_SECTION_FORCE: break;
     case PROBE_QUANTITIES: break;
     }
 }

@@ -34,6 +34,8 @@ struct probe {
     int direction;             /* enum probe_direction */
     enum kind kind;            /* of the body: KIND_WALL of a rigid one */
     int body;                  /* its section among the solids, or rigid bodies; -1: none */
+    int beam;                  /* that is measured; -1: none */
+    struct beam_place place;   /* on it */
     int n_bodies;              /* of a force */
     struct probe_body *bodies;
     int spring;              /* of a reaction; -1: that of a body */

@@ -95,6 +95,8 @@ enum err ranges_check(const struct simulation *sim, struct diag *d)
         TRY(range_check("damping", sim->damping.taken[k], 0, FINITE, d));
     for (int k = 0; k < sim->rigid.n * RIGID_NUMBERS; k++)
         TRY(range_check("rigid", ((const double *)sim->rigid.state)[k], -FINITE, FINITE, d));
+    for (int k = 0; k < sim->beams.n_nodes * BEAM_NUMBERS; k++)
+        TRY(range_check("beams", ((const double *)sim->beams.state)[k], -FINITE, FINITE, d));
     TRY(check_state(sim, d));
     return check_energy(&sim->state.energy, d);
 }

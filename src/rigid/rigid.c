@@ -206,12 +206,12 @@ void rigid_advance(struct rigid *rigid, const double gravity[2], double time, do
 
 /* --- energy --- */
 
-struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt)
+struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt)
 {
     const struct rigid_body *const body = &rigid->body[k];
     const struct rigid_state *const s = &rigid->state[k];
     const double *const g = rigid->scene->top.gravity;
-    struct rigid_energy e = {.mass = body->mass[0]};
+    struct body_energy e = {.mass = body->mass[0]};
     double v[3], impulse[3];
     at_end(rigid, dt, s->v, s->last, v);
     at_end(rigid, dt, s->impulse, s->rate, impulse);

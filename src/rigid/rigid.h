@@ -80,9 +80,9 @@ void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], 
 
 /* Energy and momentum of a body, per depth; `waiting`: the work that the fluid has still to
  * receive. */
-struct rigid_energy {
+struct body_energy {
     double kinetic, potential, elastic, momentum[2], mass, waiting;
 };
-struct rigid_energy rigid_energy(const struct rigid *rigid, int k, double dt);
+struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt);
 
 #endif

@@ -104,13 +104,15 @@ static void begin_load(struct loads *v, struct load_region *load, const struct p
 static enum err find_loads(struct loads *v, struct arena *a, const struct particles *particles,
                            struct arena *temp, struct diag *d)
 {
-    v->load = arena_alloc(a, (size_t)v->n_loads, sizeof *v->load, "loads", d);
-    const size_t most = (size_t)v->n_loads * (size_t)particles->n;
+    const struct scene *const scene = v->scene;
+    v->load = arena_alloc(a, (size_t)scene->n_load, sizeof *v->load, "loads", d);
+    const size_t most = (size_t)scene->n_load * (size_t)particles->n;
     v->loaded = arena_alloc(temp, most, sizeof *v->loaded, "loads", d);
     if (!v->load || !v->loaded) return ERR_MEMORY;
-    for (int k = 0; k < v->n_loads; k++) {
-        v->load[k].section = k;
-        TRY(find_loaded(v, &v->load[k], particles, temp, d));
+    for (int k = 0; k < scene->n_load; k++) {
+        if (scene_find_solid(scene, scene->load[k].body) < 0) continue; /* of a beam */
+        v->load[v->n_loads].section = k;
+        TRY(find_loaded(v, &v->load[v->n_loads++], particles, temp, d));
     }
     const size_t n = (size_t)v->n_loaded;
     const int32_t *const found = v->loaded;
@@ -127,7 +129,7 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
                       struct particles *particles, struct diag *d)
 {
-    *v = (struct loads){.scene = scene, .n_loads = scene->n_load};
+    *v = (struct loads){.scene = scene};
     TRY(find_held(v, a, particles, d));
     struct arena temp = {.limit = a->limit};
     const enum err e = find_loads(v, a, particles, &temp, d);

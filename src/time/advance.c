@@ -24,6 +24,12 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick)
     energy_of_rigid(sim);
 }
 
+void advance_beams(struct simulation *sim, double time, double dt)
+{
+    beams_advance(&sim->beams, time, dt);
+    energy_of_beams(sim);
+}
+
 /* The extremes over a range of fluid particles, without branches. */
 static struct extremes extremes_of(const struct particles *particles, int64_t from, int64_t end)
 {

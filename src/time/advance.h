@@ -46,6 +46,9 @@ void advance_structure(struct simulation *sim, double dt, double kick);
 /* The step of rigid bodies from a time on, in the same way. */
 void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 
+/* The step of beams from a time on. */
+void advance_beams(struct simulation *sim, double time, double dt);
+
 /* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
  * any kind. */
 void update_extremes(struct simulation *sim);

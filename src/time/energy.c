@@ -93,19 +93,25 @@ static double add_solids(struct simulation *sim, struct energies *solid)
     return lowest;
 }
 
-static void add_rigid(const struct simulation *sim, struct energies *wall)
+static struct energies energies_of_body(const struct body_energy e)
 {
-    for (int k = 0; k < sim->rigid.n; k++) {
-        const struct rigid_energy e = rigid_energy(&sim->rigid, k, sim->state.dt);
+    return (struct energies){.row = {.kinetic = e.kinetic,
+                                     .potential = e.potential,
+                                     .elastic = e.elastic,
+                                     .momentum_x = e.momentum[0],
+                                     .momentum_y = e.momentum[1],
+                                     .mass = e.mass},
+                             .waiting = e.waiting};
+}
+
+/* Rigid bodies and beams. */
+static void add_bodies(const struct simulation *sim, struct energies *wall)
+{
+    for (int k = 0; k < sim->rigid.n; k++)
         wall[scene_rigid_wall(sim->scene, k)] =
-            (struct energies){.row = {.kinetic = e.kinetic,
-                                      .potential = e.potential,
-                                      .elastic = e.elastic,
-                                      .momentum_x = e.momentum[0],
-                                      .momentum_y = e.momentum[1],
-                                      .mass = e.mass},
-                              .waiting = e.waiting};
-    }
+            energies_of_body(rigid_energy(&sim->rigid, k, sim->state.dt));
+    for (int k = 0; k < sim->beams.n; k++)
+        wall[scene_beam_wall(sim->scene, k)] = energies_of_body(beam_energy(&sim->beams, k));
 }
 
 /* Returns the smallest det F. */
@@ -113,7 +119,7 @@ static double find_energies(struct simulation *sim, struct energies of[ENERGY_EN
 {
     memset(of, 0, ENERGY_ENTRIES * sizeof *of);
     if (sim->effects & FX_FLUID) add_fluid(sim, of);
-    if (sim->effects & FX_RIGID) add_rigid(sim, &of[energy_entry(KIND_WALL, 0)]);
+    if (sim->effects & (FX_RIGID | FX_BEAM)) add_bodies(sim, &of[energy_entry(KIND_WALL, 0)]);
     return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
 }
 
@@ -129,10 +135,9 @@ struct ledger simulation_ledger(struct simulation *sim)
     row.time = state->time;
     row.dt = state->dt;
     row.det_low = det_low;
-    if (sim->solid.implicit) {
-        row.newton_steps = sim->solid.implicit->iterations;
-        row.newton_residual = sim->solid.implicit->residual;
-    }
+    const struct implicit *const by = sim->solid.implicit;
+    row.newton_steps = max2(sim->beams.iterations, by ? by->iterations : 0);
+    row.newton_residual = max2(sim->beams.residual, by ? by->residual : 0);
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
                      sim->solid.work + open_energy(&sim->open) - state->lost_energy - row.kinetic -
                      row.internal - row.elastic - row.hourglass - row.contact - row.potential;
@@ -314,6 +319,15 @@ void energy_of_rigid(struct simulation *sim)
         struct energy_entry *const e = entry_of(sim, KIND_WALL, scene_rigid_wall(sim->scene, k));
         e->supplied += body->work + body->driven + body->passed;
         e->received += body->work;
+    }
+}
+
+void energy_of_beams(struct simulation *sim)
+{
+    for (int k = 0; k < sim->beams.n; k++) {
+        const double work = sim->beams.beam[k].work;
+        sim->state.wall_work += work;
+        energy_supply(sim, KIND_WALL, scene_beam_wall(sim->scene, k), work);
     }
 }
 

@@ -65,9 +65,8 @@ static int write_region_name(const struct simulation *sim, int region, char text
         const int section = n % SCENE_MAX_SECTIONS;
         if (sim->state.energy.entry[energy_entry(kind, section)].region != region) continue;
         const struct scene_section_common *const common = section_at(sim->scene, id[kind], section);
-        const bool rigid = kind == KIND_WALL && section >= scene_rigid_wall(sim->scene, 0);
         used += (size_t)snprintf(text + used, REGION_NAME - used, "%s[%s %s]", used ? ", " : "",
-                                 rigid ? "rigid" : kind_names[kind], common->name);
+                                 section_table[common->section].word, common->name);
         names++;
     }
     return names;

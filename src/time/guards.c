@@ -360,14 +360,25 @@ static void check_rigid(struct simulation *sim, struct diag *d)
                   "contact ends a quarter of a spacing inside and is absent at a hinge; hold the "
                   "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
                   time_text(sim).text, sim->scene->rigid[k].common.name,
-                  other < scene_rigid_wall(sim->scene, 0) ? "wall" : "rigid",
+                  section_table[sim->scene->wall[other].common.section].word,
                   sim->scene->wall[other].common.name, p->x[at], p->y[at]);
         return;
     }
 }
 
+static enum err check_beams(const struct simulation *sim, struct diag *d)
+{
+    if (!sim->beams.failed) return ERR_OK;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: Newton's method finds no solution for the step of the beams of %.3g s or "
+                     "for parts of it (residual: %.2g of the largest force); a smaller fixed_step "
+                     "or more damping may help",
+                     time_text(sim).text, sim->state.dt, sim->beams.residual);
+}
+
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
+    if (sim->effects & FX_BEAM) TRY(check_beams(sim, d));
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
     if (sim->effects & FX_RIGID) check_rigid(sim, d);
     if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));

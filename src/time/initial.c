@@ -206,6 +206,15 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+/* Of rigid bodies and beams alone. */
+static void set_step_of_bodies(struct simulation *sim)
+{
+    double step = (double)INFINITY;
+    if (sim->effects & FX_RIGID) step = rigid_longest_step(&sim->rigid);
+    if (sim->effects & FX_BEAM) step = min2(step, beams_longest_step(&sim->beams));
+    sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step = step;
+}
+
 enum err initial_state(struct simulation *sim, struct diag *d)
 {
     sim->gravity_varies = scene_gravity_varies(sim->scene);
@@ -238,9 +247,8 @@ enum err initial_state(struct simulation *sim, struct diag *d)
                              sim->integrator->ahead > 0 || !(sim->effects & FX_FLUID), d));
         move_walls(sim, 0);
     }
-    if (!(sim->effects & (FX_FLUID | FX_SOLID)))
-        sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step =
-            rigid_longest_step(&sim->rigid);
+    if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
+    if (!(sim->effects & (FX_FLUID | FX_SOLID))) set_step_of_bodies(sim);
     TRY(choose_rate(sim, d));
     set_guards(sim);
     update_extremes(sim);

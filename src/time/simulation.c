@@ -187,5 +187,7 @@ uint64_t simulation_hash(struct simulation *sim)
     h = hash_bytes(h, &state, offsetof(struct state, energy));
     if (sim->effects & FX_RIGID)
         h = hash_bytes(h, sim->rigid.state, (size_t)sim->rigid.n * sizeof *sim->rigid.state);
+    if (sim->effects & FX_BEAM)
+        h = hash_bytes(h, sim->beams.state, (size_t)sim->beams.n_nodes * sizeof *sim->beams.state);
     return sim->effects & FX_OPEN ? open_hash(&sim->open, h) : h;
 }

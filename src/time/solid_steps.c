@@ -126,7 +126,8 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
     const double bound = find_bounds(sim);
     const bool external = sim->external[KIND_SOLID].at != NULL;
-    const int batch = external || sim->gravity_varies || implicit || sim->rigid.n ? 1 : SOLID_BATCH;
+    const bool single = external || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
+    const int batch = single ? 1 : SOLID_BATCH;
     /* Rounding of the times must not add a step. */
     const double left = t_limit - begin, steps = max2(1, ceil(left / bound - 1e-6));
     const bool hits = steps <= batch;
@@ -140,6 +141,7 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
     if (sim->effects & FX_RIGID) advance_rigid(sim, begin, st->time - begin, st->time - begin);
+    if (sim->effects & FX_BEAM) advance_beams(sim, begin, st->time - begin);
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     book_lone(sim, dt, n);

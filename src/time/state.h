@@ -4,6 +4,7 @@
 #ifndef SPHFSI_TIME_STATE_H
 #define SPHFSI_TIME_STATE_H
 
+#include "beam/beam.h"
 #include "coupling/coupling.h"
 #include "fluid/damping.h"
 #include "fluid/open.h"
@@ -94,6 +95,7 @@ struct simulation {
     struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
     struct wall_motion wall_motion; /* walls that move; unused where none does */
     struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
+    struct beams beams;             /* unused without any */
     struct damping damping;         /* zones of damping; unused without any */
     struct open open;               /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */

@@ -58,6 +58,13 @@ static const char scene_text[] =
     "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
     "[reference more]\nprobe = tip_dx_m\nformula = 0\n";
 
+/* Beams are beside no fluid. */
+static const char beam_text[] =
+    "dp = 2 mm\nend_time = 1\n[wall floor]\nshape = box 0.9, 0, 1.1, 4 mm\n[motion lift]\n"
+    "[beam more]\nshape = polyline: 0, 0; 1, 0\nclamp = 0.5, 0\nthickness = 1 mm\n"
+    "young = 1e6\ndensity = 1000\n"
+    "[load more]\nbody = more\nshape = box 0, -0.1, 1, 0.1\nforce = 1, 0\n";
+
 static bool is(const struct param *param, const char *section, const char *key)
 {
     return strcmp(section_table[param->section].word, section) == 0 && strcmp(param->key, key) == 0;
@@ -109,7 +116,9 @@ static void example_is_accepted(const struct param *param)
                                                       : " more",
                  param->key, example);
     const char *sets[] = {set, companion(param)};
-    snprintf(text, sizeof text, "%s", scene_text);
+    const bool beam = param->section == SECTION_beam || is(param, "load", "moment");
+    snprintf(text, sizeof text, "%s", beam ? beam_text : scene_text);
+    if (is(param, "beam", "mass")) *strstr(text, "density") = '#';
     /* Of the two ways to give a reference one is to go, as `body` is where the fluid is probed. */
     if (is(param, "reference", "file")) *strstr(text, "formula") = '#';
     if (is(param, "inflow", "velocity") || is(param, "inflow", "pressure") ||

@@ -41,7 +41,8 @@ static const struct {
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
-     "fluid, wall, solid, rigid, spring, damping, contact, load, motion, inflow, outflow, probe, "
+     "fluid, wall, solid, rigid, beam, spring, damping, contact, load, motion, inflow, outflow, "
+     "probe, "
      "reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
@@ -118,8 +119,8 @@ static const struct {
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\n", NULL,
      "bad.cfg:3: [solid a] lacks `poisson`: Poisson ratio nu"},
     {TOP, NULL,
-     "bad.cfg:1: nothing to simulate: the case needs a [fluid NAME], a [solid NAME] or a [rigid "
-     "NAME] section"},
+     "bad.cfg:1: nothing to simulate: the case needs a [fluid NAME], a [solid NAME], a [rigid "
+     "NAME] or a [beam NAME] section"},
     {"dp = 0.5 MPa\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 0.5 MPa: a pressure (Pa) where a length (m) is expected"},
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 mm\npoisson = 0.3\n",
@@ -329,7 +330,7 @@ static const struct {
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
      "bad.cfg:8: [probe M1] needs `body`, the solid that is measured"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
-     "bad.cfg:9: body = aa: there is no [solid] of that name"},
+     "bad.cfg:9: body = aa: there is no [solid] or [beam] of that name"},
     {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,
      "bad.cfg:8: [probe M1] point (0, 1) lies about 0.98 m outside of [solid a]"},
     {TOP SOLID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,

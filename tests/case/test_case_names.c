@@ -41,10 +41,10 @@ static void test_names_are_checked_beside_wrong_values(void)
                 "arc thickness T: X, Y, R, A, B\n"
                 "bad.cfg:8: [wall w] lacks `shape`: rigid wall (m)\n"
                 "bad.cfg:9: motion = mm: there is no [motion] of that name\n"
-                "bad.cfg:16: body = b: there is no [solid] of that name\n"
+                "bad.cfg:16: body = b: there is no [solid] or [beam] of that name\n"
                 "bad.cfg:18: [load l] lacks `shape`: region of the body, in the reference "
                 "configuration, whose particles carry the load (m)\n"
-                "bad.cfg:19: body = aa: there is no [solid] of that name\n"
+                "bad.cfg:19: body = aa: there is no [solid] or [beam] of that name\n"
                 "bad.cfg:21: between = v: there is no [solid] or [wall] of that name\n");
 }
 
@@ -57,7 +57,7 @@ static void test_checks_go_on_after_the_first(void)
         "bad.cfg:8: joined = zz: there is no [solid] of that name\n"
         "bad.cfg:9: [probe p] lacks `point`: quantity = displacement needs the place, two "
         "numbers, in metres\n"
-        "bad.cfg:10: body = zz: there is no [solid] of that name\n"
+        "bad.cfg:10: body = zz: there is no [solid] or [beam] of that name\n"
         "bad.cfg:11: [load l] lacks `shape`: region of the body, in the reference configuration, "
         "whose particles carry the load (m)\n"
         "bad.cfg:11: [load l] needs either `force` or `traction`, and has neither\n"

@@ -76,6 +76,9 @@ static const struct {
      FX_FLUID | FX_WALL | FX_THIN, EFFECT_THIN, "line 7: [wall bed] shape"},
     {TOP FLUID "[rigid r]\nshape = box 0, 0.2, 0.1, 0.3\ndensity = 500\n",
      FX_FLUID | FX_WALL | FX_MOTION | FX_RIGID, EFFECT_RIGID, "line 6: [rigid r]"},
+    {TOP "[beam b]\nshape = polyline: 0, 0; 1, 0\nmass = 1\naxial_stiffness = 1\n"
+         "bending_stiffness = 1\n",
+     FX_BEAM, EFFECT_BEAM, "line 3: [beam b]"},
     {TOP FLUID "[damping d]\nto = 1, 0\nrate = 5\n", FX_FLUID | FX_DAMPING_ZONE,
      EFFECT_DAMPING_ZONE, "line 6: [damping d]"},
     {TOP PLAIN_SOLID, FX_SOLID | FX_CONTACT, EFFECT_SOLID, "line 3: [solid s]"},

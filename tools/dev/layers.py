@@ -18,8 +18,8 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-LAYERS = ("base expr particles case geometry fluid rigid solid implicit coupling time output check "
-          "app").split()
+LAYERS = ("base expr particles case geometry fluid rigid solid implicit beam coupling time output "
+          "check app").split()
 LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg "
            "stdbool stddef stdint stdio stdlib string sys/auxv time unistd".split())
 INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')

@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: MIT
+ * From [beam] sections to nodes and elements, and what output asks of them. */
+#include "beam/beam.h"
+#include "base/elementary.h"
+
+#include "case/params.h"
+#include "geometry/outline.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char what[] = "beams";
+
+/* --- lines --- */
+
+/* Elements that a segment is divided into. */
+static int parts_of(const struct scene *scene, const struct scene_beam *given, const double a[2],
+                    const double b[2])
+{
+    const double size = given->element > 0 ? given->element : scene->top.dp;
+    const double parts = ceil(elementary_hypot(b[0] - a[0], b[1] - a[1]) / size * (1 - 1e-9));
+    return (int)max2(1, min2(parts, 1e6));
+}
+
+static bool is_closed(const struct shape *line)
+{
+    const double *const first = line->pt[0], *const last = line->pt[line->n - 1];
+    return line->n > 3 && first[0] == last[0] && first[1] == last[1];
+}
+
+static void count_elements(struct beams *beams)
+{
+    for (int k = 0; k < beams->n; k++) {
+        struct beam *const b = &beams->beam[k];
+        const struct shape *const line = b->given->shape.item;
+        b->first_node = beams->n_nodes;
+        b->first_element = beams->n_elements;
+        for (int s = 0; s + 1 < line->n; s++)
+            beams->n_elements += parts_of(beams->scene, b->given, line->pt[s], line->pt[s + 1]);
+        b->end_element = beams->n_elements;
+        beams->n_nodes += b->end_element - b->first_element + !is_closed(line);
+        b->end_node = beams->n_nodes;
+    }
+}
+
+/* EA, GA, EI per depth: T-103b. */
+static void stiffness_of(const struct scene_beam *b, double of[3])
+{
+    const double young = b->plane == PLANE_STRAIN ? b->young / (1 - square(b->poisson)) : b->young,
+                 t = b->thickness, shear = 5.0 / 6 * b->young / (2 + 2 * b->poisson) * t;
+    of[0] = isnan(b->axial_stiffness) ? young * t : b->axial_stiffness;
+    of[1] = isnan(b->shear_stiffness) ? shear : b->shear_stiffness;
+    of[2] = isnan(b->bending_stiffness) ? young * t * t * t / 12 : b->bending_stiffness;
+}
+
+/* T-103d: Gregory's quadrature of n equal elements, exact for cubic functions: total mass, its
+ * centre and its inertia are those of the line. */
+static double weight_of(int k, int n)
+{
+    static const double ends[] = {3.0 / 8, 7.0 / 6, 23.0 / 24};
+    const int last = n - k;
+    if (n == 1) return 0.5;
+    return 1 + (k < 3 ? ends[k] - 1 : 0) + (last < 3 ? ends[last] - 1 : 0);
+}
+
+/* The elements of one segment; returns its last node. */
+static int place_segment(struct beams *beams, int beam, int from, const double a[2],
+                         const double b[2], int *element)
+{
+    struct beam *const of = &beams->beam[beam];
+    const struct scene_beam *const given = of->given;
+    const int n = parts_of(beams->scene, given, a, b);
+    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]) / n;
+    const double mass = isnan(given->mass) ? given->density * given->thickness : given->mass;
+    const double rotary = isnan(given->thickness) ? 0 : square(given->thickness) / 12;
+    double stiffness[3];
+    stiffness_of(given, stiffness);
+    /* T-103c, MacNeal 1978. Without a shear stiffness it is rigid in shear. */
+    const double bent = square(length) / (12 * stiffness[2]);
+    stiffness[1] = 1 / (bent + (isnan(stiffness[1]) ? 0 : 1 / stiffness[1]));
+    int node = from;
+    for (int k = 0; k <= n; k++) {
+        const int at = from + k < of->end_node ? from + k : of->first_node;
+        struct beam_node *const to = &beams->node[at];
+        to->beam = beam;
+        for (int c = 0; c < 2; c++) to->X[c] = a[c] + (b[c] - a[c]) * k / n;
+        to->length += k == 0 || k == n ? 0.5 * length : length;
+        for (int c = 0; c < 3; c++)
+            to->mass[c] += mass * length * weight_of(k, n) * (c < 2 ? 1 : rotary);
+        if (k > 0) {
+            struct beam_element *const e = &beams->element[(*element)++];
+            *e = (struct beam_element){.node = {node, at},
+                                       .between = {(b[0] - a[0]) / n, (b[1] - a[1]) / n},
+                                       .length = length,
+                                       .damping_time = given->damping_time};
+            memcpy(e->stiffness, stiffness, sizeof stiffness);
+        }
+        node = at;
+    }
+    return node;
+}
+
+static void place_nodes(struct beams *beams)
+{
+    int element = 0;
+    for (int k = 0; k < beams->n; k++) {
+        const struct shape *const line = beams->beam[k].given->shape.item;
+        int node = beams->beam[k].first_node;
+        for (int s = 0; s + 1 < line->n; s++)
+            node = place_segment(beams, k, node, line->pt[s], line->pt[s + 1], &element);
+    }
+}
+
+/* --- clamps, hinges, loads --- */
+
+static int mover_of(const struct scene *scene, const struct scene_beam *beam, const char *other)
+{
+    const int wall = *other ? scene_find_wall(scene, other) : -1;
+    return scene_find_motion(scene, wall >= 0 ? scene->wall[wall].motion : beam->motion);
+}
+
+/* Holds the node nearest to each point: its displacements, with clamps its rotation, too. */
+static enum err hold(struct beams *beams, int beam, const struct hinge_list *list, bool turns,
+                     struct diag *d)
+{
+    const struct scene_beam *const given = beams->beam[beam].given;
+    for (int k = 0; k < list->n; k++) {
+        const struct hinge_point *const at = &list->item[k];
+        const struct beam_place place = beam_find(beams, beam, at->at);
+        const struct beam_element *const e = &beams->element[place.element];
+        if (place.distance > 0.5 * e->length)
+            return fail_at(d, beams->scene, at->line,
+                           "[beam %s] %s = %g, %g is %.3g m from the beam; move it onto its line",
+                           given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
+                           place.distance);
+        struct beam_node *const node = &beams->node[e->node[place.part > 0.5]];
+        for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
+        node->mover = mover_of(beams->scene, given, at->other);
+    }
+    return ERR_OK;
+}
+
+static bool is_loaded(const struct outlines *o, const struct beam_node *node, double dp)
+{
+    /* An edge counts as in the sampling of bodies. */
+    return outlines_find(o, node->X[0] + 1e-6 * dp, node->X[1] + 0.618e-6 * dp) >= 0;
+}
+
+static enum err find_load(struct beams *beams, int section, struct arena *temp, struct diag *d)
+{
+    const struct scene *const scene = beams->scene;
+    const struct scene_load *const from = &scene->load[section];
+    const int beam = scene_find_beam(scene, from->body), first = beams->n_loads;
+    struct outlines o;
+    double length = 0;
+    if (beam < 0) return ERR_OK;
+    TRY(outlines_of(&o, scene, &from->shape, temp, d));
+    for (int k = beams->beam[beam].first_node; k < beams->beam[beam].end_node; k++) {
+        if (!is_loaded(&o, &beams->node[k], scene->top.dp)) continue;
+        beams->load[beams->n_loads++] =
+            (struct beam_load){.section = section, .node = k, .length = beams->node[k].length};
+        length += beams->node[k].length;
+    }
+    for (int k = first; k < beams->n_loads; k++)
+        beams->load[k].part = beams->load[k].length / length;
+    if (beams->n_loads > first) return ERR_OK;
+    return fail_at(d, scene, from->common.line,
+                   "[load %s] contains no node of [beam %s], which are up to %.3g m apart; move or "
+                   "enlarge its `shape`",
+                   from->common.name, from->body,
+                   beams->element[beams->beam[beam].first_element].length);
+}
+
+/* --- unknowns --- */
+
+static enum err number_unknowns(struct beams *beams, struct arena *a, struct arena *temp,
+                                struct diag *d)
+{
+    int64_t n = 0;
+    for (int k = 0; k < beams->n_nodes; k++)
+        for (int c = 0; c < 3; c++)
+            if (beams->node[k].row[c] >= 0) beams->node[k].row[c] = n++;
+    int64_t *const first = arena_alloc(temp, (size_t)n, sizeof *first, what, d);
+    beams->unknown = arena_alloc(a, (size_t)n + ENVELOPE_ALIGN, sizeof *beams->unknown, what, d);
+    if (!first || !beams->unknown) return ERR_MEMORY;
+    for (int64_t k = 0; k < n; k++) first[k] = k;
+    for (int m = 0; m < beams->n_elements; m++)
+        for (int r = 0; r < 6; r++)
+            for (int c = 0; c < 6; c++) {
+                const int *const node = beams->element[m].node;
+                const int64_t row = beams->node[node[r / 3]].row[r % 3],
+                              column = beams->node[node[c / 3]].row[c % 3];
+                if (row >= 0 && column >= 0 && column < first[row]) first[row] = column;
+            }
+    return envelope_create(&beams->matrix, a, n, first, d);
+}
+
+static void set_start(struct beams *beams)
+{
+    for (int k = 0; k < beams->n_nodes; k++) {
+        const struct beam_node *const node = &beams->node[k];
+        const struct expr *const *const e =
+            (const struct expr *const *)beams->beam[node->beam].given->velocity.e;
+        for (int c = 0; c < 2; c++)
+            beams->state[k].v[c] =
+                e[c] && node->row[c] >= 0 ? expr_at(e[c], node->X[0], node->X[1]) : 0;
+    }
+}
+
+static enum err create_all(struct beams *beams, struct arena *a, struct arena *temp, struct diag *d)
+{
+    const struct scene *const scene = beams->scene;
+    const size_t n = (size_t)beams->n_nodes;
+    beams->node = arena_alloc(a, n, sizeof *beams->node, what, d);
+    beams->state = arena_alloc(a, n, sizeof *beams->state, what, d);
+    beams->step = arena_alloc(a, n, sizeof *beams->step, what, d);
+    beams->element = arena_alloc(a, (size_t)beams->n_elements, sizeof *beams->element, what, d);
+    beams->start = arena_alloc(a, (size_t)beams->n_elements, sizeof *beams->start, what, d);
+    beams->load = arena_alloc(a, n * (size_t)scene->n_load, sizeof *beams->load, what, d);
+    if (!beams->node || !beams->state || !beams->step || !beams->element || !beams->start ||
+        !beams->load)
+        return ERR_MEMORY;
+    for (size_t k = 0; k < n; k++) beams->node[k].mover = -1;
+    place_nodes(beams);
+    for (int k = 0; k < beams->n; k++) {
+        TRY(hold(beams, k, &beams->beam[k].given->hinge, true, d));
+        TRY(hold(beams, k, &beams->beam[k].given->clamp, false, d));
+    }
+    for (int k = 0; k < scene->n_load; k++) TRY(find_load(beams, k, temp, d));
+    TRY(number_unknowns(beams, a, temp, d));
+    set_start(beams);
+    return ERR_OK;
+}
+
+enum err beams_create(struct beams *beams, struct arena *a, const struct scene *scene,
+                      struct diag *d)
+{
+    *beams = (struct beams){.n = scene->n_beam, .scene = scene};
+    beams->beam = arena_alloc(a, (size_t)beams->n, sizeof *beams->beam, what, d);
+    if (!beams->beam) return ERR_MEMORY;
+    for (int k = 0; k < beams->n; k++) beams->beam[k].given = &scene->beam[k];
+    count_elements(beams);
+    struct arena temp = {.limit = a->limit};
+    const enum err e = create_all(beams, a, &temp, d);
+    arena_free(&temp);
+    return e;
+}
+
+/* --- for output --- */
+
+struct beam_place beam_find(const struct beams *beams, int beam, const double at[2])
+{
+    struct beam_place best = {.distance = HUGE_VAL};
+    for (int k = beams->beam[beam].first_element; k < beams->beam[beam].end_element; k++) {
+        const struct beam_element *const e = &beams->element[k];
+        const double *const from = beams->node[e->node[0]].X;
+        const double x = at[0] - from[0], y = at[1] - from[1];
+        const double along = (x * e->between[0] + y * e->between[1]) / square(e->length);
+        const double part = max2(0, min2(1, along));
+        const double off = elementary_hypot(x - part * e->between[0], y - part * e->between[1]);
+        if (off < best.distance) best = (struct beam_place){k, part, off};
+    }
+    return best;
+}
+
+static void strain_of(const struct beams *beams, int element, double strain[3])
+{
+    const struct beam_element *const e = &beams->element[element];
+    const double *const q[2] = {beams->state[e->node[0]].x, beams->state[e->node[1]].x};
+    double turn[2];
+    beam_strain(e, q, strain, turn);
+}
+
+void beam_section(const struct beams *beams, const struct beam_place *place, double out[4])
+{
+    const struct beam_element *const e = &beams->element[place->element];
+    double strain[3];
+    strain_of(beams, place->element, strain);
+    for (int i = 0; i < 3; i++) out[i] = e->stiffness[i] * strain[i];
+    /* The shear force is constant within an element, and the moment falls by it (T-103c). */
+    out[2] -= out[1] * (place->part - 0.5) * e->length;
+    out[3] = out[2] / e->stiffness[2];
+}
+
+void beam_reaction(const struct beams *beams, int beam, const double about[2], double out[3])
+{
+    out[0] = out[1] = out[2] = 0;
+    for (int k = beams->beam[beam].first_node; k < beams->beam[beam].end_node; k++) {
+        const double *const f = beams->state[k].reaction;
+        const double x = beams->node[k].X[0] + beams->state[k].x[0] - about[0],
+                     y = beams->node[k].X[1] + beams->state[k].x[1] - about[1];
+        out[0] += f[0];
+        out[1] += f[1];
+        out[2] += f[2] + x * f[1] - y * f[0];
+    }
+}
+
+struct body_energy beam_energy(const struct beams *beams, int beam)
+{
+    const struct beam *const b = &beams->beam[beam];
+    const double *const g = beams->scene->top.gravity;
+    struct body_energy sum = {0};
+    for (int k = b->first_node; k < b->end_node; k++) {
+        const struct beam_node *const node = &beams->node[k];
+        const struct beam_state *const s = &beams->state[k];
+        for (int c = 0; c < 3; c++) sum.kinetic += 0.5 * node->mass[c] * square(s->v[c]);
+        for (int c = 0; c < 2; c++) {
+            sum.momentum[c] += node->mass[c] * s->v[c];
+            if (b->given->gravity) sum.potential -= node->mass[c] * g[c] * (node->X[c] + s->x[c]);
+        }
+        sum.mass += node->mass[0];
+    }
+    for (int k = b->first_element; k < b->end_element; k++) {
+        const struct beam_element *const e = &beams->element[k];
+        double strain[3];
+        strain_of(beams, k, strain);
+        for (int i = 0; i < 3; i++)
+            sum.elastic += 0.5 * e->length * e->stiffness[i] * square(strain[i]);
+    }
+    return sum;
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * Beams: lines of nodes with two displacements and a rotation each, which two-node elements join
+ * (T-103). README.md tells the order of a step. */
+#ifndef SPHFSI_BEAM_BEAM_H
+#define SPHFSI_BEAM_BEAM_H
+
+#include "beam/element.h"
+#include "case/scene.h"
+#include "implicit/envelope.h"
+#include "rigid/rigid.h"
+
+/* What a run carries from step to step, for each node: x, y and angle each. Doubles only: saved as
+ * such. */
+struct beam_state {
+    double x[3];        /* displacement, m, and counter-clockwise rotation, rad */
+    double v[3];        /* velocity, m/s and 1/s */
+    double a[3];        /* mean acceleration over the last step, m/s^2 and 1/s^2 */
+    double reaction[3]; /* of a clamp or hinge in the last step, N/m and N */
+};
+enum { BEAM_NUMBERS = sizeof(struct beam_state) / sizeof(double) };
+
+struct beam_node {
+    int beam;
+    double X[2];    /* at the start, m */
+    double mass[3]; /* kg/m, kg/m, kg m */
+    double length;  /* of the line that it represents, m */
+    int64_t row[3]; /* of the unknowns; -1: held */
+    int mover;      /* motion of its clamp or hinge; -1: in place */
+};
+
+/* In a step: see beam_advance. */
+struct beam_step {
+    double x[3], v[3]; /* at the start */
+    double load[3];    /* from outside, N/m and N */
+    double force[3];   /* of the elements against the displacement, N/m and N */
+    double d[3];       /* displacement; twice the tangent of half the rotation */
+};
+
+/* A [beam]: its nodes and elements are `first` to `end` - 1. */
+struct beam {
+    const struct scene_beam *given;
+    int first_node, end_node, first_element, end_element;
+    double work; /* of loads, clamps and hinges in the last step, J/m */
+};
+
+/* A node that a [load] acts on: its part of the force and moment, or the length for a traction. */
+struct beam_load {
+    int section, node;
+    double part, length;
+};
+
+struct beams {
+    int n, n_nodes, n_elements, n_loads;
+    struct beam *beam;
+    struct beam_node *node;
+    struct beam_element *element;
+    struct beam_state *state; /* [n_nodes] */
+    struct beam_step *step;   /* [n_nodes] */
+    struct beam_start *start; /* [n_elements] of the step */
+    struct beam_load *load;
+    const struct scene *scene;
+    struct envelope matrix;
+    double *unknown; /* [rows] */
+    int iterations;  /* of Newton's method in the last step */
+    double residual; /* over the largest force of a node */
+    bool failed;     /* no solution, however short the step */
+};
+
+enum err beams_create(struct beams *beams, struct arena *a, const struct scene *scene,
+                      struct diag *d) SPHFSI_CHECKED;
+
+/* Without fluid and solids, s: a part of the longest period, and of that of a pendulum. */
+double beams_longest_step(struct beams *beams);
+
+/* A step of dt from a time on (T-104). */
+void beams_advance(struct beams *beams, double time, double dt);
+
+/* --- for output --- */
+
+/* The point of a beam that is nearest to a point at the start: an element, the part of it before
+ * that point, and the distance, m. */
+struct beam_place {
+    int element;
+    double part, distance;
+};
+struct beam_place beam_find(const struct beams *beams, int beam, const double at[2]);
+
+/* Axial force and shear force, N/m, moment, N, and curvature, 1/m, at a place. */
+void beam_section(const struct beams *beams, const struct beam_place *place, double out[4]);
+
+/* The sum of the forces of clamps and hinges, N/m, and their moment about a point, N. */
+void beam_reaction(const struct beams *beams, int beam, const double about[2], double out[3]);
+
+struct body_energy beam_energy(const struct beams *beams, int beam);
+
+#endif

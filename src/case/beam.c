@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ * Conditions on a [beam] section: one line, stiffness and mass from one source each, supports. */
+#include "case/case.h"
+
+#include <math.h>
+#include <string.h>
+
+static enum err check_line(struct reader *r, const struct scene_beam *beam)
+{
+    if (beam->shape.n > 1)
+        return bad_line(r, beam->shape.item[1].line,
+                        "[beam %s] has a second `shape`; a beam is one line, so give each a "
+                        "section of its own",
+                        beam->common.name);
+    if (beam->shape.n == 1 && !beam->shape.item[0].bare)
+        return bad_line(r, beam->shape.item[0].line,
+                        "[beam %s] shape: a beam is a line in the middle of its thickness; write "
+                        "`polyline: X, Y; X, Y` or `arc: X, Y, R, A, B`, and the thickness as a "
+                        "key of its own",
+                        beam->common.name);
+    return ERR_OK;
+}
+
+/* Each from the material and the thickness, or given. */
+static enum err check_values(struct reader *r, const struct scene_beam *beam)
+{
+    const bool thick = !isnan(beam->thickness);
+    if (isnan(beam->density) == isnan(beam->mass))
+        return bad_section(r, isnan(beam->mass) ? "has no mass: it needs `density` or `mass`"
+                                                : "has both `density` and `mass`; leave one out");
+    if (!thick && !(isnan(beam->density) && isnan(beam->young)))
+        return bad_section(r, "lacks `thickness`, which it needs with `%s`",
+                           isnan(beam->young) ? "density" : "young");
+    if (isnan(beam->young) && (isnan(beam->bending_stiffness) || isnan(beam->axial_stiffness)))
+        return bad_section(r,
+                           "lacks `%s`: it needs `young` and `thickness`, or both "
+                           "`bending_stiffness` and `axial_stiffness`",
+                           isnan(beam->bending_stiffness) ? "bending_stiffness"
+                                                          : "axial_stiffness");
+    return ERR_OK;
+}
+
+static enum err check_supports(struct reader *r, const struct scene_beam *beam,
+                               const struct hinge_list *list, const char *key)
+{
+    for (int k = 0; k < list->n; k++) {
+        const char *const other = list->item[k].other;
+        const int wall = *other ? scene_find_wall(r->scene, other) : 0;
+        if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
+            return bad_line(r, list->item[k].line,
+                            "[beam %s] %s: %s is no [wall]; a beam is held in place or by a [wall]",
+                            beam->common.name, key, other);
+    }
+    return ERR_OK;
+}
+
+enum err case_check_beam(struct reader *r, const void *section)
+{
+    const struct scene_beam *const beam = section;
+    if (*beam->motion && beam->clamp.n + beam->hinge.n == 0)
+        return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves");
+    TRY(check_line(r, beam));
+    TRY(check_values(r, beam));
+    TRY(check_supports(r, beam, &beam->clamp, "clamp"));
+    return check_supports(r, beam, &beam->hinge, "hinge");
+}

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT
+ * Beams: large deflection, a moment that rolls a beam into a circle, frequencies, energy and
+ * momentum, a pendulum, clamps that move, and input that is refused. */
+#include "rig.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+/* One metre long, 20 elements, bending stiffness 1 N m. */
+#define BEAM(rest)                                                        \
+    "dp = 5 cm\nend_time = 100\n[beam b]\nshape = polyline: 0, 0; 1, 0\n" \
+    "axial_stiffness = 1e6\nbending_stiffness = 1\nmass = 1\n" rest
+/* At rest soon: the steps have the damping of backward Euler's. */
+#define STATIC "thickness = 5 mm\nmass_damping = 20\ndamping_time = 0.05\n"
+#define AT_END "shape = box 0.99, -0.01, 1.01, 0.01\nhistory = min(t/5, 1)\n"
+
+static const struct beam_state *state(int node) { return &rig.sim.beams.state[node]; }
+static const struct beam_state *end(void) { return state(rig.sim.beams.n_nodes - 1); }
+
+/* Elastica under a force across its end: Mattiasson 1981, table 1, P L^2/EI = 1, 5, 10. */
+static void test_large_deflection_is_that_of_the_elastica(void)
+{
+    static const struct {
+        const char *force;
+        double down, back;
+    } known[] = {{"load f.force=0,-1", 0.30172, 0.05643},
+                 {"load f.force=0,-5", 0.71379, 0.38763},
+                 {"load f.force=0,-10", 0.81061, 0.55500}};
+    for (size_t k = 0; k < COUNT_OF(known); k++) {
+        rig_open(&rig, BEAM(STATIC "clamp = 0, 0\n[load f]\nbody = b\nforce = 0, 0\n" AT_END),
+                 "numerics.fixed_step=0.1", known[k].force, NULL);
+        rig_run(&rig, 20);
+        assert_near(2e-3 * known[k].down, known[k].down, -end()->x[1], "deflection");
+        assert_near(3e-3 * known[k].back, known[k].back, -end()->x[0], "shortening");
+    }
+}
+
+/* 2 pi EI/L bends a beam into a circle, whatever the number of elements. */
+static void test_a_moment_rolls_the_beam_into_a_circle(void)
+{
+    rig_open(&rig, BEAM(STATIC "clamp = 0, 0\n[load f]\nbody = b\nmoment = 2*pi\n" AT_END),
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 20);
+    assert_near(1e-4, 2 * PI, end()->x[2], "rotation of the end");
+    assert_near(1e-4, -1, end()->x[0], "the end is at the clamp, x");
+    assert_near(1e-4, 0, end()->x[1], "the end is at the clamp, y");
+    const double sum = beam_energy(&rig.sim.beams, 0).elastic;
+    assert_near(1e-4 * sum, 0.5 * square(2 * PI), sum, "elastic energy");
+    double section[4], force[3];
+    beam_section(&rig.sim.beams, &(struct beam_place){.element = 7, .part = 0.3}, section);
+    beam_reaction(&rig.sim.beams, 0, (double[2]){0, 0}, force);
+    assert_near(1e-4, 2 * PI, section[2], "moment");
+    assert_near(1e-4, 2 * PI, section[3], "curvature");
+    assert_near(1e-3, -2 * PI, force[2], "moment of the clamp");
+}
+
+/* Times of the rising zeros of a component of a node's velocity. */
+static double period(int node, int component, int periods)
+{
+    double first = 0, v_old = state(node)->v[component], t_old = 0;
+    for (int n = -1; n < periods;) {
+        rig_steps(&rig, 1, 1e6);
+        const double v = state(node)->v[component], t = rig.sim.state.time;
+        if (v_old < 0 && v >= 0) {
+            const double zero = t_old + (t - t_old) * v_old / (v_old - v);
+            if (++n == 0) first = zero;
+            if (n == periods) return (zero - first) / periods;
+        }
+        v_old = v;
+        t_old = t;
+    }
+    return 0;
+}
+
+/* The first frequencies of Euler and Bernoulli with 20 elements; the velocity at the start is about
+ * that of the mode. */
+static void test_frequencies_are_those_of_theory(void)
+{
+    static const struct {
+        const char *name, *supports;
+        double kl;
+        int node;
+    } known[] = {
+        {"clamped and free", "clamp = 0, 0\nvelocity = 0, 1e-6*x^2*(6-4*x+x^2)\n", 1.8751041, 20},
+        {"hinged", "hinge = 0, 0\nhinge = 1, 0\nvelocity = 0, 1e-6*sin(pi*x)\n", PI, 10},
+        {"clamped", "clamp = 0, 0\nclamp = 1, 0\nvelocity = 0, 1e-6*x^2*(1-x)^2\n", 4.7300407, 10},
+        {"clamped and hinged", "clamp = 0, 0\nhinge = 1, 0\nvelocity = 0, 1e-6*x^2*(1-x)*(3-2*x)\n",
+         3.9266023, 12},
+        {"free",
+         "velocity = 0, 1e-6*(cos(4.7300407*x) + cosh(4.7300407*x) - 0.982502215*"
+         "(sin(4.7300407*x) + sinh(4.7300407*x)))\n",
+         4.7300407, 10},
+    };
+    for (size_t k = 0; k < COUNT_OF(known); k++) {
+        char text[1000], set[60];
+        const double expected = 2 * PI / square(known[k].kl);
+        snprintf(text, sizeof text, BEAM("%s"), known[k].supports);
+        snprintf(set, sizeof set, "numerics.fixed_step=%.17g", expected / 200);
+        rig_open(&rig, text, set, NULL);
+        assert_near(1e-3, 1, period(known[k].node, 1, 4) / expected, known[k].name);
+    }
+}
+
+/* Large motion of a clamped beam under its weight, 100 periods of its first mode. */
+static void test_energy_stays_over_100_periods(void)
+{
+    rig_open(&rig, BEAM("thickness = 5 mm\nclamp = 0, 0\n"), "gravity=0, -2", NULL);
+    double top = 0, lost = 0;
+    for (int n = 0; n < 10000; n++) {
+        rig_steps(&rig, 1, 1e6);
+        if (n % 25) continue;
+        const struct ledger row = simulation_ledger(&rig.sim);
+        top = max2(top, row.kinetic + row.elastic);
+        lost = max2(lost, fabs(row.dissipated));
+    }
+    assert_at_most(1e-6 * top, lost, "energy that was lost or gained");
+    TEST_ASSERT_TRUE(top > 0.2);
+}
+
+/* A free beam that flies, turns and bends keeps its momentum and angular momentum. */
+static void test_a_free_beam_keeps_its_momenta(void)
+{
+    rig_open(&rig, BEAM("thickness = 5 mm\nvelocity = 0.3 + y, 4*(x - 0.5)^3 + 6*(x - 0.5)\n"),
+             "numerics.fixed_step=0.01", NULL);
+    const struct beams *const b = &rig.sim.beams;
+    double at_start[4] = {0}, now[4];
+    for (int step = 0; step < 500; step++) {
+        now[0] = now[1] = now[2] = 0;
+        const struct body_energy e = beam_energy(b, 0);
+        now[3] = e.kinetic + e.elastic;
+        for (int k = 0; k < b->n_nodes; k++) {
+            const struct beam_state *const s = &b->state[k];
+            const double *const m = b->node[k].mass, *const X = b->node[k].X;
+            for (int c = 0; c < 2; c++) now[c] += m[c] * s->v[c];
+            now[2] +=
+                m[0] * ((X[0] + s->x[0]) * s->v[1] - (X[1] + s->x[1]) * s->v[0]) + m[2] * s->v[2];
+        }
+        for (int c = 0; c < 4 && step == 0; c++) at_start[c] = now[c];
+        for (int c = 0; c < 4; c++)
+            assert_near(1e-9, at_start[c], now[c], (const char *[]){"px", "py", "L", "energy"}[c]);
+        rig_steps(&rig, 1, 1e6);
+    }
+    TEST_ASSERT_TRUE(fabs(end()->x[2]) > 6);
+}
+
+/* A stiff beam on a hinge is a bar: its speed at the bottom, and the force of the hinge. */
+static void test_a_hinged_beam_is_a_pendulum(void)
+{
+    rig_open(&rig,
+             "dp = 5 cm\nend_time = 10\ngravity = 0, -9.81\n[beam b]\n"
+             "shape = polyline: 0, 0; 1, 0\naxial_stiffness = 1e8\n"
+             "bending_stiffness = 1e7\nmass = 3\nhinge = 0, 0\n"
+             "[probe r]\nquantity = reaction\nbody = b\n",
+             "numerics.fixed_step=0.0005", NULL);
+    while (end()->x[2] > -0.5 * PI) rig_steps(&rig, 1, 1e6);
+    const double omega2 = 3 * 9.81, over = -0.5 * PI - end()->x[2];
+    assert_near(2e-3 * omega2, omega2 * cos(over), square(end()->v[2]), "omega^2");
+    assert_near(1e-6, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
+    double mean = 0, force[3];
+    for (int n = 0; n < 40; n++) { /* the bar's own oscillation */
+        beam_reaction(&rig.sim.beams, 0, (double[2]){0, 0}, force);
+        mean += force[1] / 40;
+        rig_steps(&rig, 1, 1e6);
+    }
+    assert_near(0.03 * 73, 3 * 9.81 * 2.5, mean, "force of the hinge");
+}
+
+static void test_a_moving_clamp_does_work(void)
+{
+    rig_open(&rig,
+             BEAM(
+                 "thickness = 5 mm\nclamp = 0, 0\nmotion = shake\n[motion shake]\nkind = rotation\n"
+                 "period = 1\nangle_amplitude = 1\n"),
+             "gravity=0, -9.81", "numerics.fixed_step=0.002", NULL);
+    rig_run(&rig, 0.25);
+    assert_near(1e-9, 1, state(0)->x[2], "the clamp turns");
+    rig_run(&rig, 2);
+    const struct ledger row = simulation_ledger(&rig.sim);
+    TEST_ASSERT_TRUE(fabs(rig.sim.state.wall_work) > 0.1);
+    assert_near(1e-8, 0, row.dissipated, "energy");
+}
+
+static void test_bad_input_is_refused(void)
+{
+#define LINE "dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
+    rig_refuses(LINE "young = 1e6\nthickness = 1 mm\n", "has no mass");
+    rig_refuses(LINE "young = 1e6\nmass = 1\n", "lacks `thickness`");
+    rig_refuses(LINE "mass = 1\nbending_stiffness = 1\n", "lacks `axial_stiffness`");
+    rig_refuses(BEAM("hinge = 0.5, 0.2\n"), "hinge = 0.5, 0.2 is 0.2 m from the beam");
+    rig_refuses(BEAM("motion = m\n[motion m]\n"), "neither `clamp` nor `hinge`");
+    rig_refuses(BEAM("[load f]\nbody = b\nforce = 0, 1\nshape = box 2, 2, 3, 3\n"),
+                "contains no node of [beam b]");
+    rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = box 0, 0, 1, 1\nmass = 1\n"
+                "axial_stiffness = 1\nbending_stiffness = 1\n",
+                "a beam is a line");
+    rig_refuses(BEAM("[beam c]\nshape = polyline: 0, 1; 1, 1\nmass = 1\naxial_stiffness = 1\n"
+                     "bending_stiffness = 1\nclamp = 0, 1, b\n"),
+                "clamp: b is no [wall]");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_large_deflection_is_that_of_the_elastica);
+    RUN_TEST(test_a_moment_rolls_the_beam_into_a_circle);
+    RUN_TEST(test_frequencies_are_those_of_theory);
+    RUN_TEST(test_energy_stays_over_100_periods);
+    RUN_TEST(test_a_free_beam_keeps_its_momenta);
+    RUN_TEST(test_a_hinged_beam_is_a_pendulum);
+    RUN_TEST(test_a_moving_clamp_does_work);
+    RUN_TEST(test_bad_input_is_refused);
+    return UNITY_END();
+}

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# A run with beams that stops and goes on gives the same bits, on another number of threads, too,
+# and so does its effective case; probes on beams say what they cannot measure.
+set -u
+sphfsi=${SPHFSI:-./sphfsi}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+failures=0
+cat >"$dir/beam.cfg" <<'END'
+dp = 5 cm
+end_time = 0.5
+gravity = 0, -9.81
+[beam arch]
+shape = arc: 0, 0, 1, 20 deg, 160 deg
+thickness = 5 mm
+density = 1000
+young = 1e8
+poisson = 0.3
+hinge = 0.93969262, 0.34202014
+damping_time = 1 ms
+[beam bar]
+shape = polyline: 2, 0; 3, 0; 3, 1
+thickness = 1 cm
+density = 1000
+young = 1e8
+clamp = 2, 0
+motion = shake
+[motion shake]
+kind = sine
+amplitude = 0, 0.1
+period = 0.5
+[load push]
+body = bar
+shape = box 2.95, 0.95, 3.05, 1.05
+force = 3*sin(t), 0
+moment = t
+[probe tip]
+quantity = displacement
+body = bar
+point = 3, 1
+[probe root]
+quantity = section_force
+body = bar
+point = 2, 0
+[probe foot]
+quantity = reaction
+body = arch
+END
+
+fail() {
+    echo "FAILED: $1"
+    failures=$((failures + 1))
+}
+
+run() {
+    "$sphfsi" "$@" --quiet >"$dir/output" 2>&1 && return
+    fail "$*"
+    cat "$dir/output"
+}
+
+hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
+
+at=$dir/all
+run "$dir/beam.cfg" --out "$at" --threads 1
+run "$dir/beam.cfg" --out "$at-cut" --threads 2 --until 0.23
+run "$dir/beam.cfg" --out "$at-cut" --restart
+run "$at/case.cfg" --out "$at-effective"
+[ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "restart"
+cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "rows"
+[ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "effective case"
+"$sphfsi" "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off" 2>&1 | grep -q \
+    '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' || fail "probe off the beam"
+"$sphfsi" "$dir/beam.cfg" --set tip.quantity=strain --out "$dir/off" 2>&1 | grep -q \
+    'there is no \[solid\] of that name' || fail "strain of a beam"
+[ $failures = 0 ]
