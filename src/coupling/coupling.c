@@ -19,7 +19,7 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 }
 
 static void find_forces_on(const struct coupling *coupling, struct particles *particles,
-                           enum kind kind, const struct cells *cells)
+                           enum kind kind, const struct cells *cells, bool all)
 {
     const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
     if (!particles->fx) return;
@@ -27,22 +27,21 @@ static void find_forces_on(const struct coupling *coupling, struct particles *pa
     particles_clear(particles->fy, particles->n);
     particles_clear(particles->wet_x, particles->n);
     particles_clear(particles->wet_y, particles->n);
-    (mixed ? find_force_mixed : find_force_double)(coupling->fluid, particles, kind, cells);
+    (mixed ? find_force_mixed : find_force_double)(coupling->fluid, particles, kind, cells, all);
 }
 
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    find_forces_on(coupling, &kinds[KIND_SOLID], KIND_SOLID, cells);
+    find_forces_on(coupling, &kinds[KIND_SOLID], KIND_SOLID, cells, false);
     if (coupling->fluid->effects & FX_MOTION)
-        find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells);
+        find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, false);
 }
 
 void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    if (!(coupling->fluid->effects & FX_MOTION))
-        find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells);
+    find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
 
 /* One component of T-36a: the force and its mean. The mean starts with the first force and ends

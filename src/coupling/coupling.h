@@ -8,9 +8,9 @@
 #include "fluid/fluid.h"
 #include "solid/solid.h"
 
-/* Eq. 21b for particles of a kind near fluid (force.h). */
+/* Eq. 21b for particles of a kind near fluid that can move, or for all of them (force.h). */
 typedef void force_sweep(const struct fluid *fluid, struct particles *particles, enum kind kind,
-                         const struct cells *cells);
+                         const struct cells *cells, bool all);
 extern force_sweep find_force_mixed, find_force_double;
 
 /* All but `substeps` and `impedance` are set by its owner. */
@@ -33,7 +33,7 @@ struct coupling {
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 
-/* And on walls at rest, which only output reads. */
+/* On all walls, also those at rest, which only output reads. */
 void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 

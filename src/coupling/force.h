@@ -115,19 +115,23 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
 }
 
 SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *particles,
-                                 enum kind kind, const struct cells *cells, int32_t cell,
+                                 enum kind kind, const struct cells *cells, int32_t cell, bool all,
                                  const struct vector_constants *k, effect_set fx)
 {
     const struct cell_list *const list = &cells->kind[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
-    gather_around_cell(scratch, fluid, cells, KIND_FLUID, cell);
+    bool gathered = false;
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
-        const int32_t cluster = list->cluster[cell] + m;
+        const int32_t cluster = list->cluster[cell] + m,
+                      *const index = &list->order[list->start[cell] + m * CLUSTER];
+        const int count = particles_in(list, cell, m);
+        if (!all && !dummies_move(fluid, kind, particles, index, count)) continue;
+        if (!gathered) gather_around_cell(scratch, fluid, cells, KIND_FLUID, cell);
+        gathered = true;
         const struct neighbours neighbours =
             gather_clusters(scratch, fluid, KIND_FLUID, kind, cluster);
-        force_on_cluster(fluid, particles, &list->order[list->start[cell] + m * CLUSTER],
-                         particles_in(list, cell, m),
+        force_on_cluster(fluid, particles, index, count,
                          cluster_packed(&fluid->packed[kind], (size_t)cluster), &neighbours, &sides,
                          k, fx);
     }
@@ -141,12 +145,12 @@ SPHFSI_INLINE effect_set wetted_effect(effect_set effects, enum kind kind)
 }
 
 void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
-                       const struct cells *cells)
+                       const struct cells *cells, bool all)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
     const effect_set fx =
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
-        force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], &k, fx);
+        force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx);
 }

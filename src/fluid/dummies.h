@@ -148,12 +148,8 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
             own[PACKED_LIFT_Y * CLUSTER] =
                 (real)(fluid->k.rho0 * fluid->k.h * (fluid->k.gravity[1] - ay[r]));
         }
-        if (fx & FX_REPULSION) {
-            const double spacing =
-                0.5 * (1 + sqrt(fluid->volume[d->kind][particles->body[d->at[r]]])) * fluid->k.dp;
-            own[PACKED_NEAR * CLUSTER] =
-                (real)(square(REPULSION_REACH * spacing / fluid->k.h) + ETA2);
-        }
+        if (fx & FX_REPULSION)
+            own[PACKED_NEAR * CLUSTER] = (real)fluid->near2[d->kind][particles->body[d->at[r]]];
     }
 }
 
@@ -257,15 +253,14 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
-    const bool rests = kind == KIND_WALL && !(fluid->effects & FX_MOTION);
     static const double none[CLUSTER] = {0};
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY]; /* of the clusters near fluid */
     int32_t wet[CELL_CAPACITY / CLUSTER], n = 0;
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
-        if (kind != KIND_WALL || !fluid->walls_placed)
-            place_dummies(fluid, particles, cells, cell, &d);
+        const bool moves = dummies_move(fluid, kind, particles, d.at, d.count);
+        if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fluid->effects & SURFACE_EFFECTS)
@@ -277,7 +272,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         }
         scatter(&d, none, particles->p);
         scatter(&d, none, particles->dens);
-        if (!rests) dummies_state(fluid, particles, &d, none, none);
+        if (moves) dummies_state(fluid, particles, &d, none, none);
     }
     for (int32_t m = n * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
     for (int32_t m = 0; m < n * CLUSTER; m += EOS_BLOCK)

@@ -48,16 +48,23 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
     return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;
 }
 
-/* Volumes of the dummies of each body, and whether fluid sticks to it. */
+/* Volumes of the dummies of each body, how near fluid may come to them, whether the body moves, and
+ * whether fluid sticks to it. */
 static enum err describe_bodies(struct fluid *fluid, struct arena *a, const struct scene *scene,
                                 enum kind kind, struct diag *d)
 {
     const bool wall = kind == KIND_WALL;
     const size_t n = (size_t)(wall ? scene->n_wall : scene->n_solid);
     fluid->volume[kind] = arena_alloc(a, n, sizeof *fluid->volume[kind], "volumes", d);
-    if (!fluid->volume[kind]) return ERR_MEMORY;
-    for (int k = 0; k < (int)n; k++)
+    fluid->near2[kind] = arena_alloc(a, n, sizeof *fluid->near2[kind], "distances", d);
+    fluid->moves[kind] = arena_alloc(a, n, sizeof *fluid->moves[kind], "motions", d);
+    if (!fluid->volume[kind] || !fluid->near2[kind] || !fluid->moves[kind]) return ERR_MEMORY;
+    for (int k = 0; k < (int)n; k++) {
         fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
+        const double spacing = 0.5 * (1 + sqrt(fluid->volume[kind][k])) * fluid->k.dp;
+        fluid->near2[kind][k] = square(REPULSION_REACH * spacing / fluid->k.h) + ETA2;
+        fluid->moves[kind][k] = !wall || scene->wall[k].motion[0];
+    }
     if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
     fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);
     if (!fluid->sticks[kind]) return ERR_MEMORY;
@@ -232,7 +239,7 @@ static void dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (fluid->n_near_fluid[kind]) fluid->sweeps->dummies(fluid, kinds, cells, (enum kind)kind);
-    fluid->walls_placed = !(fluid->effects & FX_MOTION) && !fluid->never_skip;
+    fluid->walls_placed = !fluid->never_skip;
 }
 
 /* The passes in order; phase_table says which scenes have them. */

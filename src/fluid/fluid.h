@@ -78,7 +78,7 @@ enum packed_field {
     PACKED_LINE = PACKED_REPULSION_FIELDS,
     PACKED_THIN_FIELDS,
     /* Of the fluid, with artificial viscosity: rho0/rho; where density diffuses by Antuono et al.
-     * 2010: the gradient of dens, times h. */
+     * 2010: the gradient of dens, times -h/2. */
     PACKED_SPECIFIC = PACKED_FIELDS,
     PACKED_VISCOUS_FIELDS,
     PACKED_SLOPE_X = PACKED_VISCOUS_FIELDS,
@@ -171,6 +171,8 @@ struct fluid {
     effect_set effects;
     bool never_skip;                   /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];        /* [sections] of a resting dummy over a fluid particle's */
+    double *near2[KIND_COUNT];         /* [sections]: (r0^2 + eta^2)/h^2 of fx_repulsion */
+    bool *moves[KIND_COUNT];           /* [sections]: structures, and walls that have a motion */
     const struct fluid_sweeps *sweeps; /* of the precision */
     const struct fluid_kernel *kernel; /* for the effects */
     struct packed_fields packed[KIND_COUNT];
@@ -179,7 +181,7 @@ struct fluid {
     int32_t n_near_fluid[KIND_COUNT];
     struct lines lines; /* thin lines; unused without any */
     bool keeps_slopes;  /* L-5a: the gradients of dens are those of an earlier evaluation */
-    bool walls_placed;  /* walls rest, and their packed positions are valid */
+    bool walls_placed;  /* packed positions of walls at rest are valid */
     bool *near_dummies[KIND_COUNT]; /* [cells]: walls or solids in the nine cells around */
     bool *sticks[KIND_COUNT];       /* by body: whether fluid sticks to it; with NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
@@ -187,6 +189,16 @@ struct fluid {
     int threads;
     struct fluid_extremes extremes;
 };
+
+/* Whether any of some dummies of a kind can move. */
+SPHFSI_INLINE bool dummies_move(const struct fluid *fluid, enum kind kind,
+                                const struct particles *particles, const int32_t *index, int count)
+{
+    bool moves = kind == KIND_SOLID;
+    for (int r = 0; r < count && fluid->effects & FX_MOTION && !moves; r++)
+        moves = fluid->moves[kind][particles->body[index[r]]];
+    return moves;
+}
 
 /* Whether there are walls or solids in the nine cells around a cell of fluid; of any kind. */
 SPHFSI_INLINE bool fluid_near_kind(const struct fluid *fluid, enum kind kind, int32_t cell)

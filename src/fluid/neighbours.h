@@ -155,7 +155,7 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const s
  * three columns and rows of cells around. */
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
-    vreal slope_x, slope_y; /* h times the gradient of dens, if it is used */
+    vreal slope_x, slope_y; /* -h/2 times the gradient of dens, if it is used */
     vreal specific;         /* rho0/rho, with artificial viscosity */
     vreal line;             /* of a dummy: the line that has to lie between, or 0 */
     int n_pieces;           /* of thin lines near its cell; NULL: there are none at all */

@@ -47,16 +47,22 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 struct packing {
     double inv_h, volume;  /* 1/m; of a particle at rest, in units of h^2 */
     double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
+    double slope;          /* factor of the gradient of dens, m */
     effect_set effects;
+    bool keeps_slopes;
 };
 
 SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
 {
     const struct fluid_constants *const k = &fluid->k;
     const double inv_h = 1 / k->h;
-    return (struct packing){inv_h, k->mass / k->rho0 * square(inv_h),
-                            k->c0 * k->c0 * k->rho0 / EOS_GAMMA, k->rho0 * square(k->c0),
-                            fluid->effects};
+    return (struct packing){inv_h,
+                            k->mass / k->rho0 * square(inv_h),
+                            k->c0 * k->c0 * k->rho0 / EOS_GAMMA,
+                            k->rho0 * square(k->c0),
+                            -0.5 * k->h,
+                            fluid->effects,
+                            fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
 
 /* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
@@ -68,6 +74,14 @@ SPHFSI_INLINE four_double acting_pressure(const struct packing *by,
     const four_double dens = FOUR(particles->dens, i), pressure = by->tait * EOS_POWER(dens);
     if (!(by->effects & FX_DAMPER)) return pressure;
     return pressure + by->acoustic * (dens - FOUR(particles->dens_slow, i));
+}
+
+/* The gradients of dens of the particles from i on. */
+SPHFSI_INLINE void pack_slopes(const struct packing *by, const struct particles *particles,
+                               int32_t i, real *out)
+{
+    put_four(out, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * by->slope);
+    put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * by->slope);
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
@@ -85,6 +99,7 @@ SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles
     if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
     put_four(out, PACKED_P, acting_pressure(by, particles, i));
     put_four(out, PACKED_DENS, dens);
+    if (by->keeps_slopes) pack_slopes(by, particles, i, out);
 }
 
 SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by,
@@ -197,17 +212,14 @@ static void slopes_of_cell(const struct fluid *fluid, struct particles *particle
 
 /* Packs the gradients, now that no other cell reads those fields. What the places behind a cell's
  * last particle get does not matter: they have no volume. */
-SPHFSI_INLINE void pack_slopes(const struct fluid *fluid, const struct particles *particles,
-                               const struct cells *cells, int32_t cell)
+SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct packing *by,
+                                       const struct particles *particles, const struct cells *cells,
+                                       int32_t cell)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
-    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
-        const int32_t i = list->start[cell] + m * CLUSTER;
-        real *const own =
-            cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m));
-        put_four(own, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * fluid->k.h);
-        put_four(own, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * fluid->k.h);
-    }
+    for (int32_t m = 0; m < clusters_in(list, cell); m++)
+        pack_slopes(by, particles, list->start[cell] + m * CLUSTER,
+                    cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m)));
 }
 
 static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
@@ -215,10 +227,12 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
 {
     const struct cell_list *list = &cells->kind[KIND_FLUID];
     struct particles *const particles = &kinds[KIND_FLUID];
+    const struct packing by = packing_of(fluid);
+    if (fluid->keeps_slopes) return; /* packed with the other fields */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t k = 0; k < (fluid->keeps_slopes ? 0 : list->n_active); k++)
+    for (int32_t k = 0; k < list->n_active; k++)
         slopes_of_cell(fluid, particles, cells, list->active[k]);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
-        pack_slopes(fluid, particles, cells, list->active[k]);
+        pack_slopes_of_cell(fluid, &by, particles, cells, list->active[k]);
 }

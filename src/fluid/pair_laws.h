@@ -34,7 +34,7 @@ struct vector_constants {
     vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
     vreal lowest;         /* pressure of walls and structures, Pa */
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal diffusion;      /* delta c0, m/s */
+    vreal diffusion;      /* delta c0/STRAIN_DIFFUSION, m/s */
     vreal eta2;           /* (eta/h)^2 = 0.01 */
     /* Factors of the sums in the rates: the slope of the kernel over the volume of a particle, with
      * 1/rho0 in that of forces; and of Eq. 6. */
@@ -56,7 +56,7 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
-        .diffusion = vset((real)(fk->model->density_diffusion * fk->c0)),
+        .diffusion = vset((real)(fk->model->density_diffusion * fk->c0 / STRAIN_DIFFUSION)),
         .eta2 = vset((real)ETA2),
         .slope = slope,
         .acceleration = slope / fk->rho0,
@@ -142,11 +142,11 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vec
 /* Eq. 28b: the pair's rate of approach or separation. */
 SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }
 
-/* L-5b: the diffusivity over h. It is delta c0, but at most (C_delta l)^2/h times the rate of
- * strain of the pair along its line (Meringolo et al. 2019). */
+/* L-5b: the diffusivity over h and STRAIN_DIFFUSION. It is delta c0, but at most (C_delta l)^2/h
+ * times the rate of strain of the pair along its line (Meringolo et al. 2019). */
 SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
-    return vmin(vset(STRAIN_DIFFUSION) * fx_approach(q, inv), k->diffusion);
+    return vmin(fx_approach(q, inv), k->diffusion);
 }
 
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). The
@@ -159,8 +159,7 @@ SPHFSI_INLINE vreal fx_diffused(const struct receiver *a, const struct pair *q,
     vreal step = a->dens - q->dens;
     if (PAIR_HAS(fx, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
     if (PAIR_HAS(fx, ANTUONO))
-        step = step - vset((real)0.5) *
-                          vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
+        step = vfma(a->slope_y + q->slope_y, q->y, vfma(a->slope_x + q->slope_x, q->x, step));
     return step;
 }
 

@@ -74,7 +74,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                       fy_a = factor * odd_sum(s, deferred, SUM_Y);
     const four_double ax = fx_a + fluid->k.gravity[0], ay = fy_a + fluid->k.gravity[1];
     if (PAIR_HAS(fx, DIFFUSION)) {
-        const double mixing = PAIR_HAS(fx, LIMITER) ? 2 : k->mixing;
+        const double mixing = PAIR_HAS(fx, LIMITER) ? 2 * STRAIN_DIFFUSION : k->mixing;
         rate = rate + mixing * odd_sum(s, deferred, SUM_MIXING);
     }
     full = k->slope * full;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid/wall_motion.h"
 
+#include <math.h>
 #include <string.h>
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,
@@ -26,12 +27,16 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     return ERR_OK;
 }
 
-static void place_body(const struct moving_wall *b, struct particles *particles)
+/* Returns the largest displacement of a particle, m. */
+static double place_body(const struct moving_wall *b, struct particles *particles)
 {
-#pragma omp parallel for schedule(static)
+    double moved2 = 0;
+#pragma omp parallel for schedule(static) reduction(max : moved2)
     for (int64_t i = b->first; i < b->end; i++) {
         const struct motion_point at =
             motion_of_point(&b->placed, particles->X[i], particles->Y[i]);
+        moved2 =
+            max2(moved2, square(at.x[0] - particles->x[i]) + square(at.x[1] - particles->y[i]));
         particles->x[i] = at.x[0];
         particles->y[i] = at.x[1];
         particles->vx[i] = at.v[0];
@@ -39,11 +44,13 @@ static void place_body(const struct moving_wall *b, struct particles *particles)
         particles->ax[i] = at.a[0];
         particles->ay[i] = at.a[1];
     }
+    return sqrt(moved2);
 }
 
 void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct particles *walls,
                        double time)
 {
+    double way = 0;
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
         const struct motion_state now = motion_at(scene, b->motion, time);
@@ -53,8 +60,9 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct 
         b->known = true;
         b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
         m->moved = true;
-        place_body(b, walls);
+        way = max2(way, place_body(b, walls));
     }
+    m->way += way;
 }
 
 void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particles *walls)

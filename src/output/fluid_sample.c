@@ -154,7 +154,9 @@ double fluid_front(const struct simulation *sim, int direction)
     const double sign = direction == DIRECTION_RIGHT || direction == DIRECTION_UP ? 1 : -1;
     const double *const coordinate = vertical ? particles->y : particles->x;
     double foremost = -(double)INFINITY, any = -(double)INFINITY;
-    for (int64_t i = 0; i < particles->n; i++) {
+    for (int64_t k = 0; k < particles->n; k++) {
+        /* Memory follows the coordinates: from the front on few particles are tested. */
+        const int64_t i = sign > 0 ? particles->n - 1 - k : k;
         const double ahead = sign * coordinate[i];
         any = max2(any, ahead);
         if (ahead > foremost && belongs_together(sim, i)) foremost = ahead;

@@ -86,7 +86,8 @@ void use_skin_left(struct simulation *sim, double speed2_before)
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
                          sim->shifted;
-    sim->skin_left -= moved + max2(moved, sim->solid_max_move);
+    sim->skin_left -= moved + max2(moved, max2(sim->solid_max_move, sim->wall_motion.way));
+    sim->wall_motion.way = 0;
 }
 
 /* Where displacements are bounded, cells need not be measured at every step. Rounding errors
@@ -94,7 +95,7 @@ void use_skin_left(struct simulation *sim, double speed2_before)
 bool sorting_due(struct simulation *sim)
 {
     if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
-    const bool bounded = sim->integrator->ahead == 0 && !(sim->effects & FX_MOTION);
+    const bool bounded = sim->integrator->ahead == 0;
     const double tolerance = 1e-6 * sim->fluid.k.h;
     if (bounded && sim->skin_left > tolerance) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
