@@ -154,6 +154,19 @@ def column_words(column, size):
     return f"{words} ({unit})", scale, unit
 
 
+def draw_loads(axes, run, column, scale, colour):
+    """Of a load: its largest means, each over its window, and the largest single row, a ring."""
+    load = run.summary.get("loads", {}).get(column)
+    if not load:
+        return
+    for window, mean, start in zip(load["window"], load["largest_mean"], load["from"]):
+        if mean is not None:
+            axes.plot([start, start + window], [scale * mean] * 2, color=colour, linewidth=3,
+                      alpha=0.6, solid_capstyle="butt", zorder=4)
+    axes.plot(load["largest_single_row_time"], scale * load["largest_single_row"], "o",
+              color=colour, markerfacecolor="none", markersize=5, zorder=5)
+
+
 def draw_column(above, below, column, curves, refs, legend):
     """One column of the figure: the curves, and below them their differences from the references.
     Adds to `legend` what it draws; gives the factor and name of the unit."""
@@ -170,6 +183,7 @@ def draw_column(above, below, column, curves, refs, legend):
         width = 1.1 + 2.4 * (1 - k / max(1, len(curves) - 1)) * (len(curves) > 1)
         line, = above.plot(time, scale * value, color=colour, zorder=3, linewidth=width)
         legend[run.label()] = line
+        draw_loads(above, run, column, scale, colour)
         if run.failure():
             above.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
                        markeredgewidth=2, zorder=5)
@@ -293,6 +307,7 @@ def draw_panel(axes, columns, curves, refs):
             style = DASHES[(repeated - 1) % len(DASHES)] if repeated else "-"
             axes.plot(time, scale * without_turns(column, value), color=colour, linestyle=style,
                       zorder=3, label=name)
+            draw_loads(axes, run, column, scale, colour)
             if run.failure():
                 axes.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
                           markeredgewidth=2, zorder=5)

@@ -106,23 +106,6 @@ static void say_fields(const struct simulation *sim, const struct sphfsi_options
         1e-6 * (double)sim->arena.bytes, 1e-6 * (double)sim->scene->arena.bytes);
 }
 
-/* The largest load of single instants falls with dp for as long as an impact lasts a few particles;
- * template `baffle`, docs/results/fluid_verification.md. */
-static void say_instants(const struct scene *scene, const struct sphfsi_options *o)
-{
-    for (int k = 0; k < scene->n_probe; k++) {
-        const struct scene_probe *const probe = &scene->probe[k];
-        const bool load = probe->quantity == PROBE_FORCE || probe->quantity == PROBE_PRESSURE ||
-                          probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (load && probe->average == 0)
-            session_say(o,
-                        "  [probe %s]: rows are of single instants, whose largest in an impact "
-                        "depends on dp; a mean over time (`average`), an impulse or the reaction "
-                        "of a clamp depends less on it",
-                        probe->common.name);
-    }
-}
-
 static void say_output(const struct simulation *sim, const struct sphfsi_options *o)
 {
     const struct snapshot_layout layout = snapshot_file_layout(sim->scene);
@@ -137,7 +120,6 @@ static void say_output(const struct simulation *sim, const struct sphfsi_options
                 "twice that space during the run",
                 snapshots, points, point, 1e-6 * snapshots * points * point,
                 layout.deflate ? "before compression" : "(no compression)");
-    if (sim->effects & FX_FLUID) say_instants(sim->scene, o);
 }
 
 static bool is_known(const struct simulation *sim, int bound)

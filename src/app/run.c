@@ -478,6 +478,7 @@ static enum err simulate(struct run *r)
         return failed;
     }
     score_references(r);
+    r->record.probes = &r->probes;
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time", r->dir.path,

@@ -80,23 +80,24 @@ enum err references_open(struct references *r, const struct scene *scene, int n,
 
 /* --- comparison --- */
 
-/* Values over time. */
-struct curve {
-    int n;
-    double *t, *value;
-};
-
-static void read_curve(struct curve *curve, const char *csv, int column)
+enum err curve_read(struct curve *curve, const char *path, int column, size_t spare, struct diag *d)
 {
-    curve->n = 0;
-    for (const char *line = csv_next_line(csv); *line; line = csv_next_line(line)) {
-        if (!strchr(line, '\n')) break; /* incomplete */
-        size_t length;
+    char *csv;
+    size_t size, rows = 1, length;
+    TRY(file_read(path, &csv, &size, d));
+    for (const char *at = csv; *at; at = csv_next_line(at)) rows++;
+    *curve = (struct curve){.t = calloc((2 + spare) * rows, sizeof *curve->t)};
+    curve->value = curve->t + rows;
+    for (const char *line = csv_next_line(csv); curve->t && *line; line = csv_next_line(line)) {
         const char *const field = csv_field(line, column, &length);
+        if (!strchr(line, '\n')) break; /* incomplete */
         if (!field) continue;
         curve->t[curve->n] = strtod(line, NULL);
         curve->value[curve->n++] = strtod(field, NULL);
     }
+    free(csv);
+    return curve->t ? ERR_OK
+                    : diag_fail(d, ERR_MEMORY, "%s: no memory for its column %d", path, column);
 }
 
 static double at_time(const struct curve *curve, double t)
@@ -170,19 +171,13 @@ static void compare(struct reference *r, const struct curve *curve, struct curve
 
 enum err reference_score(struct reference *r, const char *probes_csv, struct diag *d)
 {
-    char *csv;
-    size_t size, rows = (size_t)r->n + 1;
-    TRY(file_read(probes_csv, &csv, &size, d));
-    for (const char *at = csv; *at; at = csv_next_line(at)) rows++;
-    double *const numbers = malloc(4 * rows * sizeof *numbers);
-    if (numbers) {
-        struct curve curve = {0, numbers, numbers + rows};
-        struct curve expected = {0, numbers + 2 * rows, numbers + 3 * rows};
-        read_curve(&curve, csv, r->column);
-        compare(r, &curve, &expected);
-    }
+    struct curve curve;
+    TRY(curve_read(&curve, probes_csv, r->column, 0, d));
+    const size_t rows = (size_t)(r->n + curve.n) + 1;
+    double *const numbers = malloc(2 * rows * sizeof *numbers);
+    if (numbers) compare(r, &curve, &(struct curve){0, numbers, numbers + rows});
     free(numbers);
-    free(csv);
+    free(curve.t);
     return numbers ? ERR_OK
                    : diag_fail(d, ERR_MEMORY, "%s: no memory to compare it with its references",
                                probes_csv);

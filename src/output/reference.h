@@ -6,6 +6,16 @@
 #include "output/json.h"
 #include "output/probes.h"
 
+/* Values over time; `t` is malloc'd and holds all. */
+struct curve {
+    int n;
+    double *t, *value;
+};
+
+/* Reads the complete rows of a column; behind the values are `spare` times as many zeros. */
+enum err curve_read(struct curve *curve, const char *path, int column, size_t spare, struct diag *d)
+    SPHFSI_CHECKED;
+
 /* Deviation of a probe from a reference, in units of the column. A peak is the first local extremum
  * within 0.5 % of the largest magnitude; NAN: none. */
 struct score {

@@ -314,6 +314,11 @@ enum err report_summary(const char *folder, struct simulation *sim, const struct
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(sim));
     json_text(&j, "state_hash", hash);
     if (r->references->scored) references_write(&j, r->references);
+    json_open(&j, "loads", '{');
+    struct diag why = {.warn = NULL};
+    if (r->probes && loads_write(&j, folder, r->probes, sim->scene, &why))
+        diag_warn(d, "loads are missing in summary.json: %s", why.text);
+    json_close(&j, '}');
     report_derived(&j, sim->scene);
     report_parameters(&j, sim->scene);
     json_close(&j, '}');

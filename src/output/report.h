@@ -21,6 +21,7 @@ struct record {
     int64_t start_particle_steps;
     struct ledger first, last; /* at time zero and now */
     const struct references *references;
+    const struct probes *probes; /* of a finished run: their loads are written */
 };
 
 /* Writes summary.json to the folder of the run, atomically. */
@@ -32,6 +33,10 @@ enum err report_summary(const char *folder, struct simulation *sim, const struct
 void report_parameters(struct json *j, const struct scene *scene);
 void report_effects(struct json *j, const struct simulation *sim);
 void report_derived(struct json *j, const struct scene *scene);
+
+/* By column of each force, reaction and surface pressure, whose files are in the folder. */
+enum err loads_write(struct json *j, const char *folder, const struct probes *probes,
+                     const struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
 /* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *sim, const struct record *r);

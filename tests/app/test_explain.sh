@@ -9,15 +9,6 @@ explain() { "$sphfsi" --explain "${still[@]}" "$@" 2>/dev/null >"$dir/said" ||
 says() { grep -q -- "$1" "$dir/said" || fail "no '$1': $(cat "$dir/said")"; }
 
 explain
-# Peaks of single instants are not a result; a mean over time has no such line.
-cp cases/templates/baffle.cfg "$dir/baffle.cfg"
-"$sphfsi" --explain "$dir/baffle.cfg" 2>/dev/null >"$dir/instants" || fail "--explain baffle"
-grep -q '^  \[probe load\]: rows are of single instants' "$dir/instants" ||
-    fail "no line on single instants"
-"$sphfsi" --explain "$dir/baffle.cfg" --set "load.average=1 ms" 2>/dev/null >"$dir/instants" ||
-    fail "average"
-grep -q 'single instants' "$dir/instants" && fail "a mean is not a single instant"
-
 # The file of snapshots is as large as its points.
 size="\([0-9]*\) snapshots of \([0-9]*\) points of \([0-9]*\) bytes: \([^ ]*\) MB"
 sed -n "s/^  fields.vtkhdf: $size.*/\1 \2 \3 \4/p" "$dir/said" |
