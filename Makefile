@@ -32,7 +32,7 @@ GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
              $(if $(filter web,$(GOALS)),plot web) $(if $(filter gate gallery accuracy bench \
-               energy-account forecast glance performance stability-% turek-hron validate \
+               coverage forecast glance performance stability-% turek-hron validate \
                verify-%,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(or $(SETUP),$(if $(filter gate test%,$(GOALS)),yes))'

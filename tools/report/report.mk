@@ -4,18 +4,17 @@
 #   make validate        run the article's five cases: docs/results/validation.md: hours; it goes on
 #                        where it was interrupted
 #   make accuracy        run what is missing of the accuracy study, write docs/results/accuracy.md (ARGS=--list)
+#   make coverage        whether the bands of tools/refine.py hold known answers: docs/results/coverage.md
 #   make forecast        what --explain foresees against what the shipped cases take: docs/results/accuracy.md
 #   make stability       run the hard cases in their long form and write docs/results/stability.md; goes on where
 #                        it was interrupted
 #   make stability-map   1440 plates over density, thickness and stiffness: docs/results/stability_map.json, picture
-#   make stability-substeps   sub-steps of the solid against a single rate: docs/results/stability_substeps.json
 #   make verify-fluid    rest, waves, impact, openings with both schemes: docs/results/fluid_verification.md
 #   make verify-contact  restitution, pressure, friction, stacks, folds: docs/results/contact_verification.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/results/open_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/results/manufactured.md
 #   make exact-fsi       a wave through the interface of bar and fluid: docs/results/exact_fsi.md
 #   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
-#   make energy-account  what the account of energy finds: docs/results/energy_account.md
 #   make performance     the bench, longest steps and the gate: docs/performance.md
 #   make glance          the charts of the README from the results of the reports
 #   make gallery         run the elastic valve and the flap, draw their pictures in the README
@@ -24,17 +23,16 @@
 # goal: the tool and its options. Each is run on the built program by the project's Python.
 validate_TOOL            := tools/report/validation.py
 accuracy_TOOL            := tools/report/accuracy.py
+coverage_TOOL            := tools/report/coverage.py
 forecast_TOOL            := tools/report/forecast.py
 stability_TOOL           := tools/report/stability.py --report $(if $(QUICK),--quick,--keep)
 stability-map_TOOL       := tools/report/stability_map.py
-stability-substeps_TOOL  := tools/report/stability_substeps.py
 verify-fluid_TOOL        := tools/report/verify_fluid.py
 verify-contact_TOOL      := tools/report/verify_contact.py
 verify-open_TOOL         := tools/report/verify_open.py
 verify-manufactured_TOOL := tools/report/manufactured.py
 exact-fsi_TOOL           := tools/report/exact_fsi.py
 turek-hron_TOOL          := tools/report/turek_hron.py
-energy-account_TOOL      := tools/report/energy_account.py
 performance_TOOL         := tools/report/performance.py
 bench_TOOL               := tools/report/performance.py --bench
 glance_TOOL              := tools/report/glance.py
@@ -49,7 +47,7 @@ $(REPORTS): $(PROGRAM)
 
 # What a report runs beside the program. Several runs at a time must not spin while they wait.
 validate stability-map: export OMP_WAIT_POLICY := passive
-verify-manufactured exact-fsi: $(SHARED)
+verify-manufactured exact-fsi coverage: $(SHARED)
 bench performance: $(BENCHES)
 reliability: $(TESTS)
 

@@ -26,7 +26,6 @@ import tomllib
 from pathlib import Path
 
 import stability_map
-import stability_substeps
 from common import OUT, ROOT, Run, options, read_table, run_tool, table, write
 from runs import Job
 
@@ -207,7 +206,7 @@ def write_report(rows, integrators, form):
                         "measured", "s"], map(scene_row, rows)),
           settings="\n".join(f"* {scene['name']}: {scene['settings']}" for scene in scenes
                              if "settings" in scene),
-          limits="\n".join(limits), **stability_substeps.values(),
+          limits="\n".join(limits),
           integrators=table(["step over the limit", "symplectic", "Verlet", "leapfrog"],
                             integrators))
 
