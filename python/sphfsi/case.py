@@ -10,7 +10,7 @@ import tempfile
 import threading
 import warnings
 from pathlib import Path
-from typing import Any, Callable, Mapping, TextIO
+from typing import Any, Callable, Mapping, Sequence, TextIO
 
 from .budget import find_dp
 from .keys import check_changes
@@ -200,16 +200,23 @@ class Case:
         call.finish(status)
         return Run(folder)
 
-    def refine(self, out: str | os.PathLike | None = None, *, runs: int = 3, ratio: float = 2.0,
-               until: float = 0.0, threads: int = 0, progress: bool = False,
-               notes: Callable[[str], None] | None = None,
-               results: Callable[[str], None] | None = None) -> dict:
-        """Runs the case in `runs` resolutions, dp growing by `ratio`, coarsest first, and returns
-        what the probes and energies converge to: refine.json of docs/formats.md. Finished runs are
-        not run again. `notes` and `results`: called with the lines on the runs and of the table."""
-        folder = Path(out) if out is not None else self.folder()
-        said = notes or log.info
-        study = Refinement(self, folder, runs, ratio, until, threads, said)
+    def refinement(self, out: str | os.PathLike | None = None, *, runs: int = 3,
+                   ratio: float | None = None, until: float = 0.0, threads: int = 0,
+                   start: float | None = None, without: Sequence[str] = (), repeats: int = 3,
+                   notes: Callable[[str], None] | None = None) -> Refinement:
+        """A plan of runs over spacing, kernel, speed of sound and step, and its cost: `runs`
+        spacings that grow by `ratio` (None: the largest of 2, 1.5 and 1.25 that fits). `without`:
+        directions to leave out, of kernel, sound, step, repeats. `start`: all measures are of the
+        time from here on. `notes`: called with a line on each run."""
+        return Refinement(self, Path(out) if out is not None else self.folder(), runs, ratio, until,
+                          threads, start, without, repeats, notes or log.info)
+
+    def refine(self, out: str | os.PathLike | None = None, *, progress: bool = False,
+               results: Callable[[str], None] | None = None, **plan: Any) -> dict:
+        """Carries out a `refinement` and returns what probes and energies converge to, with bands
+        of 90 %: refine.json of docs/formats.md. Finished runs are not run again. `results`: called
+        with the lines of the table."""
+        study = self.refinement(out, **plan)
         study.run(progress)
         return study.report(results or log.info)
 

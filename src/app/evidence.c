@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The expected error of a case, from what the accuracy study measured:
- * src/app/data/evidence.csv, which `make accuracy` writes. */
+ * The expected error of a case, from problems with known answers: src/app/data/evidence.csv, which
+ * `make accuracy` and `make coverage` write. */
 #include "app/actions.h"
 #include "app/embedded.h"
 #include "base/csv.h"
@@ -9,39 +9,40 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum evidence_column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
+enum { MAX_ERRORS = 256 };
 
-/* Least and largest error of the study's cases of a kind. Each counts at its finest resolution that
- * is no finer than n; `coarser`: n is less than all resolutions of a case. */
-struct band {
-    double low, high;
-    bool coarser;
-};
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
 
-static struct band band_of(enum scene_kind kind, const char *accuracy, double n)
+/* The errors of all problems of a kind, each at its finest resolution that is no finer than n; the
+ * smallest first. The rows of a problem are by resolution. */
+static int known_errors(enum scene_kind kind, const char *accuracy, double n,
+                        double error[MAX_ERRORS])
 {
     const char first = kind == SCENE_SOLID ? 's' : kind == SCENE_FLUID ? 'f' : 'c';
-    struct band band = {.low = (double)INFINITY};
-    const char *before = "", *name, *line = embedded_text("src/app/data/evidence.csv");
-    double best = (double)NAN;
-    size_t length;
-    for (; *line; line = csv_next_line(line)) {
-        name = csv_field(line, ACCURACY, &length);
-        if (*line != first || strlen(accuracy) != length || strncmp(name, accuracy, length) != 0)
+    const char *before = "", *line = embedded_text("src/app/data/evidence.csv");
+    size_t length, before_length = 0;
+    int count = 0;
+    for (; *line && count < MAX_ERRORS; line = csv_next_line(line)) {
+        const char *const name = csv_field(line, ACCURACY, &length);
+        if (*line != first || strlen(accuracy) != length || strncmp(name, accuracy, length) != 0 ||
+            strtod(csv_field(line, RESOLUTION, &length), NULL) > n)
             continue;
-        const double resolution = strtod(csv_field(line, RESOLUTION, &length), NULL);
-        name = csv_field(line, CASE, &length);
-        if (strncmp(name, before, length + 1) != 0) { /* a case's rows are by resolution */
-            band.low = fmin(band.low, best), band.high = fmax(band.high, best);
-            band.coarser |= resolution > n;
-            best = (double)NAN;
-            before = name;
-        }
-        if (resolution <= n || isnan(best)) best = strtod(csv_field(line, PERCENT, &length), NULL);
+        const char *const problem = csv_field(line, CASE, &length);
+        length = (size_t)(csv_field(line, RESOLUTION, &length) - problem);
+        count -= length == before_length && strncmp(problem, before, length) == 0;
+        before = problem;
+        before_length = length;
+        error[count++] = strtod(csv_field(line, PERCENT, &length), NULL);
     }
-    band.low = fmin(band.low, best), band.high = fmax(band.high, best);
-    return band;
+    qsort(error, (size_t)count, sizeof *error, by_size);
+    return count;
 }
 
 /* Particles across the thinner side of a body, or over the height of the fluid. */
@@ -60,36 +61,26 @@ static double particles_across(const struct scene *scene, enum kind kind, int bo
     return kind == KIND_SOLID ? min2(n[0], n[1]) : n[1];
 }
 
+/* One more such problem has at most the k-th error of m with probability k/(m + 1): Wilks 1941. */
 static void say_error(const struct scene *scene, enum kind kind, int body, const char *accuracy,
                       const struct sphfsi_options *o)
 {
     const bool fluid = kind == KIND_FLUID;
     const enum scene_kind like = fluid ? SCENE_FLUID : scene->n_fluid ? SCENE_COUPLED : SCENE_SOLID;
     const double n = particles_across(scene, kind, body);
-    const struct band band = band_of(like, accuracy, n);
+    double error[MAX_ERRORS];
+    const bool moves = !fluid && scene->solid[body].clamp.n == 0 && !scene_is_bonded(scene, body);
+    const int m = moves ? 0 : known_errors(like, accuracy, n, error);
+    const int k = (int)min2(m, ceil(0.9 * (m + 1)));
     const char *const name =
         fluid ? scene->fluid[body].common.name : scene->solid[body].common.name;
-    const bool moves = !fluid && scene->solid[body].clamp.n == 0 && !scene_is_bonded(scene, body);
-    char low[32] = "";
-    if (band.low < 0.9 * band.high) snprintf(low, sizeof low, "%.2g %% to ", band.low);
-    if (moves || !isfinite(band.low))
-        session_say(
-            o,
-            "  %s: %.0f particles across; error unknown, because docs/results/accuracy.md has no "
-            "case of this kind",
-            name, n);
-    else if (band.coarser)
-        session_say(o,
-                    "  %s: %.0f particles across, fewer than in all cases of this kind in "
-                    "docs/results/accuracy.md, so the error is not known; use a finer dp",
-                    name, n);
-    else
-        session_say(o,
-                    "  %s: %.0f particles %s about %s%.2g %% (cases of this kind, "
-                    "docs/results/accuracy.md)",
-                    name, n,
-                    fluid ? "over its height: error of" : "across: error of the tip displacement",
-                    low, band.high);
+    char text[120] = "error unknown: docs/results/coverage.md has no such problem as coarse";
+    if (m > 0)
+        snprintf(
+            text, sizeof text,
+            "error of at most %.2g %% in %.0f of 100 cases like %d in docs/results/coverage.md",
+            error[k - 1], 100.0 * k / (m + 1), m);
+    session_say(o, "  %s: %.0f particles %s: %s", name, n, fluid ? "high" : "across", text);
 }
 
 void evidence_say(const struct scene *scene, const struct sphfsi_options *o)

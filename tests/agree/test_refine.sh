@@ -4,7 +4,9 @@
 refine=("${PYTHON:-python3}" tools/refine.py)
 "${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||
     { echo "cffi or numpy is missing"; exit 77; }
-run() { "${refine[@]}" -n 3 "$@" --threads 1 --quiet; }
+run() {
+    "${refine[@]}" -n 3 --ratio 2 --without kernel,sound,step,repeats "$@" --threads 1 --quiet
+}
 case=(cases/cantilever.cfg --set ratio=8 --until 0.02 --out "$dir/r")
 
 # Stopped in the middle: the second folder has begun, the third has not.
@@ -35,6 +37,26 @@ run "${case[@]}" 2>"$dir/error" || fail "resumed without a summary: $(cat "$dir/
 for file in "$dir"/kept/*.ckpt; do
     cmp "$file" "$middle/$(basename "$file")" || fail "a checkpoint was deleted or written anew"
 done
+
+# The plan comes with its price, runs nothing, and knows what is finished. By itself it takes the
+# largest ratio at which the bodies fit.
+"${refine[@]}" "${case[@]}" --threads 1 --plan >"$dir/plan" 2>"$dir/error" ||
+    fail "plan: $(cat "$dir/error")"
+[ "$(grep -c finished "$dir/plan")" = 3 ] && [ "$(grep -c 'step .* s$' "$dir/plan")" = 2 ] &&
+    grep -q 'in all .* s on this machine' "$dir/plan" || fail "plan: $(cat "$dir/plan")"
+[ ! -e "$dir/r/step-0.5" ] || fail "the plan was run"
+"${refine[@]}" cases/still_water.cfg --set dp=20mm --plan >"$dir/plan" 2>/dev/null
+[ "$(grep -c 'spacing\|kernel\|sound\|step\|repeats' "$dir/plan")" = 12 ] &&
+    grep -q 'dp 0.045 ' "$dir/plan" || fail "plan with water: $(cat "$dir/plan")"
+"${refine[@]}" "${case[@]}" --without spacing 2>"$dir/error"
+[ $? = 1 ] && grep -q 'there are kernel, sound, step, repeats' "$dir/error" ||
+    fail "$(cat "$dir/error")"
+
+# Water, too: kernels, sound, steps and repeats are run and reported.
+"${refine[@]}" cases/still_water.cfg --set dp=20mm --set wall=80mm --until 0.1 --threads 1 \
+    --quiet --out "$dir/water" >"$dir/table" 2>"$dir/error" || fail "water: $(cat "$dir/error")"
+[ "$(find "$dir/water" -name summary.json | wc -l)" = 12 ] || fail "there are not twelve runs"
+grep -q '"sound": {' "$dir/water/refine.json" || fail "no order in the speed of sound"
 
 # Other physics in the same folder is refused.
 run "${case[@]}" --set plate.young=1MPa 2>"$dir/error"

@@ -33,18 +33,15 @@ def columns(path):
     return {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
 
 
-def measures(table, name):
-    """Value at the end, of largest magnitude, and mean of the last quarter of the time."""
-    values, times = table[name], table["time_s"]
-    late = [v for v, t in zip(values, times) if t >= 0.75 * times[-1]]
-    peak = 0.0
-    for v in values:
-        peak = v if abs(v) > abs(peak) else peak
-    return {"final": values[-1], "peak": peak, "settled": sum(late) / len(late)}
-
-
 def close(a, b):
-    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-15)
+    return math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-15)
+
+
+def mean(table, name, end):
+    """Trapezoidal mean of the last quarter of the time."""
+    rows = [(t, v) for t, v in zip(table["time_s"], table[name]) if 0.75 * end <= t <= end]
+    whole = sum(0.5 * (t - s) * (v + w) for (s, v), (t, w) in zip(rows, rows[1:]))
+    return whole / (rows[-1][0] - rows[0][0])
 
 
 def check(folder, said):
@@ -52,45 +49,47 @@ def check(folder, said):
     dp = report["dp"]
     assert len(dp) == 3 and close(dp[1] / dp[0], RATIO) and close(dp[2] / dp[1], RATIO), dp
     runs = [folder / f"dp-{d:.6g}" for d in dp]
-    assert all(run.is_dir() for run in runs), runs
+    steps = [runs[1], folder / "step-0.707", folder / "step-0.5"]
+    assert all(run.is_dir() for run in runs + steps), list(folder.iterdir())
     checked = 0
     for file, results in (("probes.csv", report), ("ledger.csv", report["ledger"])):
-        tables = [columns(run / file) for run in runs]
+        tables = [columns(run / file) for run in runs + steps]
+        end = min(table["time_s"][-1] for table in tables)
         for name, of_column in results.items():
-            if name not in tables[0]:
+            if name not in tables[0] or "mean" not in of_column:
                 continue
-            for measure, got in of_column.items():
-                values = [measures(table, name)[measure] for table in tables]
-                assert all(map(close, got["values"], values)), (name, measure, got["values"],
-                                                                values)
-                fine, middle, coarse = values
-                if got["band"] > abs(fine):  # no result
-                    assert got["extrapolated"] is None, (name, measure, got)
-                elif got["order"] is None:
-                    assert close(got["extrapolated"], fine), (name, measure, got)
-                if got["order"] is None:
-                    assert got["why_no_order"], (name, measure, got)
+            got = of_column["mean"]
+            fine, middle, coarse, _, longer, shorter = (mean(table, name, end) for table in tables)
+            assert all(map(close, got["values"], (fine, middle, coarse))), (name, got)
+            total = math.hypot(got["spacing"]["band"], got["step"]["band"])
+            assert close(got["band"], total) and got["scatter"] == 0, (name, got)
+            if got["band"] > abs(fine) or got["spacing"]["order"] is None:
+                assert got["extrapolated"] is None, (name, got)
+            for part, (a, b, c), ratio in ((got["spacing"], (fine, middle, coarse), RATIO),
+                                           (got["step"], (shorter, longer, middle), 2**0.5)):
+                if part["order"] is None:
+                    assert part["why_no_order"], (name, part)
                     continue
-                order = math.log((coarse - middle) / (middle - fine)) / math.log(RATIO)
-                assert math.isclose(got["order"], order, rel_tol=1e-6), (name, measure, got, order)
-                trusted = RATIO**min(order, 2) - 1
-                if got["extrapolated"] is not None:
-                    assert math.isclose(got["extrapolated"], fine + (fine - middle) / trusted,
-                                        rel_tol=1e-6)
-                assert math.isclose(got["band"], 1.25 * abs(fine - middle) / trusted, rel_tol=1e-6)
+                order = math.log((c - b) / (b - a)) / math.log(ratio)
+                assert math.isclose(part["order"], order, rel_tol=1e-4), (name, part, order)
+            if got["spacing"]["order"] is not None:
+                order = got["spacing"]["order"]
+                error = (2.45 - 0.425 * order) * abs(middle - fine) / (RATIO**order - 1)
+                assert math.isclose(got["spacing"]["band"], 1.645 / 1.960 * error,
+                                    rel_tol=1e-4), (name, got)
             checked += 1
-    assert checked >= 12, checked
+    assert checked >= 4, checked
     # The table is the same, rounded.
     lines = said.splitlines()
     at = lines.index("M1_dy_m")
-    for line in lines[at + 1:at + 4]:
+    for line in lines[at + 1:at + 3]:
         word, coarse, middle, fine, limit = line.split()[:5]
         of = report["M1_dy_m"][word]
         assert [float(fine), float(middle), float(coarse)] == [float(f"{v:.5g}")
                                                                for v in of["values"]], line
-        unresolved = of["extrapolated"] is None
-        assert limit == ("none" if unresolved else f"{of['extrapolated']:.5g}"), line
-        assert line.endswith("; no result") == unresolved, line
+        none = of["extrapolated"] is None
+        assert limit == ("none" if none else f"{of['extrapolated']:.5g}"), line
+        assert line.endswith("; no result") == (of["band"] > abs(of["values"][0])), line
     assert report["off_lattice"] == any("off the lattice" in line for line in lines)
     return report
 

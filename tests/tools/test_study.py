@@ -15,7 +15,6 @@ with packages():
     import tomllib
     from study import points_of
     from study_metrics import measure
-    from study_tables import convergence
     from runfiles import BadFile, np
 
 STUDY = """
@@ -240,8 +239,6 @@ def errors_by_hand(folder):
             sys.exit(f"{bad} was answered for a curve that has no period")
         except BadFile:
             pass
-    c = convergence((1, 1.25, 2), tuple(3 + 0.1 * h**1.5 for h in (1, 1.25, 2)))
-    check(abs(c["order"] - 1.5) < 1e-6 and abs(c["extrapolated"] - 3) < 1e-6, str(c))
 
 
 def main():

@@ -11,6 +11,7 @@ The scene is cases/verify/fsi_bar.cfg: the one-dimensional model of Banks, Hensh
 import math
 
 from common import OUT, QUICK, ROOT, np, options, program_version, run_tool, table, write
+from metrics import order
 import sphfsi
 
 REPORT = OUT / "exact_fsi.md"
@@ -75,10 +76,6 @@ def in_time(density, steps, counts):
         out.append([math.sqrt(np.mean((v - best)**2)) / np.abs(best).max()
                     for (_, v), (_, best) in zip(found, finest)])
     return out
-
-
-def order(sizes, errors):
-    return math.log(errors[-2] / errors[-1]) / math.log(sizes[-1] / sizes[-2])
 
 
 def study(kind, density, steps):

@@ -19,6 +19,7 @@ IMG = IMAGES
 EFFECTS = OUT / "effects.csv"
 # Cases of the accuracy study that both schemes have: label, main error, what it is against.
 CASES = {"still": ("still water: pressure", "pressure (L2)"),
+         "wave": ("standing wave: period", "period"),
          "impact": ("wave impact: noise of the pressure", "noise of the pressure"),
          "gate": ("elastic gate: motion, from its finest run",
                   "tip motion (RMS) from the finest run"),

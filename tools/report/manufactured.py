@@ -14,6 +14,7 @@ particles, of Negi and Ramachandran (2022, arXiv 2208.10848)."""
 import math
 
 from common import OUT, QUICK, ROOT, np, options, program_version, run_tool, table, write
+from metrics import order
 import sphfsi
 
 REPORT = OUT / "manufactured.md"
@@ -150,11 +151,6 @@ def run_solid(ratio):
 
 def run(scene, scheme, ratio):
     return run_solid(ratio) if scene == "solid" else run_flow(scene, scheme, ratio)
-
-
-def order(ratios, errors):
-    """Between the two finest runs."""
-    return math.log(errors[-2] / errors[-1]) / math.log(ratios[-1] / ratios[-2])
 
 
 def study(scene, ratios):

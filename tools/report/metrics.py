@@ -6,6 +6,11 @@ import math
 from common import BadFile, np
 
 
+def order(sizes, errors):
+    """Of convergence, between the last two of more and more particles."""
+    return math.log(errors[-2] / errors[-1]) / math.log(sizes[-1] / sizes[-2])
+
+
 def crossings(time, value):
     """Times at which a sampled curve changes sign; a zero at its start is none."""
     k = np.flatnonzero(value[1:-1] * value[2:] < 0) + 1

@@ -13,7 +13,7 @@ from matplotlib.ticker import LogFormatter
 from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
 from palette import shrink
 from study import SCENES
-from study_presets import fronts, preset_table, write_evidence
+from study_presets import preset_table, write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
                            main_error, percent)
 from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
@@ -166,7 +166,7 @@ def write(data, out, evidence=None):
         repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),
         schemes=schemes_table(study),
         cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),
-        halving=halving_table(study), knobs=knobs, best=best_knobs(study), fronts=fronts(study),
+        halving=halving_table(study), knobs=knobs, best=best_knobs(study),
         presets=preset_table(study), forecast=forecast_section(data.with_name("forecast.json")),
         failures=failures(study), holes="\n".join(f"* {h}" for h in study.head["holes"]) or "None.")
     (out / "accuracy.md").write_text(re.sub(r" +\n", "\n", text), encoding="utf-8")

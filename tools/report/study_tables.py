@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Tables of the accuracy study's report."""
 
-import math
-
 import common
 from common import np
+from sphfsi.bands import band
 from study import SCENES
 from study_results import CROSSING, across, against, cost, finished, main_error, percent, seconds
 
@@ -86,42 +85,6 @@ def base_table(study, case):
     return table(head, rows)
 
 
-def convergence(spacing, value):
-    """From (dp, value) of three runs, finest first: order, extrapolated value, relative band.
-
-    Celik et al., J. Fluids Eng. 130 (2008) 078001: p solves p ln r21 = |ln|e32/e21| + q(p)|; the
-    grid convergence index with a safety factor of 1.25 (Roache 1994). Without monotone convergence,
-    or with p < 0.5, three times the largest difference (after Eca and Hoekstra 2014)."""
-    (h1, h2, h3), (f1, f2, f3) = spacing, value
-    e21, e32 = f2 - f1, f3 - f2
-    widest = 3 * max(abs(e21), abs(e32), abs(f3 - f1))
-    scale = abs(f1) or 1.0
-    none = {"order": None, "extrapolated": f1, "band": widest / scale}
-    if e21 == 0 or e32 / e21 <= 0:
-        return dict(none, why="not monotone" if e21 or e32 else "no difference")
-    r21, r32 = h2 / h1, h3 / h2
-    p = 1.0
-    for _ in range(100):
-        q = math.log((r21**p - 1) / (r32**p - 1))
-        new = min(10.0, max(0.01, (math.log(e32 / e21) + q) / math.log(r21)))
-        if abs(new - p) < 1e-10:
-            break
-        p = 0.5 * (p + new)
-    if p < 0.5:
-        return dict(none, why=f"p = {p:.2f} < 0.5")
-    gain = r21 ** min(p, 2.0) - 1
-    return {"order": p, "extrapolated": f1 - e21 / gain, "band": 1.25 * abs(e21) / gain / scale,
-            "why": ""}
-
-
-def orders(values):
-    """Order of the three finest runs, and of the three that begin one level coarser."""
-    c = convergence(*zip(*values[:3]))
-    before = convergence(*zip(*values[1:4])) if len(values) > 3 else {"order": None,
-                                                                      "why": "three only"}
-    return c, f"{before['order']:.2f}" if before["order"] else f"none ({before['why']})"
-
-
 def order_table(study):
     rows = []
     for case, entry in study.cases.items():
@@ -131,17 +94,17 @@ def order_table(study):
             values = [v for v in values if v[1] is not None]
             if len(values) < 3 or error["kind"] == "noise":
                 continue
-            c, before = orders(values)
+            (h, *_), found = zip(*values[:3])
+            c = band([dp / h for dp, _ in values[:3]], found)
             reference = error.get("reference") if error["kind"] in SCALAR else None
             rows.append([entry.get("title", case), error["name"], against(error),
                          *(f"{v:.5g}" for _, v in values[:3]),
-                         f"{c['order']:.2f}" if c["order"] else f"none ({c['why']})", before,
-                         f"{c['extrapolated']:.5g}" if c["order"] else "-",
-                         f"{100 * c['band']:.2g}",
+                         f"{c.order:.2f}" if c.order else f"none ({c.why})",
+                         f"{found[0] + c.shift:.5g}" if c.order else "-",
+                         percent(c.half / abs(found[0])),
                          "-" if reference is None else f"{reference:.5g}"])
     return table(["case", "quantity", "against", "finest", "middle", "coarsest", "observed order",
-                  "order one level coarser", "extrapolated", "band of the finest (%)", "reference"],
-                 rows)
+                  "extrapolated", "90 % band of the finest (%)", "reference"], rows)
 
 
 def halving_table(study):
