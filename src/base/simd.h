@@ -240,6 +240,16 @@ SPHFSI_INLINE four_double four_max(four_double a, four_double b)
 #endif
 }
 
+/* Whether any lane of a mask is set. */
+SPHFSI_INLINE bool four_any(four_long mask)
+{
+#ifdef SIMD_AVX2
+    return !_mm256_testz_si256((__m256i)mask, (__m256i)mask);
+#else
+    return mask[0] | mask[1] | mask[2] | mask[3];
+#endif
+}
+
 /* Four numbers of a sweep's precision as doubles. gcc 12 converts four floats by way of memory. */
 SPHFSI_INLINE four_double four_widen_float(four_float a)
 {

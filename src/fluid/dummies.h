@@ -136,21 +136,16 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
                                        const struct dummies *d)
 {
-    const effect_set fx = fluid->effects;
-    double ax[CLUSTER], ay[CLUSTER];
+    const double lift = fluid->k.rho0 * fluid->k.h;
+    double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
-    for (int r = 0; r < d->count; r++) {
-        real *const own = d->packed + r;
-        if (fx & FX_ONE_SIDED) {
-            own[PACKED_LIFT_X * CLUSTER] =
-                (real)(fluid->k.rho0 * fluid->k.h * (fluid->k.gravity[0] - ax[r]));
-            own[PACKED_LIFT_Y * CLUSTER] =
-                (real)(fluid->k.rho0 * fluid->k.h * (fluid->k.gravity[1] - ay[r]));
-        }
-        if (fx & FX_REPULSION)
-            own[PACKED_NEAR * CLUSTER] = (real)fluid->near2[d->kind][particles->body[d->at[r]]];
+    for (int r = 0; r < d->count; r++) near2[r] = fluid->near2[d->kind][particles->body[d->at[r]]];
+    if (fluid->effects & FX_ONE_SIDED) {
+        put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
+        put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
     }
+    if (fluid->effects & FX_REPULSION) pack_four(d, near2, PACKED_NEAR);
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided

@@ -118,6 +118,10 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
     if (effects & FX_THIN) TRY(lines_create(&fluid->lines, a, scene, &kinds[KIND_WALL], d));
     for (int k = 0; k < KIND_COUNT; k++) fluid->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(fluid, a, cells_clusters(cells, kinds[KIND_FLUID].capacity), d));
+    const int64_t n_cells = (int64_t)cells->nx * cells->ny, n_fluid = kinds[KIND_FLUID].capacity;
+    fluid->around = arena_alloc(a, (size_t)(n_cells < n_fluid ? n_cells : n_fluid),
+                                sizeof *fluid->around, "cells around those of fluid", d);
+    if (!fluid->around) return ERR_MEMORY;
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(packed_create(&fluid->packed[k], a, cells_clusters(cells, kinds[k].capacity),
@@ -187,8 +191,25 @@ static bool mark_around(const struct cells *cells, int32_t cell, bool *near_dumm
     return wet;
 }
 
+/* The cells around those of fluid, chunk by chunk. */
+static void find_around(struct fluid *fluid, const struct cells *cells)
+{
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const int32_t chunks = fluid_chunk_count(list->n_active);
+#pragma omp parallel for schedule(static)
+    for (int32_t m = 0; m < chunks; m++) {
+        const int32_t first = fluid_chunk_start(list->n_active, m),
+                      end = fluid_chunk_start(list->n_active, m + 1);
+        if (first == end) continue;
+        const struct cluster_range range = clusters_of(list, first, end);
+        for (int32_t n = first; n < end; n++)
+            cells_around_find(&fluid->around[n], cells, KIND_FLUID, list->active[n], range);
+    }
+}
+
 void fluid_find_near(struct fluid *fluid, const struct cells *cells)
 {
+    find_around(fluid, cells);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         const struct cell_list *list = &cells->kind[kind];
         bool *const near_dummies = fluid->near_dummies[kind];

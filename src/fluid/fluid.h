@@ -182,6 +182,7 @@ struct fluid {
     struct lines lines; /* thin lines; unused without any */
     bool keeps_slopes;  /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed;  /* packed positions of walls at rest are valid */
+    struct cells_around *around;    /* [active cells of fluid]: those behind, and of other chunks */
     bool *near_dummies[KIND_COUNT]; /* [cells]: walls or solids in the nine cells around */
     bool *sticks[KIND_COUNT];       /* by body: whether fluid sticks to it; with NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
@@ -222,8 +223,8 @@ double fluid_shift(const struct fluid *fluid, struct particles *particles, doubl
 /* The density that the acoustic damper remembers moves towards the present one. */
 void fluid_follow_density(const struct fluid *fluid, struct particles *particles, double dt);
 
-/* After sorting: finds the cells of walls and solids that have fluid within reach, and the
- * reverse. */
+/* After sorting: finds the cells around those of fluid, the cells of walls and solids that have
+ * fluid within reach, and the reverse. */
 void fluid_find_near(struct fluid *fluid, const struct cells *cells);
 
 /* Most particles of any kind in one cell. */

@@ -26,7 +26,7 @@ SPHFSI_INLINE void add_across(four_double sum[S_SUMS], bool flow, double inv_h,
     const four_long lane = {0, 1, 2, 3};
     const four_double r2 = x * x + y * y;
     const four_long seen = (four_long)(r2 < square(KERNEL_REACH / inv_h)) & (lane < count);
-    if (!(seen[0] | seen[1] | seen[2] | seen[3])) return;
+    if (!four_any(seen)) return;
     const int32_t *const open = &particles->open[i];
     const four_long of = {open[0], open[1], open[2], open[3]}, fluid = (four_long)(of == 0) & seen;
     const four_double q = four_sqrt(r2) * inv_h, t = 1 - 0.5 * q;

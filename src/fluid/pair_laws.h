@@ -20,6 +20,7 @@ struct exchange {
     struct pair pair;
     vreal radial; /* of xi in the forces, Pa */
     vreal drag;   /* of -v in the forces, kg/(m^2 s) */
+    vreal x, y;   /* sum of both, between fluid with drag */
     vreal rate;   /* of v.xi in the rate, 1 */
     vreal step;   /* difference of dens that diffuses, 1 */
     vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
@@ -136,7 +137,7 @@ SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
  * The factor of -v_ab. */
 SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
-    return k->laminar * q->slope * (q->r2 * inv);
+    return k->laminar * (q->slope * (q->r2 * inv));
 }
 
 /* Eq. 28b: the pair's rate of approach or separation. */

@@ -135,18 +135,19 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
         rates_store(fluid, particles, i, count, &s, deferred, k, fx, top);
 }
 
+/* The n-th active cell. */
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
-                                 const struct cells *cells, int32_t cell,
+                                 const struct cells *cells, int32_t n,
                                  const struct vector_constants *k, struct pair_set fx,
                                  const struct chunk *chunk, struct chunk_totals *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const int32_t cell = list->active[n];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
     bool around[KIND_COUNT] = {false};
-    neighbour_clusters_collect(&neighbour_scratch->around[KIND_FLUID],
-                               &fluid->packed[KIND_FLUID].boxes, cells, KIND_FLUID, cell,
-                               fluid->k.h, chunk->range);
+    neighbour_clusters_copy(&neighbour_scratch->around[KIND_FLUID],
+                            &fluid->packed[KIND_FLUID].boxes, &fluid->around[n], cells, fluid->k.h);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         around[kind] = fluid_near_kind(fluid, (enum kind)kind, cell);
         if (around[kind])
@@ -178,7 +179,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
                                 fluid->neighbour_scratch[thread_index()].deferred};
     struct chunk_totals here = {.acceleration2 = {0}};
     for (int32_t m = first; m < end; m++)
-        rates_of_cell(fluid, particles, cells, list->active[m], k, fx, &chunk, &here);
+        rates_of_cell(fluid, particles, cells, m, k, fx, &chunk, &here);
     top->approach = max2(top->approach, (double)vtop(here.approach));
     for (int r = 0; r < CLUSTER; r++)
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);

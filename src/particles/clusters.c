@@ -10,61 +10,64 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
     return ERR_OK;
 }
 
-/* The clusters of a cell, one of 3 x 3 whose middle one is in column 1, row 1. */
-struct cell_clusters {
-    int32_t first, count;
-    int column, row;
-    uint32_t half; /* NEIGHBOUR_HALF or 0 */
-};
-
-/* Writes their boxes, moved by (dx, dy), and codes from item n on; returns the number of items. It
- * copies eight at a time: a cell has four or five, so wider vectors would only store more
- * padding. */
-SPHFSI_INLINE int append(struct neighbour_clusters *s, int n, const struct cluster_boxes *boxes,
-                         const struct cell_clusters *of, float dx, float dy)
+void cells_around_find(struct cells_around *around, const struct cells *cells, enum kind kind,
+                       int32_t cell, struct cluster_range range)
 {
-    const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
-    const eight_word word = ramp * neighbour_code(1, 0, 0) +
-                            (neighbour_code(of->first, of->column, of->row) | of->half);
-    ASSERT(n + of->count <= CLUSTERS_AROUND);
-    for (int m = 0; m < of->count; m += 8) {
-        for (int k = 0; k < BOX_SIDES; k++)
-            *(eight_float_at *)&s->side[k][n + m] =
-                *(const eight_float_at *)&boxes->side[k][of->first + m] + (k < BOX_DOWN ? dx : dy);
-        *(eight_word_at *)&s->code[n + m] = word + neighbour_code(m, 0, 0);
+    const struct cell_list *const list = &cells->kind[kind];
+    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
+    int n = 0;
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++) {
+            const int32_t other = cell_at(cells, cx + column - 1, cy + row - 1);
+            if (other < 0 || list->count[other] == 0) continue;
+            const int32_t first = list->cluster[other];
+            const bool inside = first >= range.first && first < range.end;
+            if (inside && first <= list->cluster[cell]) continue;
+            around->code[n] = neighbour_code(first, column, row) | (inside ? NEIGHBOUR_HALF : 0);
+            around->count[n++] = (uint8_t)clusters_in(list, other);
+        }
+    around->half = range.end > range.first;
+    if (around->half) {
+        around->code[n] = neighbour_code(list->cluster[cell], 1, 1) | NEIGHBOUR_HALF;
+        around->count[n++] = (uint8_t)clusters_in(list, cell);
     }
-    return n + of->count;
+    around->n = (uint8_t)n;
 }
 
-/* The rest of the last vector is filled with boxes out of everything's reach. What the loops read
- * is copied first: for the compiler, the stores of append may change everything else. */
+/* Copies eight clusters at a time: a cell has four or five, so wider vectors would only store more
+ * padding. The rest of the last vector is filled with boxes out of everything's reach. */
+void neighbour_clusters_copy(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
+                             const struct cells_around *around, const struct cells *cells, double h)
+{
+    const struct cluster_boxes box = *boxes; /* for the compiler, the stores may change it */
+    const float side_x = (float)(cells->side[0] / h), side_y = (float)(cells->side[1] / h);
+    const float x[] = {-side_x, 0, side_x}, y[] = {-side_y, 0, side_y};
+    const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
+    int n = 0;
+    for (int k = 0; k < around->n; k++) {
+        const uint32_t code = around->code[k];
+        const float dx = x[neighbour_column(code)], dy = y[neighbour_row(code)];
+        const eight_word word = ramp * neighbour_code(1, 0, 0) + code;
+        ASSERT(n + around->count[k] <= CLUSTERS_AROUND);
+        for (int m = 0; m < around->count[k]; m += 8) {
+            const size_t from = neighbour_number(code) + (size_t)m;
+            for (int side = 0; side < BOX_SIDES; side++)
+                *(eight_float_at *)&s->side[side][n + m] =
+                    *(const eight_float_at *)&box.side[side][from] + (side < BOX_DOWN ? dx : dy);
+            *(eight_word_at *)&s->code[n + m] = word + neighbour_code(m, 0, 0);
+        }
+        n += around->count[k];
+    }
+    n -= around->half;
+    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][n], vset_float(FAR_AWAY));
+    s->n = n;
+}
+
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
                                 const struct cells *cells, enum kind kind, int32_t cell, double h,
                                 struct cluster_range range)
 {
-    const struct cluster_boxes box = *boxes;
-    const int32_t *const count = cells->kind[kind].count, *const cluster =
-                                                              cells->kind[kind].cluster;
-    const float side_x = (float)(cells->side[0] / h), side_y = (float)(cells->side[1] / h);
-    const int32_t own = cluster[cell], nx = cells->nx;
-    const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
-    const int x[] = {cells_wrap(cells, 0, cx - 1), cx, cells_wrap(cells, 0, cx + 1)},
-              y[] = {cells_wrap(cells, 1, cy - 1), cy, cells_wrap(cells, 1, cy + 1)};
-    int n = 0;
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++) {
-            if (x[column] < 0 || y[row] < 0) continue;
-            const int32_t other = y[row] * nx + x[column];
-            if (count[other] == 0) continue;
-            const bool inside = cluster[other] >= range.first && cluster[other] < range.end;
-            if (inside && cluster[other] <= own) continue;
-            const struct cell_clusters of = {cluster[other], clusters_of_count(count[other]),
-                                             column, row, inside ? NEIGHBOUR_HALF : 0};
-            n = append(s, n, &box, &of, (float)(column - 1) * side_x, (float)(row - 1) * side_y);
-        }
-    const bool half = range.end > range.first;
-    const struct cell_clusters of = {own, clusters_of_count(count[cell]), 1, 1, NEIGHBOUR_HALF};
-    if (half) n = append(s, n, &box, &of, 0, 0) - 1;
-    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][n], vset_float(FAR_AWAY));
-    s->n = n;
+    struct cells_around around;
+    cells_around_find(&around, cells, kind, cell, range);
+    neighbour_clusters_copy(s, boxes, &around, cells, h);
 }

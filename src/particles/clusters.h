@@ -69,9 +69,28 @@ struct cluster_list {
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Collects the clusters of the 3 x 3 cells around `cell`. Those within `range` (whole cells; empty:
- * none) only if they are behind it: each pair of these is listed once, flagged NEIGHBOUR_HALF, and
- * serves both clusters. */
+/* The cells that hold clusters, of 3 x 3: the code of the first cluster of each, and their number.
+ */
+struct cells_around {
+    uint32_t code[10];
+    uint8_t count[10], n;
+    bool half; /* the last one is the cell in the middle, whose clusters are served in turn */
+};
+
+_Static_assert(CELL_CAPACITY / CLUSTER <= UINT8_MAX, "a number of clusters fits into a byte");
+
+/* Finds those around `cell`. Those within `range` (whole cells; empty: none) only if they are
+ * behind it: each pair of these is listed once, flagged NEIGHBOUR_HALF, and serves both clusters.
+ * Valid until the next sort. */
+void cells_around_find(struct cells_around *around, const struct cells *cells, enum kind kind,
+                       int32_t cell, struct cluster_range range);
+
+/* Collects their clusters. */
+void neighbour_clusters_copy(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
+                             const struct cells_around *around, const struct cells *cells,
+                             double h);
+
+/* Finds and collects them at once. */
 void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
                                 const struct cells *cells, enum kind kind, int32_t cell, double h,
                                 struct cluster_range range);
