@@ -17,9 +17,9 @@ enum { DRAWING = 1000, LEFT = 70, RIGHT = 30, HEAD = 60, FOOT = 52, LINE = 18 };
 struct drawing {
     FILE *file;
     const struct scene *scene;
-    double low[2], high[2]; /* m */
-    double scale;           /* pixels per m */
-    int n_listed;           /* bodies and probes so far, which the legend numbers */
+    struct box2 view; /* m */
+    double scale;     /* pixels per m */
+    int n_listed;     /* bodies and probes so far, which the legend numbers */
 };
 
 /* The palette of Okabe and Ito, for colour-blind readers. */
@@ -33,9 +33,15 @@ static const char style[] =
     ".probe,.hinge{fill:#fff;stroke:#000;stroke-width:1.6}</style>\n";
 static const enum section_id sections[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
 
-static double px(const struct drawing *g, double x) { return LEFT + (x - g->low[0]) * g->scale; }
+static double px(const struct drawing *g, double x)
+{
+    return LEFT + (x - g->view.low[0]) * g->scale;
+}
 
-static double py(const struct drawing *g, double y) { return HEAD + (g->high[1] - y) * g->scale; }
+static double py(const struct drawing *g, double y)
+{
+    return HEAD + (g->view.high[1] - y) * g->scale;
+}
 
 static void begin_text(const struct drawing *g, double x, double y, const char *class)
 {
@@ -47,7 +53,7 @@ static void end_text(const struct drawing *g) { fputs("</text>\n", g->file); }
 /* Writes the next number at a point of the drawing in pixels, and begins its line of the legend. */
 static void begin_legend(struct drawing *g, double x, double y)
 {
-    const double line = py(g, g->low[1]) + FOOT + LINE * ++g->n_listed;
+    const double line = py(g, g->view.low[1]) + FOOT + LINE * ++g->n_listed;
     begin_text(g, x, y, "label");
     fprintf(g->file, "%d</text>\n", g->n_listed);
     begin_text(g, LEFT + 40, line, "number");
@@ -78,17 +84,15 @@ static double spacing(const struct scene *scene, enum kind kind, int body)
 }
 
 /* Extends a box by the particles of a body; returns their number. */
-static int64_t extend_box(const struct scene *scene, enum kind kind, int body, double low[2],
-                          double high[2])
+static int64_t extend_box(const struct scene *scene, enum kind kind, int body, struct box2 *box)
 {
     const struct scene_points *const p = &scene->points[kind];
     const double half = 0.5 * spacing(scene, kind, body);
     int64_t n = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body) continue;
-        const double at[2] = {p->x[i], p->y[i]};
-        for (int c = 0; c < 2; c++) low[c] = min2(low[c], at[c] - half);
-        for (int c = 0; c < 2; c++) high[c] = max2(high[c], at[c] + half);
+        box2_include(box, p->x[i] - half, p->y[i] - half);
+        box2_include(box, p->x[i] + half, p->y[i] + half);
         n++;
     }
     return n;
@@ -127,8 +131,8 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     const struct scene_section_common *const common = section_at(scene, sections[kind], body);
     const char *const motion = kind == KIND_WALL ? scene->wall[body].motion : "";
     const int rigid = common->section == SECTION_rigid ? common->index : -1;
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    const int64_t n = extend_box(scene, kind, body, low, high);
+    struct box2 box = box2_empty();
+    const int64_t n = extend_box(scene, kind, body, &box);
     put_particles(g, kind, body, false, motion[0] ? moving : fills[kind]);
     const int64_t n_clamped = put_particles(g, kind, body, true, clamped);
     for (int k = 0; kind == KIND_SOLID && k < scene->solid[body].hinge.n; k++)
@@ -139,7 +143,8 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     while (i < p->n && (p->body[i] != body || before-- > 0)) i++;
     begin_legend(g, n ? px(g, p->x[i]) : -99, n ? py(g, p->y[i]) + 4 : 0);
     fprintf(g->file, "%s %s: %.4g x %.4g m, %lld particles", section_table[common->section].word,
-            common->name, n ? high[0] - low[0] : 0, n ? high[1] - low[1] : 0, (long long)n);
+            common->name, n ? box.high[0] - box.low[0] : 0, n ? box.high[1] - box.low[1] : 0,
+            (long long)n);
     if (kind == KIND_FLUID) fprintf(g->file, "; %g kg/m^3, c0 %.4g m/s", scene->rho0, scene->c0);
     if (rigid >= 0)
         fprintf(g->file, "; %.4g kg/m, moves by itself", scene->rigid_mass[rigid].mass);
@@ -192,14 +197,14 @@ static void put_section(struct drawing *g, const char *word, const char *name, c
 /* Ticks at 1, 2 or 5 times a power of ten, some eight on the longer side. */
 static void put_axes(const struct drawing *g)
 {
-    const double x0 = px(g, g->low[0]), y0 = py(g, g->low[1]);
+    const double x0 = px(g, g->view.low[0]), y0 = py(g, g->view.low[1]);
     const double raw = DRAWING / g->scale / 8, power = pow(10, floor(log10(raw)));
     const double digit = raw / power;
     const double step = power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
     fprintf(g->file, "<rect class=\"frame\" x=\"%.1f\" y=\"%d\" width=\"%.1f\" height=\"%.1f\"/>\n",
-            x0, HEAD, px(g, g->high[0]) - x0, y0 - HEAD);
+            x0, HEAD, px(g, g->view.high[0]) - x0, y0 - HEAD);
     for (int c = 0; c < 2; c++)
-        for (double k = ceil(g->low[c] / step); k * step <= g->high[c]; k++) {
+        for (double k = ceil(g->view.low[c] / step); k * step <= g->view.high[c]; k++) {
             const double x = c ? x0 : px(g, k * step), y = c ? py(g, k * step) : y0;
             fprintf(g->file, "<path class=\"tick\" d=\"M%.1f %.1f%s\"/>\n", x, y, c ? "h-6" : "v6");
             begin_text(g, c ? x - 9 : x, c ? y + 4 : y + 19, c ? "end" : "middle");
@@ -211,19 +216,16 @@ static void find_view(struct drawing *g)
 {
     const struct scene *const scene = g->scene;
     double at[2][2];
-    for (int c = 0; c < 2; c++) g->low[c] = HUGE_VAL, g->high[c] = -HUGE_VAL;
+    g->view = box2_empty();
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int k = 0; k < section_count(scene, sections[kind]); k++)
-            extend_box(scene, (enum kind)kind, k, g->low, g->high);
+            extend_box(scene, (enum kind)kind, k, &g->view);
     for (int k = 0; k < scene->n_probe; k++)
         for (int i = 0; i < find_points(&scene->probe[k], at); i++)
-            for (int c = 0; c < 2; c++) {
-                g->low[c] = min2(g->low[c], at[i][c]);
-                g->high[c] = max2(g->high[c], at[i][c]);
-            }
-    const double longer = max2(g->high[0] - g->low[0], g->high[1] - g->low[1]);
+            box2_include(&g->view, at[i][0], at[i][1]);
+    const double longer = max2(g->view.high[0] - g->view.low[0], g->view.high[1] - g->view.low[1]);
     const double pad = max2(2 * scene->top.dp, 0.02 * longer);
-    for (int c = 0; c < 2; c++) g->low[c] -= pad, g->high[c] += pad;
+    for (int c = 0; c < 2; c++) g->view.low[c] -= pad, g->view.high[c] += pad;
     g->scale = DRAWING / (longer + 2 * pad);
 }
 
@@ -233,7 +235,7 @@ static void put_head(const struct drawing *g)
     const int lines = scene->n_fluid + scene->n_wall + scene->n_solid + scene->n_probe +
                       scene->n_spring + scene->n_damping;
     const int width = LEFT + DRAWING + RIGHT;
-    const double height = py(g, g->low[1]) + FOOT + lines * LINE + 20;
+    const double height = py(g, g->view.low[1]) + FOOT + lines * LINE + 20;
     fprintf(g->file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\">\n"
             "%s<rect width=\"%d\" height=\"%.0f\" fill=\"#fff\"/>\n",
