@@ -74,47 +74,55 @@ static void correct_solid(struct particles *particles, double dt)
     }
 }
 
+/* The first half of the solid's step of the same length as the fluid's, with the interface. */
+static void predict_at_single_rate(struct simulation *sim, double dt)
+{
+    predict_solid(&sim->kind[KIND_SOLID], 0.5 * dt);
+    sim->solid.time = sim->state.time + 0.5 * dt;
+    solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], sim->solid.time);
+    motion_at_single_rate(&sim->coupling, 0);
+}
+
+static void correct_at_single_rate(struct simulation *sim, double dt)
+{
+    struct particles *const solid = &sim->kind[KIND_SOLID];
+    correct_solid(solid, dt);
+    energy_of_solid(sim, dt, 1, true);
+    solid_book_work(&sim->solid, solid, solid->vx0, solid->vy0, dt);
+    solid_place_clamps(&sim->solid, solid, sim->state.time + dt);
+    motion_at_single_rate(&sim->coupling, dt / (dt + averaging_time(&sim->coupling)));
+    sim->state.solid_substeps++;
+    sim->substeps = 1;
+}
+
 static void symplectic_step(struct simulation *sim, double t_limit)
 {
-    struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
-    const bool coupled = sim->effects & FX_COUPLING, multirate = sim->effects & FX_MULTIRATE;
+    const bool multirate = sim->effects & FX_MULTIRATE;
+    const bool single_rate = sim->effects & FX_COUPLING && !multirate;
     const double time = sim->state.time;
     evaluate_start(sim);
     double clock = wall_clock();
-    if (coupled && !multirate) rates_of_solid(sim);
+    if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits);
     energy_test_due(sim);
-    predict_fluid(fluid, 0.5 * dt);
-    if (coupled && multirate) coupling_predict(&sim->coupling, dt, sim->state.dt);
-    if (coupled && !multirate) {
-        predict_solid(solid, 0.5 * dt);
-        sim->solid.time = time + 0.5 * dt;
-        solid_place_clamps(&sim->solid, solid, sim->solid.time);
-        motion_at_single_rate(&sim->coupling, 0);
-    }
+    predict_fluid(&sim->kind[KIND_FLUID], 0.5 * dt);
+    if (multirate) coupling_predict(&sim->coupling, dt, sim->state.dt);
+    if (single_rate) predict_at_single_rate(sim, dt);
     phase_add(sim, PHASE_update, clock);
 
     evaluate_fluid(sim, time + 0.5 * dt);
     energy_of_evaluation(sim, dt);
     clock = wall_clock();
-    if (coupled && multirate) advance_structure(sim, dt, dt);
-    if (coupled && !multirate) rates_of_solid(sim);
+    if (multirate) advance_structure(sim, dt, dt);
+    if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
     advance_fluid(sim, correct_rows, &dt);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
-    if (coupled && !multirate) {
-        correct_solid(solid, dt);
-        energy_of_solid(sim, dt, 1, true);
-        solid_book_work(&sim->solid, solid, solid->vx0, solid->vy0, dt);
-        solid_place_clamps(&sim->solid, solid, time + dt);
-        motion_at_single_rate(&sim->coupling, dt / (dt + averaging_time(&sim->coupling)));
-        sim->state.solid_substeps++;
-        sim->substeps = 1;
-    }
+    if (single_rate) correct_at_single_rate(sim, dt);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }
