@@ -138,10 +138,13 @@ static enum err check_hinges(struct hinges *hinges, const struct particles *part
                    h->at[0], h->at[1], hinges->scene->solid[h->body[0]].common.name);
 }
 
-enum err hinges_create(struct hinges *hinges, struct arena *a, const struct scene *scene,
-                       const struct solid *solid, const struct particles *particles, struct diag *d)
+enum err hinges_create(struct solid *solid, struct arena *a, const struct scene *scene,
+                       const struct particles *particles, struct diag *d)
 {
+    struct hinges *const hinges = arena_alloc(a, 1, sizeof *hinges, "hinges", d);
     size_t n = 0;
+    if (!hinges) return ERR_MEMORY;
+    solid->hinges = hinges;
     for (int body = 0; body < scene->n_solid; body++) n += (size_t)scene->solid[body].hinge.n;
     *hinges = (struct hinges){.scene = scene};
     hinges->hinge = arena_alloc(a, n, sizeof *hinges->hinge, "hinges", d);

@@ -35,11 +35,10 @@ struct hinges {
     bool released;           /* hinges_forces does nothing */
 };
 
-/* Finds the particles around each hinge and their weights. solid->body is set; the particles of all
- * clamps have free = 0. */
-enum err hinges_create(struct hinges *hinges, struct arena *a, const struct scene *scene,
-                       const struct solid *solid, const struct particles *particles, struct diag *d)
-    SPHFSI_CHECKED;
+/* Gives a solid its hinges: finds the particles around each, and their weights. solid->body is set;
+ * the particles of all clamps have free = 0. */
+enum err hinges_create(struct solid *solid, struct arena *a, const struct scene *scene,
+                       const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 /* Removes the part of the initial velocities that hinges do not allow. */
 void hinges_start(struct hinges *hinges, struct particles *particles);

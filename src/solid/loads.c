@@ -64,16 +64,13 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
                           const struct particles *particles)
 {
     const struct scene_lattice *const l = &v->scene->solid_lattice[body];
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    struct box2 row = box2_empty();
     for (int64_t k = load->first; k < load->end; k++) {
         double at[2];
         lattice_place(l, particles->X[v->loaded[k]], particles->Y[v->loaded[k]], at);
-        for (int c = 0; c < 2; c++) {
-            low[c] = min2(low[c], at[c]);
-            high[c] = max2(high[c], at[c]);
-        }
+        box2_include(&row, at[0], at[1]);
     }
-    return l->spacing[high[1] - low[1] > high[0] - low[0]];
+    return l->spacing[row.high[1] - row.low[1] > row.high[0] - row.low[0]];
 }
 
 /* Each particle's part of the force, or the traction times the length of surface that it
@@ -126,9 +123,12 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
     return ERR_OK;
 }
 
-enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
+enum err loads_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, struct diag *d)
 {
+    struct loads *const v = arena_alloc(a, 1, sizeof *v, "loads", d);
+    if (!v) return ERR_MEMORY;
+    solid->loads = v;
     *v = (struct loads){.scene = scene};
     TRY(find_held(v, a, particles, d));
     struct arena temp = {.limit = a->limit};

@@ -30,8 +30,8 @@ struct loads {
     bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
 };
 
-/* Finds the particles with loads and moving clamps. */
-enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
+/* Gives a solid its loads and moving clamps: finds their particles. */
+enum err loads_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 /* Finds what the clamps do at a time. */

@@ -9,7 +9,7 @@
 void advance_structure(struct simulation *sim, double dt, double kick)
 {
     const int n = timestep_substeps(sim, dt);
-    sim->solid_max_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
+    sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
     energy_of_solid(sim, dt, n, sim->coupling.centred);
     sim->substeps = n;
     sim->state.solid_substeps += n;
@@ -83,8 +83,8 @@ void find_speed(struct simulation *sim)
 #pragma omp parallel for schedule(static) reduction(max : top) if (solid->n > 0)
     for (int64_t i = 0; i < solid->n; i++)
         top = max2(top, solid->vx[i] * solid->vx[i] + solid->vy[i] * solid->vy[i]);
-    sim->speed2 = top;
+    sim->sorting.speed2 = top;
     if (sim->effects & FX_MOTION)
-        sim->speed2 =
-            max2(sim->speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
+        sim->sorting.speed2 =
+            max2(sim->sorting.speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
 }

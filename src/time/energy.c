@@ -525,8 +525,11 @@ static struct energy_gain gain_of_region(struct energy_account *account, int ent
         gained = now - at->lowest[t];
         account->most[t] = max2(account->most[t], gained);
         gained -= region->tolerance;
-        const struct energy_gain gain = {entry,  (enum energy_term)t, 0,
-                                         gained, at->available[t],    region->row};
+        const struct energy_gain gain = {.entry = entry,
+                                         .term = (enum energy_term)t,
+                                         .energy = gained,
+                                         .available = at->available[t],
+                                         .now = region->row};
         if (t != TERM_ALL && gained > 0 && exceeds(&gain, &worst)) worst = gain;
     }
     worst.all = max2(0, gained / at->available[TERM_ALL]);
@@ -536,13 +539,12 @@ static struct energy_gain gain_of_region(struct energy_account *account, int ent
 struct energy_gain energy_find_gain(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES];
+    struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
     struct energy_gain worst = {.entry = -1, .available = 1};
     find_all_energies(sim, of);
     find_terms(sim, of);
     join_neighbours(sim);
     memset(account->now, 0, sizeof account->now);
-    memset(sum, 0, sizeof sum);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         if (region_of(account, k) < 0) continue;
         add_energies(&sum[region_of(account, k)], &of[k]);
@@ -580,7 +582,7 @@ void energy_test_due(struct simulation *sim)
     if (!test_is_due(sim)) return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);
-    sim->gain_found = true;
+    sim->gain.found = true;
     account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
 }

@@ -86,6 +86,7 @@ struct energy_gain {
     double energy;     /* beyond the lowest value of the term */
     double available;  /* largest available energy since then */
     struct ledger now; /* the region's share of it */
+    bool found;        /* the guards have yet to read it */
 };
 
 #endif

@@ -115,8 +115,8 @@ enum err energy_guard(struct simulation *sim, struct diag *d)
     const struct energy_gain g = sim->gain;
     const double time = sim->state.time;
     char text[400], remedy[REMEDY];
-    if (!sim->gain_found) return ERR_OK;
-    sim->gain_found = false;
+    if (!sim->gain.found) return ERR_OK;
+    sim->gain.found = false;
     const double share = g.entry < 0       ? 0
                          : g.available > 0 ? g.energy / g.available
                                            : (double)INFINITY;

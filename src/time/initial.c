@@ -7,6 +7,8 @@
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
+#include "solid/hinges.h"
+#include "solid/loads.h"
 #include "time/timestep.h"
 
 static unsigned groups_of(const struct simulation *sim, enum kind kind)
@@ -167,11 +169,8 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
 {
     TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
                      sim->effects & FX_IMPLICIT, d));
-    if (sim->effects & FX_HINGE) {
-        TRY(hinges_create(&sim->hinges, &sim->arena, sim->scene, &sim->solid,
-                          &sim->kind[KIND_SOLID], d));
-        sim->solid.hinges = &sim->hinges;
-    }
+    if (sim->effects & FX_HINGE)
+        TRY(hinges_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
     start_solid(sim);
     solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
     return ERR_OK;
@@ -191,10 +190,8 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_CONTACT)
         TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
                            &sim->kind[KIND_SOLID], d));
-    if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
-        TRY(loads_create(&sim->loads, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
-        sim->solid.loads = &sim->loads;
-    }
+    if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION))
+        TRY(loads_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
     if (sim->effects & FX_IMPLICIT) {
         sim->coupling.centred = true;
         TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));

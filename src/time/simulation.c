@@ -100,7 +100,7 @@ static enum err step_with_fluid(struct simulation *sim, double t_limit, struct d
     clock = wall_clock();
     /* Done here so that the state does not depend on output between two steps. */
     if (sim->effects & FX_SHIFTING) {
-        sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
+        sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
         clock = phase_add(sim, PHASE_shift, clock);
     }
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);

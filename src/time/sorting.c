@@ -33,8 +33,8 @@ void clear_fluid_sums(struct particles *particles)
 void find_skin_left(struct simulation *sim)
 {
     const bool predicts = sim->integrator->ahead > 0;
-    const double ahead = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->speed2) : 0;
-    sim->skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + ahead);
+    const double ahead = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->sorting.speed2) : 0;
+    sim->sorting.skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + ahead);
 }
 
 enum err sort_particles(struct simulation *sim, struct diag *d)
@@ -85,8 +85,9 @@ void use_skin_left(struct simulation *sim, double speed2_before)
 {
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
-                         sim->shifted;
-    sim->skin_left -= moved + max2(moved, max2(sim->solid_max_move, sim->wall_motion.way));
+                         sim->sorting.shifted;
+    const double other = max2(sim->sorting.solid_move, sim->wall_motion.way);
+    sim->sorting.skin_left -= moved + max2(moved, other);
     sim->wall_motion.way = 0;
 }
 
@@ -97,12 +98,12 @@ bool sorting_due(struct simulation *sim)
     if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
     const bool bounded = sim->integrator->ahead == 0;
     const double tolerance = 1e-6 * sim->fluid.k.h;
-    if (bounded && sim->skin_left > tolerance) return false;
+    if (bounded && sim->sorting.skin_left > tolerance) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (sim->cells.kind[kind].n_active && (kind != KIND_WALL || sim->wall_motion.moved))
             cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
     find_skin_left(sim);
-    return !(sim->skin_left > 0);
+    return !(sim->sorting.skin_left > 0);
 }
 
 /* --- isolated particles, which the fluid does not resolve --- */

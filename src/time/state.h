@@ -13,8 +13,6 @@
 #include "rigid/rigid.h"
 #include "solid/contact.h"
 #include "implicit/equilibrium.h"
-#include "solid/hinges.h"
-#include "solid/loads.h"
 #include "time/energy_account.h"
 
 struct guard {
@@ -62,6 +60,14 @@ struct extremes {
     double dens_low, dens_high, speed2, nan_probe;
 };
 
+/* What the next sorting of particles into cells depends on. */
+struct sorting {
+    double speed2;     /* of the fastest particle of any kind, squared, (m/s)^2 */
+    double solid_move; /* largest of a solid particle in the last step, m (not with symplectic) */
+    double shifted;    /* largest shift of a fluid particle in the last step, m; 0: no shifting */
+    double skin_left;  /* distance that two particles may move until a sorting is due, m */
+};
+
 /* Accelerations from outside, added to those of the model by a program that uses the library. */
 typedef void external_function(void *context, double time, const struct particles *particles,
                                double *ax, double *ay);
@@ -101,8 +107,6 @@ struct simulation {
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */
     struct contact contact;         /* of the solid; unused without it */
-    struct hinges hinges;           /* of the solid */
-    struct loads loads;             /* of the solid; unused without loads and moving clamps */
     struct equilibrium rest;        /* of solids without fluid, with [relax] */
     effect_set effects;             /* bits of case/effects.h */
     struct state state;
@@ -113,10 +117,7 @@ struct simulation {
     struct team team;
     double phase_seconds[PHASE_COUNT];
     struct extremes extremes; /* of the fluid */
-    double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
-    double solid_max_move;    /* of a solid particle in the last step, m (not with symplectic) */
-    double shifted;      /* largest shift of a fluid particle in the last step, m; 0: no shifting */
-    double skin_left;    /* distance that two particles may move until a sorting is due, m */
+    struct sorting sorting;
     bool evaluated;      /* rates, pressures and the fluid's force are those of the present state */
     bool cells_overfull; /* more particles in a cell than the sweeps support: no evaluations */
     bool gravity_varies; /* with time */
@@ -128,7 +129,6 @@ struct simulation {
     struct guard guard;
     struct external external[KIND_COUNT]; /* of fluid and solid */
     struct energy_gain gain;              /* of the last test of the energy account */
-    bool gain_found;                      /* the guards have yet to read it */
 };
 
 /* "t = 0.1 s" for a message; while rest is sought (T-78), how long it has been sought. */

@@ -5,6 +5,7 @@
 #include "time/energy.h"
 #include "unity.h"
 #include "geometry/load.h"
+#include "solid/loads.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -235,9 +236,9 @@ static void test_rolling_tank(void)
         /* 4 degrees (1 - cos(2 pi 0.4/1.6)) = 4 degrees. */
         const double angle = (k ? -4 : 4) * 3.14159265358979323846 / 180;
         const struct particles *const particles = &sim.kind[KIND_SOLID];
-        TEST_ASSERT_TRUE(sim.loads.n_held > 0);
-        for (int64_t h = 0; h < sim.loads.n_held; h++) {
-            const int32_t i = sim.loads.held[h];
+        TEST_ASSERT_TRUE(sim.solid.loads->n_held > 0);
+        for (int64_t h = 0; h < sim.solid.loads->n_held; h++) {
+            const int32_t i = sim.solid.loads->held[h];
             assert_near(1e-12, cos(angle) * particles->X[i] - sin(angle) * particles->Y[i],
                         particles->x[i], "foot, x");
             assert_near(1e-12, sin(angle) * particles->X[i] + cos(angle) * particles->Y[i],

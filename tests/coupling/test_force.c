@@ -87,7 +87,7 @@ static void test_what_is_dry_is_forgotten(void)
     open(touching, "integrator=leapfrog", "domain.upper=3, 3");
     TEST_ASSERT_EQUAL_INT(ERR_OK,
                           simulation_external(&rig.sim, KIND_FLUID, carry_off, NULL, &rig.diag));
-    rig.sim.skin_left = 0;
+    rig.sim.sorting.skin_left = 0;
     rig_steps(&rig, 1, 1);
     for (int64_t i = 0; i < solid->n; i++) {
         TEST_ASSERT_TRUE(solid->p[i] == 0 && solid->dens[i] == 0);

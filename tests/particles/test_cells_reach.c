@@ -168,10 +168,10 @@ static void check_room(const char *scene, const char *integrator, const char *mo
                  "numerics.skin=0.15", NULL);
         int unmeasured = 0;
         for (int step = 0; step < steps; step++) {
-            if (measured) sim->skin_left = 0;
+            if (measured) sim->sorting.skin_left = 0;
             rig_steps(&rig, 1, 10);
             if (measured) continue;
-            const double left = sim->skin_left;
+            const double left = sim->sorting.skin_left;
             for (int kind = 0; kind < KIND_COUNT; kind++)
                 cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
             const double found = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h);

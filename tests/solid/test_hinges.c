@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Hinges: the point stays in place to round-off, exact periods, momentum and energy, restart. */
 #include "output/checkpoint.h"
+#include "solid/hinges.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"
@@ -21,7 +22,7 @@ void tearDown(void) { rig_close(&rig); }
 /* The interpolated displacement at a hinge: of its own body less that of the other. */
 static void moved(int hinge, double by[2])
 {
-    const struct hinges *const h = &rig.sim.hinges;
+    const struct hinges *const h = rig.sim.solid.hinges;
     by[0] = by[1] = 0;
     for (int64_t k = 0; k < h->n_nodes; k++) {
         if (h->node[k].hinge != hinge) continue;

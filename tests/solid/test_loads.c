@@ -3,6 +3,7 @@
  * them. */
 #include "output/checkpoint.h"
 #include "coupling/impulse.h"
+#include "solid/loads.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"
@@ -132,7 +133,8 @@ static void test_traction_on_fitted_cells(void)
                  sides[k]);
         RIG_OPEN_SOLID(text, NULL);
         double force = 0;
-        for (int64_t n = 0; n < rig.sim.loads.n_loaded; n++) force += rig.sim.loads.fy[n];
+        for (int64_t n = 0; n < rig.sim.solid.loads->n_loaded; n++)
+            force += rig.sim.solid.loads->fy[n];
         assert_near(1e-9, 100 * length[k], force, sides[k]);
     }
 }
@@ -270,7 +272,7 @@ static void test_edges_of_a_region(void)
                  BAR "[load end]\nbody = bar\nshape = box %.9g, 0, 0.2, 0.04\nforce = 3, 0\n",
                  row[k].from);
         RIG_OPEN_SOLID(text, NULL);
-        TEST_ASSERT_EQUAL_INT64(4 * row[k].columns, rig.sim.loads.n_loaded);
+        TEST_ASSERT_EQUAL_INT64(4 * row[k].columns, rig.sim.solid.loads->n_loaded);
     }
 }
 

@@ -89,7 +89,7 @@ void rig_sort(struct rig *r)
             TEST_ASSERT_EQUAL_INT64(0,
                                     cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
     fluid_find_near(&r->sim.fluid, &r->sim.cells);
-    r->sim.skin_left = 0;
+    r->sim.sorting.skin_left = 0;
 }
 
 double rig_pressure(const struct simulation *sim, int64_t i)

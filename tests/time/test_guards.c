@@ -259,7 +259,7 @@ static enum err check_with_gain(enum energy_term term, double share)
     if (term == TERM_FLUID) a->entry[only_region()].lowest[term] = a->now[term];
     a->entry[only_region()].lowest[term] -= share * a->entry[only_region()].available[term];
     rig.sim.gain = energy_find_gain(&rig.sim);
-    rig.sim.gain_found = true;
+    rig.sim.gain.found = true;
     rig.sim.state.gain_since = rig.sim.state.time - 3e-3;
     return energy_guard(&rig.sim, &rig.diag);
 }
@@ -298,13 +298,13 @@ static void test_a_gain_that_lasts(void)
         warnings = 0;
         rig.sim.guard.warned_energy = false;
         rig.sim.gain = (struct energy_gain){.entry = 0, .energy = seen[k].share, .available = 1};
-        rig.sim.gain_found = true;
+        rig.sim.gain.found = true;
         rig.sim.state.gain_since = rig.sim.state.time - seen[k].since;
         TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
         TEST_ASSERT_EQUAL_INT(seen[k].warned, warnings);
     }
     rig.sim.gain.energy = 0.005;
-    rig.sim.gain_found = true;
+    rig.sim.gain.found = true;
     rig.sim.state.gain_since = 0;
     TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_TRUE(rig.sim.state.gain_since == rig.sim.state.time);
@@ -337,7 +337,7 @@ static void test_a_gain_between_bodies(void)
         rig.sim.effects |= FX_CONTACT;
         rig.sim.contact.near = near;
         rig.sim.gain = (struct energy_gain){.term = TERM_FLUID, .energy = 0.2, .available = 1};
-        rig.sim.gain_found = true;
+        rig.sim.gain.found = true;
         TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(
             strstr(warning, near ? "; a smaller dp or cfl or a larger gap in [contact] or "
@@ -349,7 +349,7 @@ static void test_a_gain_between_bodies(void)
     rig.sim.effects &= ~(effect_set)FX_GRAVITY;
     rig.sim.gain = (struct energy_gain){.term = TERM_FLUID, .energy = 0.2, .available = 1};
     rig.sim.contact.near = false;
-    rig.sim.gain_found = true;
+    rig.sim.gain.found = true;
     TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(warning,
@@ -368,7 +368,7 @@ static void advises(const char *text, const char *what, const char *set, const c
     rig.diag = (struct diag){.warn = note};
     simulation_refresh(&rig.sim);
     rig.sim.gain = energy_find_gain(&rig.sim);
-    rig.sim.gain_found = true;
+    rig.sim.gain.found = true;
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
 }
