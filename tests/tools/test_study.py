@@ -136,7 +136,6 @@ def resumed(folder, environment, points):
     next((folder / "runs").glob("*.json")).unlink()
     status, text = study(folder, environment)
     check(text.count(" s of CPU (") == 1, f"not just what was missing ran: {text}")
-    older_program(folder, environment)
     for path in (folder / "runs").glob("*.json"):
         path.unlink()
     status, text = study(folder, environment, "--cached")
@@ -152,17 +151,6 @@ def resumed(folder, environment, points):
     (folder / "study.toml").write_text("[case")
     status, text = study(folder, environment)
     check(status == 1 and "study.toml" in text and "Traceback" not in text, text)
-
-
-def older_program(folder, environment):
-    """Runs of an older program stand for those of this one if that is asked for, and are marked."""
-    for path in (folder / "runs").glob("*.json"):
-        path.write_text(json.dumps(dict(json.loads(path.read_text()), program="older")))
-    status, text = study(folder, environment, "--older")
-    check(status == 0 and "points to run" not in text, f"older runs were not taken: {text}")
-    report = (folder / "accuracy.md").read_text()
-    check("§ is of an older program with the same effective case: 7 of 7" in report,
-          "points of an older program are not marked")
 
 
 def presets():

@@ -46,9 +46,6 @@ def arguments():
                         "these (commas between), or, without NAMES, those of the fronts")
     parser.add_argument("--jobs", type=int, default=1,
                         help="points at a time; their timings are marked as taken side by side")
-    parser.add_argument("--older", action="store_true",
-                        help="do not repeat points that an older program has run with the same "
-                             "effective case; the report marks them")
     parser.add_argument("--prefix", default="", help="command in front of each run, such as nice")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the report")
     parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
@@ -145,12 +142,12 @@ def main():
     again = () if args.again is None else \
         tuple(filter(None, args.again.split(","))) or tuple(front_names(args.data))
     missing = {job.folder: job for p in reversed(chosen) if (job := jobs[p["name"]]) and
-               (p["name"].startswith(again) or not done(job, args.older))}
+               (p["name"].startswith(again) or not done(job))}
     missing = list(reversed(missing.values()))
     if args.list:
         for p in chosen:
             job = jobs[p["name"]]
-            state = job and done(job, args.older).get("outcome", "missing") or "refused"
+            state = job and done(job).get("outcome", "missing") or "refused"
             expected = f"{cost[p['name']]:8.1f} s" if p["name"] in cost else 10 * " "
             print(f"{state:9s} {expected}  {p['name']}  {' '.join(p['set'])}")
         print(f"{len(chosen)} points, {len(missing)} to run: "
@@ -158,7 +155,7 @@ def main():
         return 0
     if missing and not args.cached:
         run_all(missing, study, args, cost)
-    records = [record_of(p, jobs[p["name"]], before, args.older) for p in points]
+    records = [record_of(p, jobs[p["name"]], before) for p in points]
     collect(records, add_errors(records, jobs, study), study, args.data)
     return study_report.write(args.data, args.out, evidence)
 

@@ -91,20 +91,20 @@ class Job:
     def record_path(self):
         return self.folder.with_name(self.folder.name + ".json")
 
-    def record(self, any_program=False):
+    def record(self):
         """How the run ended that is kept, or is under way; {} if there is none of this case."""
         try:
             found = load(self.record_path, {})
         except ValueError:
             return {}
         same = found.get("case") == case_hash(self.effective()) and \
-            (any_program or found.get("program") == program_hash()) and self.folder.is_dir()
+            found.get("program") == program_hash() and self.folder.is_dir()
         return found if same else {}
 
-    def run(self, say=print, threads=1, limit=None, prefix=(), any_program=False, anew=False):
+    def run(self, say=print, threads=1, limit=None, prefix=(), anew=False):
         """The record, after a run if there is none of one that ended; an interrupted run goes on
         unless it is to be `anew`."""
-        before = self.record(any_program)
+        before = self.record()
         if before.get("outcome", "started") not in ("started", "failed") and not anew:
             return before
         goes_on = before and not anew and any(self.folder.glob("*.ckpt"))
@@ -121,7 +121,7 @@ class Job:
                                      limit)
         if goes_on and status == 1 and NO_RESTART.search(said):
             say(f"{self.name}: {said.splitlines()[-1]}")
-            return self.run(say, threads, limit, prefix, any_program, anew=True)
+            return self.run(say, threads, limit, prefix, anew=True)
         record.update(timing=timing, log=said, resumed=bool(goes_on),
                       **outcome(self.folder, status, said, limit))
         self.store(record)

@@ -124,10 +124,10 @@ def give_jobs(points, study, runs):
         return dict(zip((p["name"] for p in points), pool.map(job_of, points)))
 
 
-def done(job, older=False):
+def done(job):
     """The record of a run that need not be repeated: one that failed for an outside reason runs
     again."""
-    record = job.record(older)
+    record = job.record()
     return record if record.get("outcome") not in (None, "started", "failed") else {}
 
 
@@ -174,9 +174,9 @@ def machine():
             "compiler": f"{compiler} {options}".strip()}
 
 
-def record_of(p, job, before, older):
+def record_of(p, job, before):
     """A point with what its run gave; of one that has not run here, what the last results say."""
-    record = job.record(older) if job else {}
+    record = job.record() if job else {}
     if not job or record.get("timings"):
         kept = {k: v for k, v in record.items() if k not in ("case", "timing", "log")}
         return {**p, **kept, "timing": record.get("timings", [])}

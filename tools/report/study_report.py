@@ -13,7 +13,7 @@ from matplotlib.ticker import LogFormatter
 from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
 from palette import shrink
 from study import SCENES
-from study_presets import preset_table, write_evidence
+from study_presets import write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
                            main_error, percent)
 from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
@@ -122,9 +122,7 @@ def circumstances(study):
         lines.append(f"* Load average before a run: median {np.median(loads):.1f}, "
                      f"{min(loads):.1f} to {max(loads):.1f}.")
     for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
-                               ("‡", study.beside, "was timed beside another run of the study"),
-                               ("§", study.older, "is of an older program with the same effective "
-                                                  "case")):
+                               ("‡", study.beside, "was timed beside another run of the study")):
         number = sum(map(is_so, points))
         lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
     return "\n".join(lines)
@@ -167,7 +165,7 @@ def write(data, out, evidence=None):
         schemes=schemes_table(study),
         cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),
         halving=halving_table(study), knobs=knobs, best=best_knobs(study),
-        presets=preset_table(study), forecast=forecast_section(data.with_name("forecast.json")),
+        forecast=forecast_section(data.with_name("forecast.json")),
         failures=failures(study), holes="\n".join(f"* {h}" for h in study.head["holes"]) or "None.")
     (out / "accuracy.md").write_text(re.sub(r" +\n", "\n", text), encoding="utf-8")
     print(f"written {out / 'accuracy.md'}")

@@ -137,13 +137,8 @@ class Study:
         """Whether they were taken beside another run of the study."""
         return any(t.get("beside") for t in p["timing"])
 
-    def older(self, p):
-        return p.get("program") not in (None, self.head.get("program"))
-
     def marks(self, p):
-        return "".join(mark for mark,
-                       is_so in (("†", self.busy), ("‡", self.beside), ("§", self.older))
-                       if is_so(p))
+        return "".join(mark for mark, is_so in (("†", self.busy), ("‡", self.beside)) if is_so(p))
 
 
 def front_names(path):

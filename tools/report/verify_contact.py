@@ -10,8 +10,7 @@ verify-contact, some minutes on one core).
 
 The scenes are cases/verify/contact_*.cfg and two others. tools/report/verify_contact_measures.py
 says how each figure is taken. The figures are kept in docs/results/contact_verification.json."""
-import math
-
+import metrics
 import verify_contact_measures as of
 from common import OUT, cell, judged, limit_text, measure_scene, run_scenes, run_tool, table
 
@@ -107,12 +106,8 @@ def run_level(of_scene, level):
 
 def order(values, levels):
     """Of the last two resolutions, where the error falls without a change of sign."""
-    if len(values) < 2 or levels[0] < 1 or levels[0] > 1000:
-        return ""
-    before, after = values[-2:]
-    if not (before * after > 0 and abs(after) < abs(before)):
-        return ""
-    return f"{math.log(before / after) / math.log(levels[-1] / levels[-2]):.1f}"
+    falls = len(values) > 1 and 1 <= levels[0] <= 1000 and abs(values[-1]) < abs(values[-2])
+    return f"{metrics.order(levels, values):.1f}" if falls and values[-2] * values[-1] > 0 else ""
 
 
 def rows_of(known):
