@@ -38,11 +38,11 @@ static struct vtensor2 mean_stress(const struct solid_body *b, struct vtensor2 f
 
 /* A sweep at the middle of a step: in place of P of the mean gradient, F of the mean gradient times
  * the mean stress. */
-static void take_mean_stress(const struct solid *solid, struct particles *p, int64_t first,
+static void take_mean_stress(const struct solid *solid, struct particles *particles, int64_t first,
                              int64_t last)
 {
-    double *const middle[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy}, *const P[] = {p->Pxx, p->Pxy, p->Pyx,
-                                                                             p->Pyy};
+    double *const middle[] = {particles->Uxx, particles->Uxy, particles->Uyx, particles->Uyy},
+                  *const P[] = {particles->Pxx, particles->Pxy, particles->Pyx, particles->Pyy};
     for (int64_t k = first; k < last; k++) {
         const struct solid_pack *const pack = &solid->pack[k];
         const struct solid_body *const body = &solid->body[pack->body];
@@ -62,40 +62,41 @@ static void take_mean_stress(const struct solid *solid, struct particles *p, int
 
 /* --- matrix --- */
 
-/* For the state and the step that p holds as those of the matrix. */
-static void factor(struct solid *solid, const struct particles *p)
+/* With the state and the step that the particles hold as those of the matrix. */
+static void factor(struct solid *solid, const struct particles *particles)
 {
-    implicit_factor(solid, p, *p->matrix_dt, 0, p->matrix_nx, p->matrix_ny);
+    implicit_factor(solid, particles, *particles->matrix_dt, 0, particles->matrix_nx,
+                    particles->matrix_ny);
 }
 
-/* The present state of p as that of the matrix. */
-static void factor_here(struct solid *solid, struct particles *p, double dt)
+/* With the present state as that of the matrix. */
+static void factor_here(struct solid *solid, struct particles *particles, double dt)
 {
-    const size_t bytes = (size_t)p->n * sizeof *p->ux;
-    memcpy(p->matrix_ux, p->ux, bytes);
-    memcpy(p->matrix_uy, p->uy, bytes);
-    for (int64_t i = 0; i < p->n; i++) p->matrix_dt[i] = dt;
-    if (p->face_x) {
-        memcpy(p->matrix_nx, p->face_x, bytes);
-        memcpy(p->matrix_ny, p->face_y, bytes);
+    const size_t bytes = (size_t)particles->n * sizeof *particles->ux;
+    memcpy(particles->matrix_ux, particles->ux, bytes);
+    memcpy(particles->matrix_uy, particles->uy, bytes);
+    for (int64_t i = 0; i < particles->n; i++) particles->matrix_dt[i] = dt;
+    if (particles->face_x) {
+        memcpy(particles->matrix_nx, particles->face_x, bytes);
+        memcpy(particles->matrix_ny, particles->face_y, bytes);
     }
-    factor(solid, p);
+    factor(solid, particles);
 }
 
-void implicit_resume(struct solid *solid, struct particles *p)
+void implicit_resume(struct solid *solid, struct particles *particles)
 {
-    const size_t bytes = (size_t)p->n * sizeof *p->ux;
+    const size_t bytes = (size_t)particles->n * sizeof *particles->ux;
     double *const *const kept = solid->scratch;
-    if (!(*p->matrix_dt > 0)) return;
-    memcpy(kept[0], p->ux, bytes);
-    memcpy(kept[1], p->uy, bytes);
-    memcpy(p->ux, p->matrix_ux, bytes);
-    memcpy(p->uy, p->matrix_uy, bytes);
-    solid_gradient(solid, p);
-    factor(solid, p);
-    memcpy(p->ux, kept[0], bytes);
-    memcpy(p->uy, kept[1], bytes);
-    solid_gradient(solid, p);
+    if (!(*particles->matrix_dt > 0)) return;
+    memcpy(kept[0], particles->ux, bytes);
+    memcpy(kept[1], particles->uy, bytes);
+    memcpy(particles->ux, particles->matrix_ux, bytes);
+    memcpy(particles->uy, particles->matrix_uy, bytes);
+    solid_gradient(solid, particles);
+    factor(solid, particles);
+    memcpy(particles->ux, kept[0], bytes);
+    memcpy(particles->uy, kept[1], bytes);
+    solid_gradient(solid, particles);
 }
 
 /* --- step --- */
@@ -119,185 +120,191 @@ static double rounding_of(const struct largest *top, double dt)
 }
 
 /* The residual of T-90 of one particle to `unknown`. */
-static void find_one(const struct solid *solid, const struct particles *p, int64_t i, double dt,
-                     struct largest *top)
+static void find_one(const struct solid *solid, const struct particles *particles, int64_t i,
+                     double dt, struct largest *top)
 {
-    const struct solid_body *const body = &solid->body[p->body[i]];
+    const struct solid_body *const body = &solid->body[particles->body[i]];
     double *const *const start = solid->scratch;
     double *const to = &solid->implicit->unknown[2 * (int64_t)solid->implicit->order[i]];
-    const double ax = 2 / dt * (p->vx[i] - start[START_VX][i]),
-                 ay = 2 / dt * (p->vy[i] - start[START_VY][i]);
-    double x = p->sx[i] - ax, y = p->sy[i] - ay;
-    if (p->face_x) { /* T-35a at the mean velocity */
-        const double faster = p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i] - p->face_v[i];
-        x -= faster * p->face_x[i];
-        y -= faster * p->face_y[i];
+    const double ax = 2 / dt * (particles->vx[i] - start[START_VX][i]),
+                 ay = 2 / dt * (particles->vy[i] - start[START_VY][i]);
+    double x = particles->sx[i] - ax, y = particles->sy[i] - ay;
+    if (particles->face_x) { /* T-35a at the mean velocity */
+        const double faster = particles->vx[i] * particles->face_x[i] +
+                              particles->vy[i] * particles->face_y[i] - particles->face_v[i];
+        x -= faster * particles->face_x[i];
+        y -= faster * particles->face_y[i];
     }
     to[0] = body->mass * x;
     to[1] = body->mass * y;
     for (int c = 0; c < 2 && solid->implicit->left_out > 0; c++)
         to[c] -= solid->implicit->left_out * start[IMPLICIT_LEFT_OUT + c][i];
     const double off = max2(fabs(to[0]), fabs(to[1]));
-    const double strain =
-        max2(max2(fabs(p->Uxx[i]), fabs(p->Uxy[i])), max2(fabs(p->Uyx[i]), fabs(p->Uyy[i])));
-    const double stress =
-        max2(max2(fabs(p->Pxx[i]), fabs(p->Pxy[i])), max2(fabs(p->Pyx[i]), fabs(p->Pyy[i])));
+    const double strain = max2(max2(fabs(particles->Uxx[i]), fabs(particles->Uxy[i])),
+                               max2(fabs(particles->Uyx[i]), fabs(particles->Uyy[i])));
+    const double stress = max2(max2(fabs(particles->Pxx[i]), fabs(particles->Pxy[i])),
+                               max2(fabs(particles->Pyx[i]), fabs(particles->Pyy[i])));
     if (off > top->off || isnan(off)) top->off = off;
     top->force =
         max2(top->force, max2(body->dp * stress, off + body->mass * max2(fabs(ax), fabs(ay))));
-    top->moved = max2(top->moved, max2(fabs(p->ux[i]), fabs(p->uy[i])));
+    top->moved = max2(top->moved, max2(fabs(particles->ux[i]), fabs(particles->uy[i])));
     top->strain = max2(top->strain, strain);
     top->mass = max2(top->mass, body->mass);
     top->young = max2(top->young, body->young);
     top->dp = max2(top->dp, body->dp);
 }
 
-double implicit_residual(struct solid *solid, struct particles *p, double dt, double time)
+double implicit_residual(struct solid *solid, struct particles *particles, double dt, double time)
 {
     double *const *const start = solid->scratch;
     struct largest top = {0};
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = 2 / dt * (p->ux[i] - start[START_UX][i]);
-        p->vy[i] = 2 / dt * (p->uy[i] - start[START_UY][i]);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->vx[i] = 2 / dt * (particles->ux[i] - start[START_UX][i]);
+        particles->vy[i] = 2 / dt * (particles->uy[i] - start[START_UY][i]);
     }
-    solid_forces_within(solid, p, time);
-    if (solid->hinges) constraint_push(solid->implicit, solid->hinges, p);
-    for (int64_t i = 0; i < p->n; i++)
-        if (solid->implicit->order[i] >= 0) find_one(solid, p, i, dt, &top);
+    solid_forces_within(solid, particles, time);
+    if (solid->hinges) constraint_push(solid->implicit, solid->hinges, particles);
+    for (int64_t i = 0; i < particles->n; i++)
+        if (solid->implicit->order[i] >= 0) find_one(solid, particles, i, dt, &top);
     return top.off <= rounding_of(&top, dt) ? 0 : top.off / top.force;
 }
 
-void implicit_correct(const struct solid *solid, struct particles *p)
+void implicit_correct(const struct solid *solid, struct particles *particles)
 {
-    struct implicit *const by = solid->implicit;
-    if (solid->hinges) constraint_solve(by, solid->hinges, p);
-    envelope_solve(&by->matrix, by->unknown);
-    for (int64_t i = 0; i < p->n; i++) {
-        const int64_t row = 2 * (int64_t)by->order[i];
+    struct implicit *const implicit = solid->implicit;
+    if (solid->hinges) constraint_solve(implicit, solid->hinges, particles);
+    envelope_solve(&implicit->matrix, implicit->unknown);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const int64_t row = 2 * (int64_t)implicit->order[i];
         if (row < 0) continue;
-        p->ux[i] += by->unknown[row];
-        p->uy[i] += by->unknown[row + 1];
+        particles->ux[i] += implicit->unknown[row];
+        particles->uy[i] += implicit->unknown[row + 1];
     }
-    by->iterations++;
+    implicit->iterations++;
 }
 
 /* Newton's method for the displacements at the middle of the step; returns whether it converged. */
-static bool solve(struct solid *solid, struct particles *p, double dt)
+static bool solve(struct solid *solid, struct particles *particles, double dt)
 {
-    struct implicit *const by = solid->implicit;
+    struct implicit *const implicit = solid->implicit;
     double last = (double)INFINITY;
     for (int k = 0; k < ITERATIONS; k++) {
-        by->residual = implicit_residual(solid, p, dt, solid->time + 0.5 * dt);
-        if (by->residual <= TOLERANCE && (k || !solid->hinges)) return true;
-        if (!isfinite(by->residual)) break;
-        const bool other_step = fabs(square(dt / *p->matrix_dt) - 1) > SLOW;
-        if (!by->factored || other_step || by->residual > SLOW * last) factor_here(solid, p, dt);
-        if (!by->factored) break;
-        implicit_correct(solid, p);
-        last = by->residual;
+        implicit->residual = implicit_residual(solid, particles, dt, solid->time + 0.5 * dt);
+        if (implicit->residual <= TOLERANCE && (k || !solid->hinges)) return true;
+        if (!isfinite(implicit->residual)) break;
+        const bool other_step = fabs(square(dt / *particles->matrix_dt) - 1) > SLOW;
+        if (!implicit->factored || other_step || implicit->residual > SLOW * last)
+            factor_here(solid, particles, dt);
+        if (!implicit->factored) break;
+        implicit_correct(solid, particles);
+        last = implicit->residual;
     }
     return false;
 }
 
 /* The exchange with the fluid by T-35a, at the mean velocity. */
-static void book_impedance(struct particles *p, double dt)
+static void book_impedance(struct particles *particles, double dt)
 {
-    for (int64_t i = 0; i < p->n; i++) {
-        const double along = p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i],
-                     faster = dt * (along - p->face_v[i]);
-        p->face_dv[i] += faster;
-        p->face_work[i] -= faster * along;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double along = particles->vx[i] * particles->face_x[i] +
+                             particles->vy[i] * particles->face_y[i],
+                     faster = dt * (along - particles->face_v[i]);
+        particles->face_dv[i] += faster;
+        particles->face_work[i] -= faster * along;
     }
 }
 
 /* From the middle of the step to its end: displacements, velocities, and the mean accelerations, of
  * which the work of loads follows. What clamps add to the other forces does the rest of the work
  * on their particles. */
-static void finish(struct solid *solid, struct particles *p, double dt)
+static void finish(struct solid *solid, struct particles *particles, double dt)
 {
     double *const *const start = solid->scratch;
     struct loads *const loads = solid->loads;
-    if (p->face_x) book_impedance(p, dt);
+    if (particles->face_x) book_impedance(particles, dt);
     for (int64_t k = 0; loads && k < loads->n_held; k++) {
         const int64_t i = loads->held[k];
         loads->held_power[k] =
-            -solid->body[p->body[i]].mass * (p->sx[i] * p->vx[i] + p->sy[i] * p->vy[i]);
+            -solid->body[particles->body[i]].mass *
+            (particles->sx[i] * particles->vx[i] + particles->sy[i] * particles->vy[i]);
         loads->held_rise[k] = 0;
     }
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ux[i] += p->ux[i] - start[START_UX][i];
-        p->uy[i] += p->uy[i] - start[START_UY][i];
-        p->vx[i] += p->vx[i] - start[START_VX][i];
-        p->vy[i] += p->vy[i] - start[START_VY][i];
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux[i] += particles->ux[i] - start[START_UX][i];
+        particles->uy[i] += particles->uy[i] - start[START_UY][i];
+        particles->vx[i] += particles->vx[i] - start[START_VX][i];
+        particles->vy[i] += particles->vy[i] - start[START_VY][i];
     }
-    solid_place_clamps(solid, p, solid->time + dt);
-    for (int64_t i = 0; i < p->n; i++) {
-        p->sx[i] = (p->vx[i] - start[START_VX][i]) / dt;
-        p->sy[i] = (p->vy[i] - start[START_VY][i]) / dt;
+    solid_place_clamps(solid, particles, solid->time + dt);
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->sx[i] = (particles->vx[i] - start[START_VX][i]) / dt;
+        particles->sy[i] = (particles->vy[i] - start[START_VY][i]) / dt;
     }
     for (int64_t k = 0; loads && k < loads->n_held; k++) {
         const int64_t i = loads->held[k];
-        loads->held_power[k] += 0.5 * solid->body[p->body[i]].mass *
-                                (p->sx[i] * (p->vx[i] + start[START_VX][i]) +
-                                 p->sy[i] * (p->vy[i] + start[START_VY][i]));
+        loads->held_power[k] += 0.5 * solid->body[particles->body[i]].mass *
+                                (particles->sx[i] * (particles->vx[i] + start[START_VX][i]) +
+                                 particles->sy[i] * (particles->vy[i] + start[START_VY][i]));
     }
-    if (solid->hinges) constraint_end(solid->implicit, solid->hinges, p, dt);
-    solid_book_work(solid, p, start[START_VX], start[START_VY], dt);
+    if (solid->hinges) constraint_end(solid->implicit, solid->hinges, particles, dt);
+    solid_book_work(solid, particles, start[START_VX], start[START_VY], dt);
 }
 
-void implicit_keep_start(struct solid *solid, struct particles *p)
+void implicit_keep_start(struct solid *solid, struct particles *particles)
 {
-    const double *const from[] = {p->ux, p->uy, p->vx, p->vy};
-    const double *const gradient[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy};
-    const size_t bytes = (size_t)p->n * sizeof *p->ux;
-    solid_gradient(solid, p);
+    const double *const from[] = {particles->ux, particles->uy, particles->vx, particles->vy};
+    const double *const gradient[] = {particles->Uxx, particles->Uxy, particles->Uyx,
+                                      particles->Uyy};
+    const size_t bytes = (size_t)particles->n * sizeof *particles->ux;
+    solid_gradient(solid, particles);
     for (int k = 0; k < START_FIELDS; k++) memcpy(solid->scratch[k], from[k], bytes);
     for (int k = 0; k < 4; k++) memcpy(solid->implicit->start[k], gradient[k], bytes);
 }
 
 /* The first guess: displacements at the middle by the present velocities; those of clamps are the
  * mean of both ends. */
-static void begin(struct solid *solid, struct particles *p, double dt)
+static void begin(struct solid *solid, struct particles *particles, double dt)
 {
     double *const *const start = solid->scratch;
     const struct loads *const loads = solid->loads;
-    implicit_keep_start(solid, p);
-    if (solid->hinges) constraint_begin(solid->implicit, solid->hinges, p, solid->time + dt, true);
-    solid_place_clamps(solid, p, solid->time + dt);
+    implicit_keep_start(solid, particles);
+    if (solid->hinges)
+        constraint_begin(solid->implicit, solid->hinges, particles, solid->time + dt, true);
+    solid_place_clamps(solid, particles, solid->time + dt);
     for (int64_t k = 0; loads && k < loads->n_held; k++) {
         const int64_t i = loads->held[k];
-        p->ux[i] = 0.5 * (p->ux[i] + start[START_UX][i]);
-        p->uy[i] = 0.5 * (p->uy[i] + start[START_UY][i]);
+        particles->ux[i] = 0.5 * (particles->ux[i] + start[START_UX][i]);
+        particles->uy[i] = 0.5 * (particles->uy[i] + start[START_UY][i]);
     }
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) {
         if (solid->implicit->order[i] < 0) continue;
-        p->ux[i] += 0.5 * dt * p->vx[i];
-        p->uy[i] += 0.5 * dt * p->vy[i];
+        particles->ux[i] += 0.5 * dt * particles->vx[i];
+        particles->uy[i] += 0.5 * dt * particles->vy[i];
     }
 }
 
 /* A step, or two of half its length where it has no solution. */
-static bool step(struct solid *solid, struct particles *p, double dt, int halvings)
+static bool step(struct solid *solid, struct particles *particles, double dt, int halvings)
 {
-    const size_t bytes = (size_t)p->n * sizeof *p->ux;
+    const size_t bytes = (size_t)particles->n * sizeof *particles->ux;
     double *const *const start = solid->scratch;
-    begin(solid, p, dt);
-    if (solve(solid, p, dt)) {
-        finish(solid, p, dt);
+    begin(solid, particles, dt);
+    if (solve(solid, particles, dt)) {
+        finish(solid, particles, dt);
         return true;
     }
-    double *const to[] = {p->ux, p->uy, p->vx, p->vy};
+    double *const to[] = {particles->ux, particles->uy, particles->vx, particles->vy};
     for (int k = 0; k < START_FIELDS; k++) memcpy(to[k], start[k], bytes);
     solid->implicit->factored = false;
-    if (halvings == 0 || !step(solid, p, 0.5 * dt, halvings - 1)) return false;
+    if (halvings == 0 || !step(solid, particles, 0.5 * dt, halvings - 1)) return false;
     const double time = solid->time;
     solid->time += 0.5 * dt;
-    const bool done = step(solid, p, 0.5 * dt, halvings - 1);
+    const bool done = step(solid, particles, 0.5 * dt, halvings - 1);
     solid->time = time;
     return done;
 }
 
-void implicit_step(struct solid *solid, struct particles *p, double dt)
+void implicit_step(struct solid *solid, struct particles *particles, double dt)
 {
     struct loads *const loads = solid->loads;
     struct hinges *const hinges = solid->hinges;
@@ -305,7 +312,7 @@ void implicit_step(struct solid *solid, struct particles *p, double dt)
     solid->within_step = take_mean_stress;
     if (loads) loads->released = true;
     if (hinges) hinges->released = true;
-    solid->implicit->failed |= !step(solid, p, dt, HALVINGS);
+    solid->implicit->failed |= !step(solid, particles, dt, HALVINGS);
     if (loads) loads->released = false;
     if (hinges) hinges->released = false;
     solid->within_step = NULL;

@@ -24,7 +24,7 @@ struct implicit {
     double *unknown;         /* both components, one particle after the other */
     /* Of hinges, two items each: their forces, N/m; places of their points, m; [2 n][2 n] the
      * displacements that forces give the points, m^2/N; and a vector of unknowns. */
-    double *held, *place, *yields, *column;
+    double *hinge_force, *hinge_place, *flexibility, *column;
     double *start[4]; /* displacement gradient at the start of the step */
     bool factored;
     double period; /* the longest of the bodies about their undeformed state, s */
@@ -70,9 +70,9 @@ void implicit_advance(struct solid *solid, struct particles *particles, double d
 /* After the state has been read: the matrix that it was found with. */
 void implicit_resume(struct solid *solid, struct particles *particles);
 
-/* T-92: the factors of the matrix for gradients in p, a step of dt and wetted normals (NULL: none),
- * with `shift` times the mass added, 1/s^2. Returns the number of negative pivots, or -1 if there
- * are no factors. */
+/* T-92: the factors of the matrix for the present gradients, a step of dt and wetted normals (NULL:
+ * none), with `shift` times the mass added, 1/s^2. Returns the number of negative pivots, or -1 if
+ * there are no factors. */
 int64_t implicit_factor(struct solid *solid, const struct particles *particles, double dt,
                         double shift, const double *nx, const double *ny);
 

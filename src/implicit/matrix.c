@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/box2.h"
 #include "implicit/constraint.h"
 #include "solid/loads.h"
 #include "solid/packed.h"
@@ -54,7 +55,7 @@ static enum err link_particles(const struct solid *solid, struct implicit_links 
 /* Visits all particles in order of their distance from `from`, in steps between neighbours on the
  * lattice; returns how many these are. `seen` is larger than `round` where it was not visited. */
 static int64_t visit(const struct solid *solid, const struct implicit_links *links,
-                     const struct particles *p, int64_t from, int32_t *seen, int32_t round,
+                     const struct particles *particles, int64_t from, int32_t *seen, int32_t round,
                      int32_t *queue)
 {
     int64_t n = 0;
@@ -62,10 +63,11 @@ static int64_t visit(const struct solid *solid, const struct implicit_links *lin
     seen[from] = round;
     for (int64_t k = 0; k < n; k++) {
         const int32_t i = queue[k];
-        const double reach = 1.5 * solid->body[p->body[i]].dp;
+        const double reach = 1.5 * solid->body[particles->body[i]].dp;
         for (int64_t m = links->first[i]; m < links->first[i + 1]; m++) {
             const int32_t j = links->node[m];
-            const double r2 = square(p->X[i] - p->X[j]) + square(p->Y[i] - p->Y[j]);
+            const double r2 = square(particles->X[i] - particles->X[j]) +
+                              square(particles->Y[i] - particles->Y[j]);
             if (seen[j] >= round || r2 > square(reach)) continue;
             seen[j] = round;
             queue[n++] = j;
@@ -75,28 +77,29 @@ static int64_t visit(const struct solid *solid, const struct implicit_links *lin
 }
 
 /* Along each body from one of its ends, so that the matrix has few columns beside its diagonal. */
-static void number_unknowns(const struct solid *solid, struct implicit *by,
-                            const struct particles *p, const double *moves, int32_t *seen,
+static void number_unknowns(const struct solid *solid, struct implicit *implicit,
+                            const struct particles *particles, const double *moves, int32_t *seen,
                             int32_t *queue)
 {
-    for (int64_t i = 0; i < p->n; i++) seen[i] = 0;
-    for (int64_t i = 0; i < p->n; i++) {
+    for (int64_t i = 0; i < particles->n; i++) seen[i] = 0;
+    for (int64_t i = 0; i < particles->n; i++) {
         if (seen[i]) continue;
-        const int64_t n = visit(solid, &by->links, p, i, seen, 1, queue);
-        visit(solid, &by->links, p, queue[n - 1], seen, 2, queue);
-        const int64_t before = by->n;
+        const int64_t n = visit(solid, &implicit->links, particles, i, seen, 1, queue);
+        visit(solid, &implicit->links, particles, queue[n - 1], seen, 2, queue);
+        const int64_t before = implicit->n;
         for (int64_t k = 0; k < n; k++)
-            by->order[queue[k]] = moves[queue[k]] > 0 ? (int32_t)by->n++ : -1;
-        by->n_free += by->n == before + n;
+            implicit->order[queue[k]] = moves[queue[k]] > 0 ? (int32_t)implicit->n++ : -1;
+        implicit->n_free += implicit->n == before + n;
     }
 }
 
 /* The first unknown that the force on each depends on: in three steps, since the springs of two
  * neighbours depend on the neighbours of both (T-26). */
-static void find_first(const struct implicit *by, int64_t n, int64_t *first, int64_t *next)
+static void find_first(const struct implicit *implicit, int64_t n, int64_t *first, int64_t *next)
 {
-    const struct implicit_links *const links = &by->links;
-    for (int64_t i = 0; i < n; i++) first[i] = by->order[i] < 0 ? INT64_MAX : by->order[i];
+    const struct implicit_links *const links = &implicit->links;
+    for (int64_t i = 0; i < n; i++)
+        first[i] = implicit->order[i] < 0 ? INT64_MAX : implicit->order[i];
     for (int round = 0; round < 3; round++) {
         for (int64_t i = 0; i < n; i++) {
             next[i] = INT64_MAX;
@@ -106,7 +109,7 @@ static void find_first(const struct implicit *by, int64_t n, int64_t *first, int
         memcpy(first, next, (size_t)n * sizeof *first);
     }
     for (int64_t i = 0; i < n; i++)
-        if (by->order[i] >= 0) next[by->order[i]] = first[i];
+        if (implicit->order[i] >= 0) next[implicit->order[i]] = first[i];
 }
 
 /* The error of T-26 of one pair as a sum over particles, `share` of each; 0 outside `node`. */
@@ -127,24 +130,24 @@ static void add_share(struct spring *spring, int32_t node, double share)
     spring->share[k] += share;
 }
 
-static void add_spring(struct implicit *by, const struct spring *spring, double stiffness)
+static void add_spring(struct implicit *implicit, const struct spring *spring, double stiffness)
 {
     for (int m = 0; m < spring->n; m++) {
-        const int64_t row = by->order[spring->node[m]];
+        const int64_t row = implicit->order[spring->node[m]];
         for (int k = 0; k < spring->n && row >= 0; k++) {
-            const int64_t column = by->order[spring->node[k]];
+            const int64_t column = implicit->order[spring->node[k]];
             if (column >= 0 && column <= row)
-                envelope_add(&by->springs, row, column,
+                envelope_add(&implicit->springs, row, column,
                              stiffness * spring->share[m] * spring->share[k]);
         }
     }
 }
 
 /* T-28: k e e^T/2 of each pair, with e = (F_a + F_b) X_ab/2 - x_ab. */
-static void add_springs(const struct solid *solid, struct implicit *by, const int32_t *body,
+static void add_springs(const struct solid *solid, struct implicit *implicit, const int32_t *body,
                         struct spring *spring)
 {
-    const struct implicit_links *const links = &by->links;
+    const struct implicit_links *const links = &implicit->links;
     for (int64_t k = 0; k < solid->n_packs; k++) {
         const struct solid_pack *const pack = &solid->pack[k];
         for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++)
@@ -161,16 +164,16 @@ static void add_springs(const struct solid *solid, struct implicit *by, const in
                                   0.5 * (links->gx[at] * X + links->gy[at] * Y));
                 add_share(spring, (int32_t)i, -1);
                 add_share(spring, (int32_t)j, 1);
-                add_spring(by, spring, 2 * half_k * solid->body[body[i]].mass);
+                add_spring(implicit, spring, 2 * half_k * solid->body[body[i]].mass);
             }
     }
 }
 
-static enum err create_matrices(const struct solid *solid, struct implicit *by, struct arena *a,
-                                const struct particles *p, const double *moves,
-                                struct arena *scratch, struct diag *d)
+static enum err create_matrices(const struct solid *solid, struct implicit *implicit,
+                                struct arena *a, const struct particles *particles,
+                                const double *moves, struct arena *scratch, struct diag *d)
 {
-    const size_t n = (size_t)p->n;
+    const size_t n = (size_t)particles->n;
     int32_t *const seen = arena_alloc(scratch, n, sizeof *seen, what, d),
                    *const queue = arena_alloc(scratch, n, sizeof *queue, what, d);
     int64_t *const first = arena_alloc(scratch, 2 * n, sizeof *first, what, d),
@@ -178,47 +181,48 @@ static enum err create_matrices(const struct solid *solid, struct implicit *by, 
     struct spring spring = {.share = arena_alloc(scratch, n, sizeof *spring.share, what, d),
                             .node = arena_alloc(scratch, n, sizeof *spring.node, what, d)};
     if (!seen || !queue || !first || !next || !spring.share || !spring.node) return ERR_MEMORY;
-    number_unknowns(solid, by, p, moves, seen, queue);
-    find_first(by, p->n, first, next);
-    TRY(envelope_create(&by->springs, a, by->n, next, d));
-    for (int64_t i = 0; i < 2 * by->n; i++) first[i] = 2 * next[i / 2];
-    TRY(envelope_create(&by->matrix, a, 2 * by->n, first, d));
-    add_springs(solid, by, p->body, &spring);
+    number_unknowns(solid, implicit, particles, moves, seen, queue);
+    find_first(implicit, particles->n, first, next);
+    TRY(envelope_create(&implicit->springs, a, implicit->n, next, d));
+    for (int64_t i = 0; i < 2 * implicit->n; i++) first[i] = 2 * next[i / 2];
+    TRY(envelope_create(&implicit->matrix, a, 2 * implicit->n, first, d));
+    add_springs(solid, implicit, particles->body, &spring);
     return ERR_OK;
 }
 
-double implicit_across(const struct solid *solid, const struct particles *p)
+double implicit_across(const struct solid *solid, const struct particles *particles)
 {
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, area = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        low[0] = min2(low[0], p->X[i]), high[0] = max2(high[0], p->X[i]);
-        low[1] = min2(low[1], p->Y[i]), high[1] = max2(high[1], p->Y[i]);
-        area += square(solid->body[p->body[i]].dp);
+    struct box2 box = box2_empty();
+    double area = 0;
+    for (int64_t i = 0; i < particles->n; i++) {
+        box2_include(&box, particles->X[i], particles->Y[i]);
+        area += square(solid->body[particles->body[i]].dp);
     }
-    return area / (solid->dp * max2(high[0] - low[0], high[1] - low[1]));
+    return area / (solid->dp * max2(box.high[0] - box.low[0], box.high[1] - box.low[1]));
 }
 
-enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *p,
+enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,
                          struct diag *d)
 {
-    const size_t n = (size_t)p->n;
-    struct implicit *const by = arena_alloc(a, 1, sizeof *by, what, d);
-    if (!by) return ERR_MEMORY;
-    by->order = arena_alloc(a, n, sizeof *by->order, what, d);
-    by->unknown = arena_alloc(a, 2 * n + ENVELOPE_ALIGN, sizeof *by->unknown, what, d);
-    if (!by->order || !by->unknown) return ERR_MEMORY;
+    const size_t n = (size_t)particles->n;
+    struct implicit *const implicit = arena_alloc(a, 1, sizeof *implicit, what, d);
+    if (!implicit) return ERR_MEMORY;
+    implicit->order = arena_alloc(a, n, sizeof *implicit->order, what, d);
+    implicit->unknown = arena_alloc(a, 2 * n + ENVELOPE_ALIGN, sizeof *implicit->unknown, what, d);
+    if (!implicit->order || !implicit->unknown) return ERR_MEMORY;
     for (int k = 0; k < 4; k++) {
-        by->start[k] = arena_alloc(a, n, sizeof *by->start[k], what, d);
-        if (!by->start[k]) return ERR_MEMORY;
+        implicit->start[k] = arena_alloc(a, n, sizeof *implicit->start[k], what, d);
+        if (!implicit->start[k]) return ERR_MEMORY;
     }
-    TRY(link_particles(solid, &by->links, a, p->n, d));
+    TRY(link_particles(solid, &implicit->links, a, particles->n, d));
     struct arena scratch = {.limit = a->limit};
     double *const moves = arena_alloc(&scratch, n, sizeof *moves, what, d);
-    for (size_t i = 0; moves && i < n; i++) moves[i] = p->free[i];
+    for (size_t i = 0; moves && i < n; i++) moves[i] = particles->free[i];
     for (int64_t k = 0; moves && solid->loads && k < solid->loads->n_held; k++)
         moves[solid->loads->held[k]] = 0;
-    const enum err e = moves ? create_matrices(solid, by, a, p, moves, &scratch, d) : ERR_MEMORY;
+    const enum err e =
+        moves ? create_matrices(solid, implicit, a, particles, moves, &scratch, d) : ERR_MEMORY;
     arena_free(&scratch);
-    solid->implicit = by;
-    return e || !solid->hinges ? e : constraint_create(by, solid->hinges, a, d);
+    solid->implicit = implicit;
+    return e || !solid->hinges ? e : constraint_create(implicit, solid->hinges, a, d);
 }

@@ -5,18 +5,19 @@
 #include <float.h>
 #include <math.h>
 
-double implicit_period(struct solid *solid, struct particles *p)
+double implicit_period(struct solid *solid, struct particles *particles)
 {
-    struct implicit *const by = solid->implicit;
+    struct implicit *const implicit = solid->implicit;
     const double rounding = 8 * DBL_EPSILON * square(solid->omega_max);
     double low = rounding, high = square(solid->omega_max);
-    if (by->n == 0) return (double)INFINITY;
-    solid_gradient(solid, p);
+    if (implicit->n == 0) return (double)INFINITY;
+    solid_gradient(solid, particles);
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
-        const int64_t below = implicit_factor(solid, p, (double)INFINITY, -middle, NULL, NULL);
-        *(below > 3 * by->n_free ? &high : &low) = middle;
+        const int64_t below =
+            implicit_factor(solid, particles, (double)INFINITY, -middle, NULL, NULL);
+        *(below > 3 * implicit->n_free ? &high : &low) = middle;
     }
-    by->factored = false;
+    implicit->factored = false;
     return high > 2 * rounding ? 2 * M_PI / sqrt(high) : (double)INFINITY;
 }

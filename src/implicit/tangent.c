@@ -45,12 +45,12 @@ static void find_tangents(const struct solid_body *body, struct vtensor2 U, doub
 }
 
 /* Adds V g_m . dP/dF . g_n for each two of the particles that the gradient depends on. */
-static void add_particle(const struct implicit *by, int64_t i, double volume,
+static void add_particle(const struct implicit *implicit, int64_t i, double volume,
                          const struct tangent *tangent)
 {
-    const struct implicit_links *const links = &by->links;
+    const struct implicit_links *const links = &implicit->links;
     for (int64_t n = links->first[i]; n < links->first[i + 1]; n++) {
-        const int64_t column = by->order[links->node[n]];
+        const int64_t column = implicit->order[links->node[n]];
         if (column < 0) continue;
         const double gx = volume * links->gx[n], gy = volume * links->gy[n];
         double to[2][4];
@@ -58,62 +58,64 @@ static void add_particle(const struct implicit *by, int64_t i, double volume,
             for (int r = 0; r < 4; r++)
                 to[c][r] = tangent->of[r][2 * c] * gx + tangent->of[r][2 * c + 1] * gy;
         for (int64_t m = links->first[i]; m < links->first[i + 1]; m++) {
-            const int64_t row = by->order[links->node[m]];
+            const int64_t row = implicit->order[links->node[m]];
             if (row < column) continue;
             const double hx = links->gx[m], hy = links->gy[m];
             for (int r = 0; r < 2; r++)
                 for (int c = 0; c < (row == column ? r + 1 : 2); c++)
-                    envelope_add(&by->matrix, 2 * row + r, 2 * column + c,
+                    envelope_add(&implicit->matrix, 2 * row + r, 2 * column + c,
                                  hx * to[c][2 * r] + hy * to[c][2 * r + 1]);
         }
     }
 }
 
-/* The matrix of T-92 without inertia: of the stress at the gradients in p, and of the springs. */
-static void add_stiffness(struct solid *solid, const struct particles *p, double dt)
+/* The matrix of T-92 without inertia: of the stress at the present gradients, and of the springs.
+ */
+static void add_stiffness(struct solid *solid, const struct particles *particles, double dt)
 {
-    struct implicit *const by = solid->implicit;
+    struct implicit *const implicit = solid->implicit;
     struct tangent tangent[LANES];
-    double *const gradient[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy};
-    envelope_clear(&by->matrix);
+    double *const gradient[] = {particles->Uxx, particles->Uxy, particles->Uyx, particles->Uyy};
+    envelope_clear(&implicit->matrix);
     for (int64_t k = 0; k < solid->n_packs; k++) {
         const struct solid_pack *const pack = &solid->pack[k];
         const struct solid_body *const body = &solid->body[pack->body];
         find_tangents(body, load_tensor(gradient, pack->i), 2 * body->damping_time / dt,
                       pack->lanes, tangent);
         for (int l = 0; l < pack->lanes; l++)
-            add_particle(by, pack->i + l, square(body->dp), &tangent[l]);
+            add_particle(implicit, pack->i + l, square(body->dp), &tangent[l]);
     }
-    const struct envelope *const from = &by->springs;
+    const struct envelope *const from = &implicit->springs;
     for (int64_t row = 0; row < from->n; row++)
         for (int c = 0; c < 2; c++) {
             for (int64_t column = from->first[row]; column < row; column++) {
                 const double value = from->value[from->start[row] + column - from->first[row]];
-                if (value != 0) envelope_add(&by->matrix, 2 * row + c, 2 * column + c, value);
+                if (value != 0) envelope_add(&implicit->matrix, 2 * row + c, 2 * column + c, value);
             }
-            envelope_add(&by->matrix, 2 * row + c, 2 * row + c, from->pivot[row]);
+            envelope_add(&implicit->matrix, 2 * row + c, 2 * row + c, from->pivot[row]);
         }
 }
 
-int64_t implicit_factor(struct solid *solid, const struct particles *p, double dt, double shift,
-                        const double *nx, const double *ny)
+int64_t implicit_factor(struct solid *solid, const struct particles *particles, double dt,
+                        double shift, const double *nx, const double *ny)
 {
-    struct implicit *const by = solid->implicit;
-    add_stiffness(solid, p, dt);
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct solid_body *const body = &solid->body[p->body[i]];
-        const int64_t row = 2 * (int64_t)by->order[i];
+    struct implicit *const implicit = solid->implicit;
+    add_stiffness(solid, particles, dt);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const struct solid_body *const body = &solid->body[particles->body[i]];
+        const int64_t row = 2 * (int64_t)implicit->order[i];
         const double per_dt = 2 / dt, rate = body->mass * per_dt;
         if (row < 0) continue;
         for (int c = 0; c < 2; c++)
-            by->matrix.pivot[row + c] += rate * (per_dt + body->mass_damping) + shift * body->mass;
+            implicit->matrix.pivot[row + c] +=
+                rate * (per_dt + body->mass_damping) + shift * body->mass;
         if (!nx) continue;
-        by->matrix.pivot[row] += rate * square(nx[i]);
-        by->matrix.pivot[row + 1] += rate * square(ny[i]);
-        envelope_add(&by->matrix, row + 1, row, rate * nx[i] * ny[i]);
+        implicit->matrix.pivot[row] += rate * square(nx[i]);
+        implicit->matrix.pivot[row + 1] += rate * square(ny[i]);
+        envelope_add(&implicit->matrix, row + 1, row, rate * nx[i] * ny[i]);
     }
-    const int64_t negative = envelope_factor(&by->matrix);
-    by->factored = negative >= 0;
-    if (by->factored && solid->hinges) constraint_factor(by, solid->hinges);
+    const int64_t negative = envelope_factor(&implicit->matrix);
+    implicit->factored = negative >= 0;
+    if (implicit->factored && solid->hinges) constraint_factor(implicit, solid->hinges);
     return negative;
 }
