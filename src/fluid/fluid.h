@@ -8,8 +8,10 @@
 #include "fluid/eos.h"
 #include "fluid/lines.h"
 
-#define ETA2 0.01           /* (eta/h)^2 */
-#define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
+#define ETA2 0.01 /* (eta/h)^2 */
+/* r0 of fx_repulsion over the mean spacing of fluid and dummy. It is 1 for a thin line, so that no
+ * particle passes between two dummies to the other side. */
+#define REPULSION_REACH 0.8
 
 /* Constants of the fluid, SI. */
 struct fluid_constants {
@@ -235,13 +237,18 @@ int32_t fluid_fullest_cell(const struct cells *cells);
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT]);
 
+/* The thin line that particle i of a kind is a dummy of, from 1; 0: none. */
+SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, int64_t i)
+{
+    return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
+}
+
 /* Whether a place and particle i of a kind, (x, y) away, see each other (T-110). */
 SPHFSI_INLINE bool fluid_sees(const struct fluid *fluid, const struct cells *cells,
                               const double from[2], enum kind kind, int64_t i, double x, double y)
 {
     if (!(fluid->effects & FX_THIN)) return true;
-    return lines_between(&fluid->lines, cells, from, x, y) ==
-           (kind == KIND_WALL ? fluid->lines.of_wall[i] : 0);
+    return lines_between(&fluid->lines, cells, from, x, y) == fluid_line_of(fluid, kind, i);
 }
 
 /* The fluid's own pressures to p, which no step needs. */

@@ -178,7 +178,8 @@ static void add_repulsion(void *context, int64_t i, double x, double y, double r
     const struct particles *const particles = &at->sim->kind[at->kind];
     if (!fluid_sees(fluid, &at->sim->cells, at->place, at->kind, i, x, y)) return;
     const double over = fluid->volume[at->kind][particles->body[i]];
-    const double r0 = REPULSION_REACH * 0.5 * (1 + sqrt(over)) * fluid->k.dp;
+    const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
+                      (1 + sqrt(over)) * fluid->k.dp;
     if (r < r0)
         at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
                    repulsion_held(r, r0, fluid->k.h);
@@ -189,7 +190,7 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
     const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
-    const double reach = REPULSION_REACH * k->dp; /* solids are as fine as the fluid, or finer */
+    const double reach = k->dp; /* at most; solids are as fine as the fluid, or finer */
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
     for (int32_t n = 0; n < list->n_active; n++) {
         const int32_t cell = list->active[n];

@@ -418,7 +418,7 @@ static bool takes(const struct simulation *sim, enum kind kind, int64_t i, doubl
     const struct particles *const particles = &sim->kind[kind];
     const double dx = cells_minimum_image(&sim->cells, 0, x - particles->x[i]),
                  dy = cells_minimum_image(&sim->cells, 1, y - particles->y[i]);
-    if (sim->effects & FX_THIN && kind == KIND_WALL && sim->fluid.lines.of_wall[i]) return false;
+    if (fluid_line_of(&sim->fluid, kind, i)) return false;
     if (kind != KIND_SOLID) return dx * dx + dy * dy < square(TAKEN * sim->scene->top.dp);
     const double xx = 1 + particles->Uxx[i], xy = particles->Uxy[i], yx = particles->Uyx[i],
                  yy = 1 + particles->Uyy[i];
