@@ -107,12 +107,28 @@ static int64_t put_particles(const struct drawing *g, enum kind kind, int body, 
     fprintf(g->file, "<path class=\"body\" stroke=\"%s\" stroke-width=\"%.2f\" d=\"", colour,
             spacing(g->scene, kind, body) * g->scale);
     for (int64_t i = 0; i < p->n; i++) {
-        if (p->body[i] != body || (p->clamped && p->clamped[i]) != held) continue;
+        if (p->body[i] != body || (p->clamped && p->clamped[i]) != held ||
+            (kind == KIND_WALL && scene_line_of(g->scene, i)))
+            continue;
         fprintf(g->file, "M%.1f %.1fh.01", px(g, p->x[i]), py(g, p->y[i]));
         n++;
     }
     fputs("\"/>\n", g->file);
     return n;
+}
+
+/* The thin lines of a wall. */
+static void put_lines(const struct drawing *g, int wall, const char *colour)
+{
+    for (int k = 0; k < g->scene->n_line; k++) {
+        const struct scene_line *const line = &g->scene->line[k];
+        if (line->wall != wall) continue;
+        fprintf(g->file, "<path class=\"body\" stroke=\"%s\" stroke-width=\"3\" d=\"", colour);
+        for (int j = 0; j < line->n; j++)
+            fprintf(g->file, "%s%.1f %.1f", j ? "L" : "M", px(g, line->pt[j][0]),
+                    py(g, line->pt[j][1]));
+        fputs("\"/>\n", g->file);
+    }
 }
 
 static void describe_solid(const struct scene_solid *solid, int64_t n_clamped, FILE *to)
@@ -134,6 +150,7 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     struct box2 box = box2_empty();
     const int64_t n = extend_box(scene, kind, body, &box);
     put_particles(g, kind, body, false, motion[0] ? moving : fills[kind]);
+    if (kind == KIND_WALL) put_lines(g, body, motion[0] ? moving : fills[kind]);
     const int64_t n_clamped = put_particles(g, kind, body, true, clamped);
     for (int k = 0; kind == KIND_SOLID && k < scene->solid[body].hinge.n; k++)
         put_circle(g, "hinge", scene->solid[body].hinge.item[k].at);

@@ -193,10 +193,10 @@ struct line_dummy {
 struct scene_line {
     int wall, n;
     double (*pt)[2];
-    double extend[2]; /* how far it continues into a wall beyond its ends, m */
-    bool tip[2];      /* whether fluid can flow round its ends */
-    int64_t n_dummies;
-    struct line_dummy *dummy; /* in the order of the particles, the last of their wall */
+    double extend[2];         /* how far it continues into a wall beyond its ends, m */
+    bool tip[2];              /* whether fluid can flow round its ends */
+    int64_t first, n_dummies; /* among the particles of walls */
+    struct line_dummy *dummy; /* [n_dummies] */
 };
 
 /* Of a rigid body, per depth: kg/m, kg m, m. */
@@ -359,6 +359,15 @@ SPHFSI_INLINE int scene_beam_wall(const struct scene *scene, int beam)
 SPHFSI_INLINE int scene_rigid_motion(const struct scene *scene, int rigid)
 {
     return scene->n_motion - scene->n_rigid + rigid;
+}
+/* The thin line that a particle of a wall is a dummy of, from 1; 0: none. */
+SPHFSI_INLINE int scene_line_of(const struct scene *scene, int64_t wall_particle)
+{
+    for (int k = 0; k < scene->n_line; k++)
+        if (wall_particle >= scene->line[k].first &&
+            wall_particle < scene->line[k].first + scene->line[k].n_dummies)
+            return k + 1;
+    return 0;
 }
 /* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given, plus the table of
  * top.gravity_file. top.gravity itself is the value at t = 0 without the table. */

@@ -20,34 +20,44 @@ static bool on_lattice(double cells)
     return fabs(cells - round(cells)) <= 1e-6 * max2(1, 1e-6 * fabs(cells));
 }
 
-/* The first edge along each axis of the lattice that lies between its lines. */
-static void warn_of_edges(struct check *check, const struct region *region, int shape)
+/* An edge along an axis of the lattice that lies between its lines; in the axes of the lattice.
+ * `warned`: of one along each axis. */
+static void warn_of_edge(struct check *check, const struct region *region, int line,
+                         const double a[2], const double b[2], bool warned[2])
 {
     const struct scene_lattice *const l = &region->lattice;
-    const int line = region->list->item[shape].line;
     const double dp = l->dp, round_off = l->angle == 0 ? 0 : 1e-9 * dp;
+    const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
+    const double cells = cells_to(region, c, a[c]);
+    if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || warned[c]) return;
+    const double fit = l->origin[c] + round(cells) * l->spacing[c];
+    check->scene->off_lattice = warned[c] = true;
+    if (l->angle == 0)
+        warn_at(check->diag, check->scene, line,
+                "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; %c = %g m would fit",
+                region->word, region->name, "xy"[c], a[c], dp, "xy"[c], fit);
+    else
+        warn_at(check->diag, check->scene, line,
+                "an edge of [%s %s] is %.2g dp off the lattice, which is rotated by %.4g degrees; "
+                "move the edge or choose another dp",
+                region->word, region->name, fabs(a[c] - fit) / dp, l->angle * (180 / PI));
+}
+
+static void warn_of_edges(struct check *check, const struct region *region, int shape)
+{
+    const struct shape *const drawn = &region->list->item[shape];
     bool warned[2] = {false, false};
     for (int k = 0; k < region->add.n; k++) {
         const struct outline *o = &region->add.item[k];
         if (region->add.shape[k] != shape) continue;
-        for (int j = 0; j < o->n; j++) {
-            const double *a = o->pt[j], *b = o->pt[(j + 1) % o->n];
-            const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
-            const double cells = cells_to(region, c, a[c]);
-            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || warned[c]) continue;
-            const double fit = l->origin[c] + round(cells) * l->spacing[c];
-            check->scene->off_lattice = warned[c] = true;
-            if (l->angle == 0)
-                warn_at(check->diag, check->scene, line,
-                        "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
-                        "%c = %g m would fit",
-                        region->word, region->name, "xy"[c], a[c], dp, "xy"[c], fit);
-            else
-                warn_at(check->diag, check->scene, line,
-                        "an edge of [%s %s] is %.2g dp off the lattice, which is rotated by "
-                        "%.4g degrees; move the edge or choose another dp",
-                        region->word, region->name, fabs(a[c] - fit) / dp, l->angle * (180 / PI));
-        }
+        for (int j = 0; j < o->n; j++)
+            warn_of_edge(check, region, drawn->line, o->pt[j], o->pt[(j + 1) % o->n], warned);
+    }
+    for (int k = 0; drawn->thin && k + 1 < drawn->n; k++) {
+        double at[2][2];
+        for (int j = 0; j < 2; j++)
+            lattice_place(&region->lattice, drawn->pt[k + j][0], drawn->pt[k + j][1], at[j]);
+        warn_of_edge(check, region, drawn->line, at[0], at[1], warned);
     }
 }
 
@@ -176,12 +186,18 @@ static void warn_of_region(struct check *check, const struct region *region)
     if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
+        if (shape->thin && check->scene->n_rigid)
+            warn_at(check->diag, check->scene, shape->line,
+                    "rigid bodies do not touch this line of [%s %s] but pass through it, because "
+                    "it has no thickness",
+                    region->word, region->name);
         bool layered = false; /* layers follow faces at any position */
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
-        if (region->lattice.fitted || layered || shape->thin) continue;
+        if (region->lattice.fitted || layered) continue;
         warn_of_edges(check, region, k);
-        if (region->kind == KIND_WALL) warn_of_thin(check, region, shape, thickness(shape));
+        if (region->kind == KIND_WALL && !shape->thin)
+            warn_of_thin(check, region, shape, thickness(shape));
     }
     if (region->kind != KIND_SOLID) return;
     warn_of_thin_solid(check, region);

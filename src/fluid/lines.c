@@ -71,6 +71,14 @@ static void place_dummy(const struct thin_line *line, int64_t j, struct particle
     walls->ay[i] = a[1];
 }
 
+void line_foot(const struct thin_line *line, int64_t j, double at[2])
+{
+    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_end *const end = &line->end[2 * dummy->part];
+    for (int c = 0; c < 2; c++)
+        at[c] = (1 - dummy->along) * end[0].x[c] + dummy->along * end[1].x[c];
+}
+
 /* The pieces: the parts, and the extensions straight on from its first and last end. */
 static void place_pieces(struct thin_line *line)
 {
@@ -137,14 +145,13 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
     lines->line = arena_alloc(a, (size_t)lines->n, sizeof *lines->line, what, d);
     lines->of_wall = arena_alloc(a, (size_t)walls->n, sizeof *lines->of_wall, what, d);
     if (!lines->line || !lines->of_wall) return ERR_MEMORY;
-    int64_t end = walls->n; /* of the dummies that have no line yet */
-    for (int k = lines->n - 1; k >= 0; k--) {
+    for (int k = 0; k < lines->n; k++) {
         struct thin_line *const line = &lines->line[k];
         line->scene = &scene->line[k];
         const int parts = parts_of(line);
-        while (walls->body[end - 1] != line->scene->wall) end--;
-        end = line->first = end - line->scene->n_dummies;
-        for (int64_t j = 0; j < line->scene->n_dummies; j++) lines->of_wall[end + j] = k + 1;
+        line->first = line->scene->first;
+        for (int64_t j = 0; j < line->scene->n_dummies; j++)
+            lines->of_wall[line->first + j] = k + 1;
         line->end = arena_alloc(a, 2 * (size_t)parts, sizeof *line->end, what, d);
         line->piece = arena_alloc(a, (size_t)parts + 2, sizeof *line->piece, what, d);
         if (!line->end || !line->piece) return ERR_MEMORY;
@@ -154,9 +161,6 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
     }
     return ERR_OK;
 }
-
-/* Twice the area of the triangle of two vectors, positive if the second is on the left. */
-static double cross(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
 
 int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
                   double x, double y)
@@ -173,8 +177,7 @@ int lines_between(const struct lines *lines, const struct cells *cells, const do
                 const double one[2] = {start[0] + shift[0] - from[0],
                                        start[1] + shift[1] - from[1]},
                              other[2] = {end[0] + shift[0] - from[0], end[1] + shift[1] - from[1]};
-                const double a = cross(to, one), b = cross(to, other), here = cross(one, other);
-                odd ^= CROSSES(here, here + a - b, a, b);
+                odd ^= crosses_piece(to, one, other);
             }
         }
         if (odd) return k + 1;

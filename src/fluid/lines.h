@@ -6,7 +6,7 @@
 #define SPHFSI_FLUID_LINES_H
 
 #include "base/box2.h"
-#include "case/scene.h"
+#include "geometry/thin.h"
 #include "particles/cells.h"
 
 /* An end of a part of a line. Parts that meet have one each: they turn together, or form a
@@ -46,6 +46,9 @@ void line_follow(struct thin_line *line, const struct motion_state *motion);
  * were rigid with each, by linear shape functions (T-111). */
 void line_place(struct thin_line *line, struct particles *walls);
 
+/* The place on the line that its dummy number j lies behind. */
+void line_foot(const struct thin_line *line, int64_t j, double at[2]);
+
 /* Adds the forces on the dummies to the ends by the same functions: force per depth, N/m, and
  * moment about the end, N. load: [2 * parts]. */
 void line_load(const struct thin_line *line, const double *fx, const double *fy, double (*load)[3]);
@@ -66,11 +69,5 @@ SPHFSI_INLINE bool line_image(const struct cells *cells, int m, double shift[2])
  * 0: none. (x, y) is the second place less the first, `from`. */
 int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
                   double x, double y);
-
-/* T-110: whether a connection crosses a piece: its ends lie on both sides of the piece, and the
- * piece's on both sides of it. For doubles and for vectors; the negative sides are computed by the
- * caller, so that pieces with a common point have the same one there. */
-#define CROSSES(one, other, piece_one, piece_other) \
-    ((((one) < 0) ^ ((other) < 0)) & (((piece_one) < 0) ^ ((piece_other) < 0)))
 
 #endif

@@ -226,10 +226,10 @@ SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal li
                     here = from_x * to_y - from_y * to_x, there = here - from + to;
         const vmask crosses = CROSSES(here, there, from, to);
         vreal open = vset(0);
-        if (p->tip[0] < 1 || p->tip[1] - p->length < 1) { /* T-110b */
+        if (p->tip[0] < 2 || p->tip[1] - p->length < 2) { /* T-110b, over the kernel's reach */
             const vreal along = vset(p->length) * from / (from - to);
             const vreal from_tip = vmin(vset(p->tip[0]) + along, vset(p->tip[1]) - along);
-            open = vmax(vset(0), vset(1) - from_tip);
+            open = vmax(vset(0), vset(1) - vset((real)0.5) * from_tip);
         }
         odd ^= crosses;
         passes = vpick(crosses, vmin(passes, open), passes);

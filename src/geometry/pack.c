@@ -4,6 +4,8 @@
  * cells that such edges cut are filled as their parts inside the shape add up to. Then the
  * particles there are moved until a uniform pressure pushes none of them (T-80; particle packing,
  * Colagrossi et al. 2012). */
+#include "geometry/thin.h"
+
 #include "geometry/sampling.h"
 
 #include "base/elementary.h"
@@ -17,6 +19,8 @@
 enum { LINES = 16 };
 /* Slope of an edge that counts as one along the lattice. */
 static const double along_lattice = 1e-6;
+/* Fluid this much of dp too near to a thin line is still on the lattice. */
+static const double beside_line = 1e-3;
 /* A shift is this times h^2 grad C, below the limit of 0.5 of Lind et al. 2012, and at most
  * `longest` dp. The shifts end when all are below `still` dp. */
 static const double shift_factor = 0.2, longest = 0.1, still = 1e-4;
@@ -147,6 +151,7 @@ struct packing {
     int64_t n, n_free;            /* points; those that may move come first */
     double *x, *y, *volume;
     int64_t *particle; /* of a free point: its index */
+    int *line;         /* the thin line that a point belongs to, from 1; 0: none */
 };
 
 /* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
@@ -178,6 +183,24 @@ static enum err refill(struct packing *packing, const struct cut_cells *c, struc
         to->x[to->n] = at[0];
         to->y[to->n] = at[1];
         to->body[to->n++] = c->region->body;
+    }
+    return ERR_OK;
+}
+
+/* Fluid that begins nearer to a thin line than half a spacing: its cells are cut. */
+static enum err visit_lines(struct packing *packing)
+{
+    const struct scene *const scene = packing->g->scene;
+    const struct scene_points *const p = &scene->points[KIND_FLUID];
+    const double near = (0.5 - beside_line) * scene->top.dp;
+    for (int64_t k = 0; k < p->n && scene->n_line; k++) {
+        const double at[2] = {p->x[k], p->y[k]};
+        double place[2], cell[2];
+        if (geometry_line_distance(scene, at) >= near) continue;
+        lattice_place(&scene->lattice, at[0], at[1], place);
+        for (int c = 0; c < 2; c++)
+            cell[c] = (place[c] - scene->lattice.origin[c]) / scene->lattice.spacing[c];
+        TRY(point_grid_add(&packing->cells, cell[0], cell[1], &packing->g->temp, packing->g->diag));
     }
     return ERR_OK;
 }
@@ -265,7 +288,9 @@ static enum err gather(struct packing *packing)
     packing->y = geometry_alloc(packing->g, n, sizeof *packing->y);
     packing->volume = geometry_alloc(packing->g, n, sizeof *packing->volume);
     packing->particle = geometry_alloc(packing->g, n, sizeof *packing->particle);
-    if (!packing->x || !packing->y || !packing->volume || !packing->particle) return ERR_MEMORY;
+    packing->line = geometry_alloc(packing->g, n, sizeof *packing->line);
+    if (!packing->x || !packing->y || !packing->volume || !packing->particle || !packing->line)
+        return ERR_MEMORY;
     for (int fixed = 0; fixed < 2; fixed++) {
         for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
             const struct scene_points *const from = &scene->points[kind];
@@ -276,6 +301,7 @@ static enum err gather(struct packing *packing)
                     !beside(packing, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
                     continue;
                 if (moves) packing->particle[packing->n] = k;
+                if (kind == KIND_WALL) packing->line[packing->n] = scene_line_of(scene, k);
                 const double dp =
                     kind == KIND_SOLID ? scene_solid_dp(scene, from->body[k]) : scene->top.dp;
                 add_point(packing, from->x[k], from->y[k], square(dp));
@@ -300,6 +326,8 @@ static void push(const struct packing *packing, const struct point_grid *t, int6
     sum[0] = sum[1] = 0;
     struct point_visit v = point_grid_visit(t, x, y, KERNEL_REACH * h);
     while (point_grid_next(t, &v)) {
+        const double from[2] = {x, y}, to[2] = {packing->x[v.k], packing->y[v.k]};
+        if (geometry_between(packing->g->scene, from, to) != packing->line[v.k]) continue;
         const double dx = x - packing->x[v.k], dy = y - packing->y[v.k],
                      r = sqrt(dx * dx + dy * dy);
         const double factor = -packing->volume[v.k] * kernel_slope(r, h);
@@ -350,11 +378,12 @@ enum err geometry_pack(struct sampler *sampler)
         TRY(find_cells(&cut[n_cut], sampler, &sampler->regions[k]));
         most += cut[n_cut++].grid.n;
     }
-    if (most == 0) return ERR_OK;
-    scene->packed = true;
     struct packing packing = {.g = sampler,
                               .cells.side = KERNEL_REACH * scene->h / scene->top.dp,
                               .air.side = 1};
+    TRY(visit_lines(&packing));
+    if (most == 0 && packing.cells.n == 0) return ERR_OK;
+    scene->packed = true;
     struct scene_points to;
     TRY(geometry_points(sampler, KIND_FLUID, points->n + most, false, &to));
     for (int k = 0; k < n_cut; k++) TRY(refill(&packing, &cut[k], &to));

@@ -10,6 +10,13 @@ enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct re
     const struct scene_rigid *const given = &scene->rigid[rigid];
     struct rigid_mass *const to = &scene->rigid_mass[rigid];
     struct moments of;
+    const bool all_given =
+        !isnan(given->mass) && !isnan(given->centre[0]) && !isnan(given->inertia);
+    if (region->add.n == 0 && !all_given)
+        return geometry_refuse(sampler, given->common.line,
+                               "[rigid %s] has no area, because its lines have no thickness; give "
+                               "it `mass`, `centre` and `inertia`",
+                               given->common.name);
     const double height = region->add.box.high[1] - region->add.box.low[1];
     /* The lines are close enough for the ends of circles. */
     TRY(outlines_moments(&region->add, &region->minus, 1e-4 * height, &of, &sampler->temp,

@@ -354,6 +354,7 @@ enum err scene_sample(struct scene *scene, struct diag *d)
     if (!err) err = geometry_check_bodies(&sampler);
     if (!err) err = problems_found(&sampler);
     if (!err) err = geometry_merge(&sampler, &points);
+    if (!err) geometry_thin_number(scene);
     if (!err) err = geometry_pack(&sampler);
     if (!err) err = geometry_open(&sampler);
     if (!err) err = geometry_extent(&sampler);

@@ -93,6 +93,8 @@ enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SP
 enum err geometry_thin(struct sampler *sampler) SPHFSI_CHECKED;
 int64_t geometry_thin_count(const struct scene *scene, int wall);
 void geometry_thin_points(const struct scene *scene, int wall, double *x, double *y);
+/* Numbers them among the particles of walls, of which they are the last of each wall. */
+void geometry_thin_number(struct scene *scene);
 
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *sampler) SPHFSI_CHECKED;

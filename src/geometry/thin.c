@@ -2,6 +2,8 @@
  * Thin lines and their dummies (T-110). Behind the line, as seen from either side, dummies lie in
  * rows as deep as the kernel. They continue beyond the ends, where only fluid sees them whose view
  * the line blocks. */
+#include "geometry/thin.h"
+
 #include "geometry/sampling.h"
 
 #include "base/elementary.h"
@@ -145,13 +147,66 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     return ERR_OK;
 }
 
+double geometry_line_distance(const struct scene *scene, const double at[2])
+{
+    double nearest = (double)INFINITY, left;
+    for (int j = 0; j < scene->n_line; j++)
+        for (int k = 0; k + 1 < scene->line[j].n; k++) {
+            const struct part part = line_part(&scene->line[j], k);
+            nearest = min2(nearest, distance_from(&part, at, &left));
+        }
+    return nearest;
+}
+
+int geometry_between(const struct scene *scene, const double from[2], const double to[2])
+{
+    const double way[2] = {to[0] - from[0], to[1] - from[1]};
+    for (int j = 0; j < scene->n_line; j++) {
+        const struct scene_line *const line = &scene->line[j];
+        bool odd = false;
+        for (int k = 0; k + 1 < line->n; k++) {
+            const struct part part = line_part(line, k);
+            const double before = k == 0 ? line->extend[0] : 0,
+                         after = part.length + (k + 2 == line->n ? line->extend[1] : 0);
+            double a[2], b[2];
+            for (int c = 0; c < 2; c++) {
+                a[c] = before > 0 ? part.from[c] - before * part.t[c] : part.from[c];
+                b[c] = after > part.length ? part.from[c] + after * part.t[c] : line->pt[k + 1][c];
+                a[c] -= from[c];
+                b[c] -= from[c];
+            }
+            odd ^= crosses_piece(way, a, b);
+        }
+        if (odd) return j + 1;
+    }
+    return 0;
+}
+
+/* Solids and rigid bodies would pass through a line. */
+static enum err refuse_contact(struct sampler *sampler, int wall, const struct shape *shape)
+{
+    const struct scene *const scene = sampler->scene;
+    const char *const name = scene->wall[wall].common.name;
+    for (int k = 0; k < scene->n_solid; k++)
+        if (scene_contact_of(scene, k, scene->n_solid + wall))
+            return geometry_refuse(
+                sampler, shape->line,
+                "this line of [wall %s] has no thickness, so [solid %s] cannot touch it; give it a "
+                "thickness, or say that both stay apart: [contact] between = %s, %s and enabled = "
+                "off",
+                name, scene->solid[k].common.name, scene->solid[k].common.name, name);
+    return ERR_OK;
+}
+
 enum err geometry_thin(struct sampler *sampler)
 {
     struct scene *const scene = sampler->scene;
     for (int k = 0; k < scene->n_wall; k++)
-        for (int j = 0; j < scene->wall[k].shape.n; j++)
-            if (scene->wall[k].shape.item[j].thin)
-                TRY(add_line(sampler, k, &scene->wall[k].shape.item[j]));
+        for (int j = 0; j < scene->wall[k].shape.n; j++) {
+            if (!scene->wall[k].shape.item[j].thin) continue;
+            TRY(refuse_contact(sampler, k, &scene->wall[k].shape.item[j]));
+            TRY(add_line(sampler, k, &scene->wall[k].shape.item[j]));
+        }
     for (int k = 0; k < scene->n_line; k++)
         for (int last = 0; last < 2; last++)
             if (is_joined(scene, &scene->line[k], last)) scene->line[k].tip[last] = false;
@@ -175,4 +230,14 @@ void geometry_thin_points(const struct scene *scene, int wall, double *x, double
             *x++ = at[0];
             *y++ = at[1];
         }
+}
+
+void geometry_thin_number(struct scene *scene)
+{
+    int64_t end = scene->points[KIND_WALL].n;
+    for (int k = scene->n_line - 1; k >= 0; k--) {
+        struct scene_line *const line = &scene->line[k];
+        while (scene->points[KIND_WALL].body[end - 1] != line->wall) end--;
+        end = line->first = end - line->n_dummies;
+    }
 }

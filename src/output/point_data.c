@@ -24,7 +24,15 @@ double snapshot_value(enum data what, const struct simulation *sim, enum kind ki
     if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
         solid_cauchy(&sim->solid, particles, i, sigma, &det);
     switch (what) {
-    case D_POINTS: return vector_value(particles->x[i], particles->y[i], column);
+    case D_POINTS:
+        if (fluid_line_of(&sim->fluid, kind, i)) {
+            const struct thin_line *const line =
+                &sim->fluid.lines.line[fluid_line_of(&sim->fluid, kind, i) - 1];
+            double foot[2];
+            line_foot(line, i - line->first, foot);
+            return vector_value(foot[0], foot[1], column);
+        }
+        return vector_value(particles->x[i], particles->y[i], column);
     case D_VELOCITY: return vector_value(particles->vx[i], particles->vy[i], column);
     case D_PRESSURE:
         if (kind == KIND_FLUID)

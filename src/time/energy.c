@@ -176,11 +176,10 @@ static void add_repulsion(void *context, int64_t i, double x, double y, double r
     struct repulsion *const at = context;
     const struct fluid *const fluid = &at->sim->fluid;
     const struct particles *const particles = &at->sim->kind[at->kind];
-    if (!fluid_sees(fluid, &at->sim->cells, at->place, at->kind, i, x, y)) return;
     const double over = fluid->volume[at->kind][particles->body[i]];
     const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
                       (1 + sqrt(over)) * fluid->k.dp;
-    if (r < r0)
+    if (r < r0 && fluid_sees(fluid, &at->sim->cells, at->place, at->kind, i, x, y))
         at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
                    repulsion_held(r, r0, fluid->k.h);
 }
@@ -190,7 +189,7 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
     const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
-    const double reach = k->dp; /* at most; solids are as fine as the fluid, or finer */
+    const double most = sim->effects & FX_THIN ? 1 : REPULSION_REACH; /* solids are finer */
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
     for (int32_t n = 0; n < list->n_active; n++) {
         const int32_t cell = list->active[n];
@@ -200,7 +199,7 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
             for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
                 if (!sim->cells.kind[kind].n_active) continue;
                 at.kind = (enum kind)kind;
-                cells_each_near(&sim->cells, at.kind, &sim->kind[kind], at.place, reach,
+                cells_each_near(&sim->cells, at.kind, &sim->kind[kind], at.place, most * k->dp,
                                 add_repulsion, &at);
             }
             of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *

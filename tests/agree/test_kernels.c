@@ -148,7 +148,8 @@ static const char all[] =
     "[wall tank]\nshape = polyline thickness -0.03: 0, 0.25; 0, 0; 0.4, 0\nslip = none\n"
     "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
     "density = 1100\nyoung = 1e6\npoisson = 0.4\nslip = none\n"
-    "[wall line]\nshape = polyline: 0.19, 0.05; 0.19, 0.12\n";
+    "[wall line]\nshape = polyline: 0.19, 0.05; 0.19, 0.12\n"
+    "[contact c]\nbetween = gate, line\nenabled = off\n";
 
 /* Hashes of the sums of an evaluation with a set of effects: over the fluid, and the force on the
  * solid. */

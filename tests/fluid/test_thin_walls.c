@@ -67,21 +67,27 @@ static void test_force_of_two_levels(void)
 }
 
 /* Water at rest stays so around a tip, a line that stands free and a cup, whose corners are of both
- * kinds; and nothing pushes these. Without T-110b the speed is 0.04 m/s. */
+ * kinds; and nothing pushes these. Without T-110b their ends stir it. Beside a line that
+ * is not along the lattice, particles begin out of order. */
 static void test_water_at_rest(void)
 {
-    static const char *const lines[] = {"0, 0; 0, 0.2\n", "-0.1, 0.16; 0.1, 0.16\n",
-                                        "-0.1, 0.5; -0.1, 0.16; 0.1, 0.16; 0.1, 0.3\n"};
-    for (size_t k = 0; k < COUNT_OF(lines); k++) {
+    static const struct {
+        const char *line;
+        double speed;
+    } scenes[] = {{"0, 0; 0, 0.2\n", 0.01},
+                  {"-0.1, 0.16; 0.1, 0.16\n", 0.01},
+                  {"-0.1, 0.5; -0.1, 0.16; 0.1, 0.16; 0.1, 0.3\n", 0.01},
+                  {"-0.08, 0.1; 0.12, 0.2\n", 0.02}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         char text[1000];
         double f[2];
-        snprintf(text, sizeof text, "%s%s%s", TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE, lines[k],
-                 FORCE);
+        snprintf(text, sizeof text, "%s%s%s", TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE,
+                 scenes[k].line, FORCE);
         rig_open(&rig, text, NULL);
         rig_run(&rig, 0.3);
-        assert_at_most(square(0.01), mean_square_speed(), lines[k]);
+        assert_at_most(square(scenes[k].speed), mean_square_speed(), scenes[k].line);
         force_on(1, f);
-        assert_at_most(8, fabs(f[0]), lines[k]);
+        assert_at_most(8, fabs(f[0]), scenes[k].line);
     }
 }
 
@@ -154,7 +160,7 @@ static void test_a_dam_break(void)
     double largest = 0, f[2];
     while (rig.sim.state.time < 0.6) {
         rig_steps(&rig, 1, 9);
-        TEST_ASSERT_EQUAL_INT(0, crossings(0.2, rig.sim.state.steps == 1));
+        TEST_ASSERT_EQUAL_INT(0, crossings(0.2 - rig.sim.fluid.k.h, rig.sim.state.steps == 1));
         if (rig.sim.state.steps % 10) continue;
         force_on(1, f);
         largest = max2(largest, f[0]);
@@ -240,6 +246,12 @@ static void test_what_is_refused(void)
     rig_refuses(TOP "[fluid w]\nsound_speed = 20\nshape = polyline thickness 0: 0, 0; 1, 0\n",
                 "the thickness must be at most 1e9 m, and 0 only in a `shape` of a [wall] or "
                 "[rigid]");
+    rig_refuses(TOP WATER("-0.4, 0, 0.4, 0.4") LINE
+                "0, 0; 0, 0.2\n[solid s]\nshape = box 1, 0, 1.1, 0.1\ndensity = 1000\nyoung = 1 "
+                "MPa\npoisson = 0.3\n",
+                "this line of [wall line] has no thickness, so [solid s] cannot touch it; give it "
+                "a thickness, or say that both stay apart: [contact] between = s, line and "
+                "enabled = off");
 }
 
 int main(void)

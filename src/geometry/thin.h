@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT
+ * What thin lines separate (T-110), as they are drawn. */
+#ifndef SPHFSI_GEOMETRY_THIN_H
+#define SPHFSI_GEOMETRY_THIN_H
+
+#include "case/scene.h"
+
+/* T-110: whether a connection crosses a piece of a line, from the sides on which the ends of each
+ * lie of the other, for numbers and vectors. Pieces with a common point have the same side for
+ * it. */
+#define CROSSES(here, there, from, to) \
+    ((((here) < 0) ^ ((there) < 0)) & (((from) < 0) ^ ((to) < 0)))
+
+/* The piece from a to b; `to` is the connection, which begins at the origin. */
+SPHFSI_INLINE bool crosses_piece(const double to[2], const double a[2], const double b[2])
+{
+    const double from_a = to[0] * a[1] - to[1] * a[0], from_b = to[0] * b[1] - to[1] * b[0],
+                 here = a[0] * b[1] - a[1] * b[0];
+    return CROSSES(here, here + from_a - from_b, from_a, from_b);
+}
+
+/* The first line that a connection crosses an odd number of times, from 1; 0: none. */
+int geometry_between(const struct scene *scene, const double from[2], const double to[2]);
+/* Distance of a place from the nearest line, m; INFINITY: there are none. */
+double geometry_line_distance(const struct scene *scene, const double at[2]);
+
+#endif
