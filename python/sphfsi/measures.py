@@ -25,10 +25,12 @@ def peak(value: np.ndarray) -> float:
 
 
 def _misfit(time, value, frequency):
-    """Sum of squares that a straight line and the best three harmonics leave of a curve."""
+    """Sum of squares that a straight line and the best three harmonics leave of a curve, by its
+    normal equations."""
     angle = 2 * np.pi * frequency * np.outer(time, (1, 2, 3))
-    base = np.column_stack([np.ones_like(time), time, np.cos(angle), np.sin(angle)])
-    return float(np.sum((base @ np.linalg.lstsq(base, value, rcond=None)[0] - value)**2))
+    base = np.column_stack([np.ones_like(time), time / time[-1], np.cos(angle), np.sin(angle)])
+    right = base.T @ value
+    return float(value @ value - right @ np.linalg.lstsq(base.T @ base, right, rcond=None)[0])
 
 
 def frequency(time: np.ndarray, value: np.ndarray) -> float:
@@ -43,9 +45,9 @@ def frequency(time: np.ndarray, value: np.ndarray) -> float:
     best, width = np.argmax(spectrum) / (8 * (time[1] - time[0]) * len(rest)), 0.5 / time[-1]
     for _ in range(10):  # a grid that closes in
         grid = [f for f in best + width * np.linspace(-1, 1, 9) if f > 0]
-        best = min(grid, key=lambda f: _misfit(time, value, f))
+        best = min(grid, key=lambda f: _misfit(time, rest, f))
         width /= 3
-    explained = 1 - _misfit(time, value, best) / np.sum(rest**2)
+    explained = 1 - _misfit(time, rest, best) / np.sum(rest**2)
     return float(best) if explained > 0.5 and best * time[-1] >= 1.5 else float("nan")
 
 

@@ -73,10 +73,10 @@ def _row(measure: str, spacing: list[float], total: Total) -> str:
     why = total.parts["spacing"].why
     text = " ".join(f"{value:12.5g}" for value in reversed(spacing))
     text = f"  {measure:<9} {text} {limit:>12} {orders}  +- {_two_digits(total.half)}{share}"
-    if why == "within the scatter":
+    if why and total.deviation:
         mean, wide = float(np.mean(total.repeats)), student(STUDENT_95, len(total.repeats))
-        text += (f"; runs scatter: mean {mean:.4g}, 95 % of them within "
-                 f"{_two_digits(wide * total.deviation)}")
+        text += (f"; {len(total.repeats)} repeats: mean {mean:.4g}, 95 % within "
+                 f"+- {_two_digits(wide * total.deviation)}")
     return text + (f"; {why}" if why else "") + ("" if known else "; no result")
 
 
@@ -331,8 +331,8 @@ class Refinement:
         for file in ["probes.csv"] * (len(own) < len(probes)) + own:
             report.update(self._report_file(file, result))
         report["ledger"] = self._report_file("ledger.csv", result)
-        result("peak: value of largest magnitude; mean: over the last quarter; band: least squares "
-               "of Eca and Hoekstra (2014) in each direction, added as squares")
+        result("peak: value of largest magnitude; mean: over the last quarter; band: factors of "
+               "safety of Xing and Stern (2010) in each direction, added as squares")
         result("no result: the band is larger than the value of the finest run, so not even the "
                "sign is known")
         for job in self.jobs:

@@ -16,6 +16,7 @@ with packages():
 from sphfsi.bands import NINETY, Total, band  # noqa: E402
 from sphfsi.budget import _cost  # noqa: E402
 from sphfsi.measures import measures  # noqa: E402
+from sphfsi.refine import _row  # noqa: E402
 
 
 def close(a, b, tolerance=1e-9):
@@ -89,6 +90,14 @@ def test_noise_has_no_order():
     total = Total(1.1, {"spacing": b}, [1.0, 1.1, 1.2])
     assert close(total.scatter, 2.920 * 0.1) and close(total.half, total.scatter), total
     assert math.isnan(total.limit)
+
+
+def test_a_row_without_order_has_the_repeats():
+    total = Total(1.1, {"spacing": band([1, 2, 4], [1.1, 1.2, 1.1])}, [1.0, 1.1, 1.2])
+    text = _row("peak", [1.1, 1.2, 1.1], total)
+    assert "3 repeats: mean 1.1, 95 % within +- 0.43; not monotone" in text, text
+    sound = Total(1, {"spacing": band([1, 2, 4], [1, 2, 4])}, [1.0, 1.1, 1.2])
+    assert "repeats" not in _row("peak", [1, 2, 4], sound)
 
 
 def test_scatter_covers_as_often_as_it_says():
