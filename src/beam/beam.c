@@ -13,15 +13,6 @@ static const char what[] = "beams";
 
 /* --- lines --- */
 
-/* Elements that a segment is divided into. */
-static int parts_of(const struct scene *scene, const struct scene_beam *given, const double a[2],
-                    const double b[2])
-{
-    const double size = given->element > 0 ? given->element : scene->top.dp;
-    const double parts = ceil(elementary_hypot(b[0] - a[0], b[1] - a[1]) / size * (1 - 1e-9));
-    return (int)max2(1, min2(parts, 1e6));
-}
-
 static bool is_closed(const struct shape *line)
 {
     const double *const first = line->pt[0], *const last = line->pt[line->n - 1];
@@ -36,7 +27,8 @@ static void count_elements(struct beams *beams)
         b->first_node = beams->n_nodes;
         b->first_element = beams->n_elements;
         for (int s = 0; s + 1 < line->n; s++)
-            beams->n_elements += parts_of(beams->scene, b->given, line->pt[s], line->pt[s + 1]);
+            beams->n_elements +=
+                scene_beam_parts(beams->scene, b->given, line->pt[s], line->pt[s + 1]);
         b->end_element = beams->n_elements;
         beams->n_nodes += b->end_element - b->first_element + !is_closed(line);
         b->end_node = beams->n_nodes;
@@ -69,7 +61,7 @@ static int place_segment(struct beams *beams, int beam, int from, const double a
 {
     struct beam *const of = &beams->beam[beam];
     const struct scene_beam *const given = of->given;
-    const int n = parts_of(beams->scene, given, a, b);
+    const int n = scene_beam_parts(beams->scene, given, a, b);
     const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]) / n;
     const double mass = isnan(given->mass) ? given->density * given->thickness : given->mass;
     const double rotary = isnan(given->thickness) ? 0 : square(given->thickness) / 12;
@@ -202,7 +194,7 @@ static void set_start(struct beams *beams)
         const struct expr *const *const e =
             (const struct expr *const *)beams->beam[node->beam].given->velocity.e;
         for (int c = 0; c < 2; c++)
-            beams->state[k].v[c] =
+            beams->state[k].v[c] = beams->state[k].w[c] =
                 e[c] && node->row[c] >= 0 ? expr_at(e[c], node->X[0], node->X[1]) : 0;
     }
 }
@@ -303,9 +295,12 @@ struct body_energy beam_energy(const struct beams *beams, int beam)
     for (int k = b->first_node; k < b->end_node; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_state *const s = &beams->state[k];
-        for (int c = 0; c < 3; c++) sum.kinetic += 0.5 * node->mass[c] * square(s->v[c]);
+        for (int c = 0; c < 3; c++) {
+            sum.kinetic += 0.5 * node->mass[c] * square(s->v[c]);
+            sum.waiting += s->impulse[c] * s->w[c];
+        }
         for (int c = 0; c < 2; c++) {
-            sum.momentum[c] += node->mass[c] * s->v[c];
+            sum.momentum[c] += node->mass[c] * s->v[c] - s->impulse[c];
             if (b->given->gravity) sum.potential -= node->mass[c] * g[c] * (node->X[c] + s->x[c]);
         }
         sum.mass += node->mass[0];

@@ -14,7 +14,9 @@
 struct beam_state {
     double x[3];        /* displacement, m, and counter-clockwise rotation, rad */
     double v[3];        /* velocity, m/s and 1/s */
-    double a[3];        /* mean acceleration over the last step, m/s^2 and 1/s^2 */
+    double w[3];        /* its mean over the last step, which the fluid uses */
+    double a[3];        /* change of v, in fluid of w, in the last step over its time */
+    double impulse[3];  /* that the fluid has still to receive, N s/m and N s (T-105) */
     double reaction[3]; /* of a clamp or hinge in the last step, N/m and N */
 };
 enum { BEAM_NUMBERS = sizeof(struct beam_state) / sizeof(double) };
@@ -30,17 +32,19 @@ struct beam_node {
 
 /* In a step: see beam_advance. */
 struct beam_step {
-    double x[3], v[3]; /* at the start */
-    double load[3];    /* from outside, N/m and N */
-    double force[3];   /* of the elements against the displacement, N/m and N */
-    double d[3];       /* displacement; twice the tangent of half the rotation */
+    double x[3], v[3], w[3];      /* at the start */
+    double load[3];               /* from outside, N/m and N */
+    double force[3];              /* of the elements against the displacement, N/m and N */
+    double fluid[3], resisted[3]; /* in fluid: its force, and its resistance (T-105) */
+    double d[3];                  /* displacement; twice the tangent of half the rotation */
 };
 
 /* A [beam]: its nodes and elements are `first` to `end` - 1. */
 struct beam {
     const struct scene_beam *given;
     int first_node, end_node, first_element, end_element;
-    double work; /* of loads, clamps and hinges in the last step, J/m */
+    double work;     /* of loads, clamps and hinges in the last step, J/m */
+    double received; /* work of the fluid in it, J/m */
 };
 
 /* A node that a [load] acts on: its part of the force and moment, or the length for a traction. */
@@ -59,6 +63,10 @@ struct beams {
     struct beam_start *start; /* [n_elements] of the step */
     struct beam_load *load;
     const struct scene *scene;
+    /* In fluid (beam/wet.h): */
+    struct particles *walls;
+    struct thin_line **line; /* [n]; NULL: no fluid */
+    double (*added)[6][6];   /* [n_elements] T Z of T-105, kg/m, kg and kg m */
     struct envelope matrix;
     double *unknown; /* [rows] */
     int iterations;  /* of Newton's method in the last step */
@@ -72,8 +80,9 @@ enum err beams_create(struct beams *beams, struct arena *a, const struct scene *
 /* Without fluid and solids, s: a part of the longest period, and of that of a pendulum. */
 double beams_longest_step(struct beams *beams);
 
-/* A step of dt from a time on (T-104). */
-void beams_advance(struct beams *beams, double time, double dt);
+/* A step of dt from a time on (T-104). The rates of the last evaluation act for `kick`, as on the
+ * fluid. */
+void beams_advance(struct beams *beams, double time, double dt, double kick);
 
 /* --- for output --- */
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of beams (T-104): the midpoint rule with forces of which the work is exactly the
  * change of energy, solved by Newton's method. */
-#include "beam/beam.h"
+#include "beam/wet.h"
 #include "base/elementary.h"
 
 #include <float.h>
@@ -90,12 +90,29 @@ static void add_matrix(const struct beams *beams, const struct beam_element *e, 
         }
 }
 
+/* T-105: the fluid's resistance at an element. */
+static void add_resistance(struct beams *beams, int m, double dt)
+{
+    const int *const node = beams->element[m].node;
+    double matrix[6][6];
+    for (int r = 0; r < 6; r++)
+        for (int c = 0; c < 6; c++) {
+            const struct beam_step *const s = &beams->step[node[c / 3]];
+            matrix[r][c] = beams->added[m][r][c] / square(dt);
+            beams->step[node[r / 3]].resisted[r % 3] +=
+                matrix[r][c] * (s->d[c % 3] - dt * s->w[c % 3]);
+        }
+    add_matrix(beams, &beams->element[m], matrix);
+}
+
 /* Forces and matrix of all elements for the present displacements. */
 static void add_elements(struct beams *beams, double dt, struct largest *top)
 {
     envelope_clear(&beams->matrix);
-    for (int k = 0; k < beams->n_nodes; k++)
+    for (int k = 0; k < beams->n_nodes; k++) {
         memset(beams->step[k].force, 0, sizeof beams->step[k].force);
+        memset(beams->step[k].resisted, 0, sizeof beams->step[k].resisted);
+    }
     for (int m = 0; m < beams->n_elements; m++) {
         const struct beam_element *const e = &beams->element[m];
         struct beam_step *const at[2] = {&beams->step[e->node[0]], &beams->step[e->node[1]]};
@@ -107,6 +124,7 @@ static void add_elements(struct beams *beams, double dt, struct largest *top)
         top->rounding = max2(top->rounding, e->stiffness[0] * (1 + fabs(at[1]->x[0] / e->length) +
                                                                fabs(at[1]->x[1] / e->length)));
         add_matrix(beams, e, matrix);
+        if (beams->line) add_resistance(beams, m, dt);
     }
 }
 
@@ -131,13 +149,14 @@ static struct largest find_residual(struct beams *beams, double dt)
         for (int c = 0; c < 3; c++) {
             if (node->row[c] < 0) continue;
             const double scale = c < 2 ? 1 : 1 / node->length, push = inertia(beams, k, c, dt);
-            const double off = s->load[c] - s->force[c] - push;
+            const double off = s->load[c] + s->fluid[c] - s->force[c] - s->resisted[c] - push;
             const double stiff =
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
             beams->unknown[node->row[c]] = off;
             envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
             top.off = max2(top.off, scale * fabs(off));
             top.force = max2(top.force, scale * max2(fabs(s->load[c]), fabs(push)));
+            top.force = max2(top.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
             top.rounding = max2(top.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
         }
     }
@@ -180,6 +199,7 @@ static void begin(struct beams *beams, double time, double dt)
         double x[3], v[3];
         memcpy(s->x, now->x, sizeof s->x);
         memcpy(s->v, now->v, sizeof s->v);
+        memcpy(s->w, now->w, sizeof s->w);
         place_held(beams, k, time + dt, x, v);
         for (int c = 0; c < 3; c++) {
             s->d[c] = dt * s->v[c];
@@ -199,7 +219,8 @@ static double finish_held(struct beams *beams, int k, const double v[3], double 
     double work = 0;
     for (int c = 0; c < 3; c++) {
         if (node->row[c] >= 0) continue;
-        const double other = s->force[c] + node->mass[c] * damping * s->d[c] / dt - s->load[c];
+        const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] +
+                             node->mass[c] * damping * s->d[c] / dt;
         now->v[c] = v[c];
         now->reaction[c] = node->mass[c] * (v[c] - s->v[c]) / dt + other;
         work += other * s->d[c] + 0.5 * node->mass[c] * (square(v[c]) - square(s->v[c]));
@@ -232,24 +253,26 @@ static void finish(struct beams *beams, double time, double dt)
 }
 
 /* A step, or two of half its length where it has no solution. */
-static bool step(struct beams *beams, double time, double dt, int halvings)
+static bool step(struct beams *beams, double time, double dt, double kick, int halvings)
 {
     find_loads(beams, time + 0.5 * dt);
+    if (beams->line) beams_find_fluid(beams, dt, kick);
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
+        if (beams->line) beams_return_impulse(beams, dt, kick);
         return true;
     }
     if (halvings == 0) return false;
-    return step(beams, time, 0.5 * dt, halvings - 1) &&
-           step(beams, time + 0.5 * dt, 0.5 * dt, halvings - 1);
+    return step(beams, time, 0.5 * dt, 0.5 * kick, halvings - 1) &&
+           step(beams, time + 0.5 * dt, 0.5 * dt, 0.5 * kick, halvings - 1);
 }
 
-void beams_advance(struct beams *beams, double time, double dt)
+void beams_advance(struct beams *beams, double time, double dt, double kick)
 {
     beams->iterations = 0;
-    for (int k = 0; k < beams->n; k++) beams->beam[k].work = 0;
-    beams->failed |= !step(beams, time, dt, HALVINGS);
+    for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
+    beams->failed |= !step(beams, time, dt, kick, HALVINGS);
 }
 
 /* --- the longest period --- */

@@ -54,6 +54,29 @@ static enum err check_supports(struct reader *r, const struct scene_beam *beam,
     return ERR_OK;
 }
 
+enum err case_draw_beam(struct reader *r, int k)
+{
+    struct scene *const scene = r->scene;
+    const struct scene_beam *const beam = &scene->beam[k];
+    struct scene_wall *const wall = &scene->wall[scene_beam_wall(scene, k)];
+    const struct shape *const from = beam->shape.item;
+    struct shape *const to = arena_alloc(&scene->arena, 1, sizeof *to, "beams", r->diag);
+    int n = 0;
+    for (int s = 0; s + 1 < from->n; s++)
+        n += scene_beam_parts(scene, beam, from->pt[s], from->pt[s + 1]);
+    double(*const pt)[2] = arena_alloc(&scene->arena, (size_t)n + 1, sizeof *pt, "beams", r->diag);
+    if (!to || !pt) return ERR_MEMORY;
+    *to = (struct shape){.kind = SHAPE_POLYLINE, .pt = pt, .thin = true, .line = from->line};
+    for (int s = 0; s + 1 < from->n; s++) {
+        const double *const a = from->pt[s], *const b = from->pt[s + 1];
+        const int parts = scene_beam_parts(scene, beam, a, b);
+        for (int j = s > 0; j <= parts; j++, to->n++)
+            for (int c = 0; c < 2; c++) pt[to->n][c] = a[c] + (b[c] - a[c]) * j / parts;
+    }
+    wall->shape = (struct shape_list){1, to};
+    return ERR_OK;
+}
+
 enum err case_check_beam(struct reader *r, const void *section)
 {
     const struct scene_beam *const beam = section;

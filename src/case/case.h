@@ -145,6 +145,8 @@ int case_given_count(const struct scene *scene, enum section_id id);
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
+/* The thin line of a beam's wall: its points are the beam's nodes (case/beam.c). */
+enum err case_draw_beam(struct reader *r, int beam) SPHFSI_CHECKED;
 enum err case_check_beam(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;

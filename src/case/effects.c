@@ -196,7 +196,7 @@ static const struct rule {
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX, "a rigid body moves while rest is sought"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX, "a beam moves while rest is sought"},
-    {EFFECT_BEAM, EXCLUDES, EFFECT_FLUID, "fluid does not act on beams"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC, "a beam does not pass through periodic sides"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary is no state of rest"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
 };

@@ -63,7 +63,8 @@ enum err case_place_bodies(struct reader *r)
         r->section = &scene->beam[k];
         TRY(case_go_on(r, check_own_name(r, &scene->beam[k].common)));
         wall->common = scene->beam[k].common;
-        wall->shape = scene->beam[k].shape;
+        wall->slip = scene->beam[k].slip;
+        if (scene->n_fluid && scene->beam[k].shape.n) TRY(case_draw_beam(r, k));
     }
     return ERR_OK;
 }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Queries on a scene: sections by name, places for messages, files relative to the case. */
 #include "case/scene.h"
+#include "base/elementary.h"
 #include "case/params.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -46,6 +48,14 @@ int scene_find_spring(const struct scene *scene, const char *name)
 int scene_find_beam(const struct scene *scene, const char *name)
 {
     return find_section(scene, SECTION_beam, name);
+}
+
+int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
+                     const double b[2])
+{
+    const double size = beam->element > 0 ? beam->element : scene->top.dp;
+    const double parts = ceil(elementary_hypot(b[0] - a[0], b[1] - a[1]) / size * (1 - 1e-9));
+    return (int)max2(1, min2(parts, 1e6));
 }
 
 double scene_solid_h(const struct scene *scene, int solid)

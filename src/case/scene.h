@@ -389,6 +389,9 @@ int scene_find_solid(const struct scene *scene, const char *name);
 int scene_find_wall(const struct scene *scene, const char *name);
 int scene_find_spring(const struct scene *scene, const char *name);
 int scene_find_beam(const struct scene *scene, const char *name);
+/* Elements of a beam from a to b. */
+int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
+                     const double b[2]);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Its smoothing length, m. */

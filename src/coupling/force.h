@@ -140,7 +140,7 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
 /* FX_IMPEDANCE if the wetted surface of the particles of a kind is needed (T-35a, T-95). */
 SPHFSI_INLINE effect_set wetted_effect(effect_set effects, enum kind kind)
 {
-    const effect_set needs = kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID;
+    const effect_set needs = kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID | FX_BEAM;
     return effects & needs ? FX_IMPEDANCE : 0;
 }
 

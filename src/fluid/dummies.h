@@ -225,8 +225,9 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
     /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
      * (L-6); and on a structure that of the interface impulse (T-35b). */
     gather(d,
-           d->kind == KIND_SOLID || fluid->effects & FX_RIGID ? particles->interface_pressure
-                                                              : NULL,
+           d->kind == KIND_SOLID || fluid->effects & (FX_RIGID | FX_BEAM)
+               ? particles->interface_pressure
+               : NULL,
            acting);
     for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
     for (int r = 0; r < d->count; r++)

@@ -63,7 +63,7 @@ static enum err describe_bodies(struct fluid *fluid, struct arena *a, const stru
         fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
         const double spacing = 0.5 * (1 + sqrt(fluid->volume[kind][k])) * fluid->k.dp;
         fluid->near2[kind][k] = square(REPULSION_REACH * spacing / fluid->k.h) + ETA2;
-        fluid->moves[kind][k] = !wall || scene->wall[k].motion[0];
+        fluid->moves[kind][k] = !wall || scene->wall[k].motion[0] || k >= scene_beam_wall(scene, 0);
     }
     if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
     fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);

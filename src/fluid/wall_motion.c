@@ -13,7 +13,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     for (int k = 0; k < scene->n_wall; k++) {
         const int motion =
             scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
-        if (motion < 0) continue;
+        if (motion < 0 && k < scene_beam_wall(scene, 0)) continue;
         int64_t first = 0;
         while (first < walls->n && walls->body[first] != k) first++;
         int64_t end = first;
@@ -53,6 +53,8 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct 
     double way = 0;
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
+        m->moved |= b->motion < 0;
+        if (b->motion < 0) continue;
         const struct motion_state now = motion_at(scene, b->motion, time);
         /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
         if (b->known && memcmp(&now, &b->placed, sizeof now) == 0 && !m->never_skip) continue;

@@ -9,7 +9,7 @@
 
 /* A wall section that has a motion; its particles are first ... end - 1. */
 struct moving_wall {
-    int section, motion;
+    int section, motion; /* motion -1: of a beam, which places its particles */
     int64_t first, end;
     struct motion_state placed; /* its last position, if `known` */
     bool known;

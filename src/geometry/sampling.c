@@ -82,7 +82,8 @@ static enum err draw_region(struct sampler *sampler, struct region *region)
 static enum err list_regions(struct sampler *sampler)
 {
     const struct scene *scene = sampler->scene;
-    const int n_wall = scene_beam_wall(scene, 0), n = scene->n_solid + n_wall + scene->n_fluid;
+    const int n_wall = scene->n_fluid ? scene->n_wall : scene_beam_wall(scene, 0),
+              n = scene->n_solid + n_wall + scene->n_fluid;
     sampler->regions = geometry_alloc(sampler, (size_t)n, sizeof *sampler->regions);
     if (!sampler->regions) return ERR_MEMORY;
     for (int k = 0; k < scene->n_solid; k++)

@@ -24,10 +24,17 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick)
     energy_of_rigid(sim);
 }
 
-void advance_beams(struct simulation *sim, double time, double dt)
+void advance_beams(struct simulation *sim, double time, double dt, double kick)
 {
-    beams_advance(&sim->beams, time, dt);
-    energy_of_beams(sim);
+    beams_advance(&sim->beams, time, dt, kick);
+    for (int k = 0; k < sim->beams.n; k++) {
+        const struct beam *const b = &sim->beams.beam[k];
+        struct energy_entry *const e =
+            &sim->state.energy.entry[energy_entry(KIND_WALL, scene_beam_wall(sim->scene, k))];
+        sim->state.wall_work += b->work;
+        e->supplied += b->work + b->received;
+        e->received += b->received;
+    }
 }
 
 /* The extremes over a range of fluid particles, without branches. */

@@ -47,7 +47,7 @@ void advance_structure(struct simulation *sim, double dt, double kick);
 void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 
 /* The step of beams from a time on. */
-void advance_beams(struct simulation *sim, double time, double dt);
+void advance_beams(struct simulation *sim, double time, double dt, double kick);
 
 /* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
  * any kind. */

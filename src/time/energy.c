@@ -322,15 +322,6 @@ void energy_of_rigid(struct simulation *sim)
     }
 }
 
-void energy_of_beams(struct simulation *sim)
-{
-    for (int k = 0; k < sim->beams.n; k++) {
-        const double work = sim->beams.beam[k].work;
-        sim->state.wall_work += work;
-        energy_supply(sim, KIND_WALL, scene_beam_wall(sim->scene, k), work);
-    }
-}
-
 /* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
  * ledger has the potential energy of the value at t = 0. */
 static double gravity_work(struct simulation *sim)

@@ -31,9 +31,8 @@ void energy_of_evaluation(struct simulation *sim, double dt);
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
 
-/* The work on rigid bodies, and on beams, in a step. */
+/* The work on rigid bodies in a step. */
 void energy_of_rigid(struct simulation *sim);
-void energy_of_beams(struct simulation *sim);
 
 /* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which
  * the ledger has, too. */

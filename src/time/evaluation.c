@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "beam/wet.h"
 #include "particles/kernel.h"
 
 void move_walls(struct simulation *sim, double time)
@@ -15,10 +16,13 @@ void move_walls(struct simulation *sim, double time)
     for (int k = 0; k < sim->wall_motion.n; k++)
         for (int j = 0; j < sim->fluid.lines.n; j++) {
             struct thin_line *const line = &sim->fluid.lines.line[j];
-            if (line->scene->wall != sim->wall_motion.body[k].section) continue;
+            const struct moving_wall *const wall = &sim->wall_motion.body[k];
+            if (line->scene->wall != wall->section || wall->motion < 0) continue;
             line_follow(line, &sim->wall_motion.body[k].placed);
             line_place(line, &sim->kind[KIND_WALL]);
         }
+    if (sim->beams.line)
+        sim->wall_motion.way += beams_place(&sim->beams, time - sim->state.time, sim->state.dt);
 }
 
 void find_external(struct simulation *sim, enum kind kind, double time)

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "beam/wet.h"
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
@@ -242,9 +243,12 @@ enum err initial_state(struct simulation *sim, struct diag *d)
             TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
                              &sim->kind[KIND_WALL],
                              sim->integrator->ahead > 0 || !(sim->effects & FX_FLUID), d));
-        move_walls(sim, 0);
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
+    if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
+        TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines, &sim->kind[KIND_WALL],
+                             d));
+    if (sim->effects & FX_MOTION) move_walls(sim, 0);
     if (!(sim->effects & (FX_FLUID | FX_SOLID))) set_step_of_bodies(sim);
     TRY(choose_rate(sim, d));
     set_guards(sim);

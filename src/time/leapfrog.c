@@ -75,6 +75,7 @@ static void leapfrog_step(struct simulation *sim, double t_limit)
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, 0.5 * (dt_old + dt));
     if (sim->effects & FX_RIGID) advance_rigid(sim, sim->state.time, dt, 0.5 * (dt_old + dt));
+    if (sim->effects & FX_BEAM) advance_beams(sim, sim->state.time, dt, 0.5 * (dt_old + dt));
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

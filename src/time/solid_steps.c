@@ -141,7 +141,7 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
     if (sim->effects & FX_RIGID) advance_rigid(sim, begin, st->time - begin, st->time - begin);
-    if (sim->effects & FX_BEAM) advance_beams(sim, begin, st->time - begin);
+    if (sim->effects & FX_BEAM) advance_beams(sim, begin, st->time - begin, st->time - begin);
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     book_lone(sim, dt, n);

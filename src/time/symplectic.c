@@ -122,6 +122,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
 
     advance_fluid(sim, correct_rows, &dt);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
+    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -46,6 +46,7 @@ static void verlet_step(struct simulation *sim, double t_limit)
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
     if (sim->effects & FX_RIGID)
         advance_rigid(sim, sim->state.time, dt, 0.5 * (sim->state.dt + dt));
+    if (sim->effects & FX_BEAM) advance_beams(sim, sim->state.time, dt, 0.5 * (sim->state.dt + dt));
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -72,4 +72,39 @@ cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "rows"
     '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' || fail "probe off the beam"
 "$sphfsi" "$dir/beam.cfg" --set tip.quantity=strain --out "$dir/off" 2>&1 | grep -q \
     'there is no \[solid\] of that name' || fail "strain of a beam"
+
+cat >"$dir/wet.cfg" <<'END'
+dp = 5 cm
+end_time = 0.1
+gravity = 0, -9.81
+[fluid water]
+shape = box 0, 0, 0.6, 0.6
+sound_speed = 35
+surface = 0.6
+[wall tank]
+shape = polyline: 0, 1; 0, 0; 1.2, 0; 1.2, 1
+[beam baffle]
+shape = polyline: 0.6, 0; 0.6, 0.7
+thickness = 5 mm
+density = 1100
+young = 1e10
+clamp = 0.6, 0
+[probe tip]
+quantity = displacement
+body = baffle
+point = 0.6, 0.7
+[probe force]
+quantity = force
+body = baffle
+END
+for integrator in symplectic verlet leapfrog; do
+    at=$dir/wet-$integrator
+    run "$dir/wet.cfg" --set integrator=$integrator --out "$at" --threads 1
+    run "$dir/wet.cfg" --set integrator=$integrator --out "$at-cut" --threads 2 --until 0.05
+    run "$dir/wet.cfg" --set integrator=$integrator --out "$at-cut" --restart
+    run "$at/case.cfg" --out "$at-effective"
+    [ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "$at: restart"
+    cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "$at: rows"
+    [ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "$at: effective case"
+done
 [ $failures = 0 ]

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ * Beams in fluid: a plate below a column of water, a light one, momentum that is exchanged, and
+ * water on both sides. */
+#include "rig.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                          "integrator=leapfrog"};
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+static const struct beam_state *state(int node) { return &rig.sim.beams.state[node]; }
+
+#define COLUMN                                                                            \
+    "scheme = standard\ndp = 5 cm\nend_time = 1\ngravity = 0, -9.81\n"                    \
+    "[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 40\nsurface = 1\n"                  \
+    "particle_mass = hydrostatic\ndensity_diffusion = 0.1\nartificial_viscosity = 0.05\n" \
+    "[wall side]\nshape = polyline: 0, 2; 0, -0.2\nshape = polyline: 1, -0.2; 1, 2\n"     \
+    "[beam b]\nshape = polyline: 0, 0; 1, 0\nclamp = 0, 0\nclamp = 1, 0\nyoung = 1e9\n"   \
+    "thickness = 5 cm\n"
+
+/* w L^4/(384 EI) + w L^2/(8 GA), with the plate's own weight; light and heavy plates. */
+static void test_a_plate_carries_the_water(void)
+{
+    static const double density[] = {10, 1000, 8000};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        char set[40];
+        snprintf(set, sizeof set, "b.density=%g", density[k]);
+        rig_open(&rig, COLUMN, set, integrators[k], NULL);
+        const double w = 9.81 * (1000 + density[k] * 0.05), EI = 1e9 * 1.25e-4 / 12,
+                     GA = 5.0 / 12 * 1e9 * 0.05, expected = w / 384 / EI + w / 8 / GA;
+        rig_run(&rig, 0.6);
+        double mean = 0;
+        for (int n = 1; n <= 40; n++) {
+            rig_run(&rig, 0.6 + 0.01 * n);
+            mean -= state(10)->x[1] / 40;
+        }
+        assert_near(0.01 * expected, expected, mean, "deflection at mid-span");
+    }
+}
+
+/* Without gravity, what the beam loses the fluid has, or has still to receive. */
+static void test_momentum_is_exchanged(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 "dp = 3 cm\nend_time = 1\n[domain]\nlower = -5, -5\nupper = 5, 5\n"
+                 "[fluid w]\nshape = box 0.03, 0, 0.6, 0.6\nsound_speed = 20\n"
+                 "[beam b]\nshape = polyline: 0, -0.1; 0, 0.6\nthickness = 5 mm\nyoung = 1e8\n"
+                 "density = 2000\nvelocity = 1, 0\n",
+                 integrators[k], NULL);
+        rig_run(&rig, 0.06);
+        const struct ledger row = simulation_ledger(&rig.sim);
+        const double all = 2000 * 5e-3 * 0.7;
+        assert_at_most(0.7, state(12)->v[0], "velocity after the impact");
+        /* Verlet's two solutions have the momentum in their mean. */
+        assert_near(k == 1 ? 0.03 * all : 1e-4 * all, all, row.momentum_x, "momentum, x");
+        assert_near(k == 1 ? 0.03 * all : 1e-4 * all, 0, row.momentum_y, "momentum, y");
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_plate_carries_the_water);
+    RUN_TEST(test_momentum_is_exchanged);
+    return UNITY_END();
+}
