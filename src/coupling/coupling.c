@@ -27,6 +27,8 @@ static void find_forces_on(const struct coupling *coupling, struct particles *pa
     particles_clear(particles->fy, particles->n);
     particles_clear(particles->wet_x, particles->n);
     particles_clear(particles->wet_y, particles->n);
+    particles_clear(particles->drag_x, particles->n);
+    particles_clear(particles->drag_y, particles->n);
     (mixed ? find_force_mixed : find_force_double)(coupling->fluid, particles, kind, cells, all);
 }
 
@@ -44,44 +46,33 @@ void coupling_show_forces(const struct coupling *coupling, struct particles kind
     find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
 
-/* One component of T-36a: the force and its mean. The mean starts with the first force and ends
- * when it is below any significant force, N/m. */
-SPHFSI_INLINE double extrapolated(double *mean, double force, double per_time, double weight)
-{
-    const double least = 1e-30, old = *mean != 0 ? *mean : force;
-    const double next = old + weight * (force - old);
-    *mean = fabs(next) > least ? next : 0;
-    return force + per_time * (force - old);
-}
-
-/* T-36a: the constant force over the sub-steps is that at their start; `ahead`: the time from there
- * to the middle of their kicks; `last`: the step before. */
-static void extrapolate_force(struct coupling *coupling, double ahead, double last)
+/* T-36a: from the impulse that the fluid gets, for `kick`, to the force in the middle of the
+ * structure's kicks; `last`: the step before. The forces of Verlet's two solutions are averaged. */
+static void extrapolate_force(struct coupling *coupling, double dt, double kick, double last)
 {
     struct particles *const particles = coupling->particles;
-    const double time = last + averaging_time(coupling), weight = last / time,
-                 per_time = ahead / time;
+    const double weight = particles->interface_pressure_next ? 0.5 : 1;
+    const double impulse = kick / dt, now = coupling->lead / dt, before = impulse + now - 1;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        particles->fx[i] = extrapolated(&particles->mean_fx[i], particles->fx[i], per_time, weight);
-        particles->fy[i] = extrapolated(&particles->mean_fy[i], particles->fy[i], per_time, weight);
+        const double px = particles->fx[i] - particles->drag_x[i],
+                     py = particles->fy[i] - particles->drag_y[i];
+        const double old_x = last > 0 ? particles->mean_fx[i] : px,
+                     old_y = last > 0 ? particles->mean_fy[i] : py;
+        particles->mean_fx[i] = old_x + weight * (px - old_x);
+        particles->mean_fy[i] = old_y + weight * (py - old_y);
+        particles->fx[i] =
+            impulse * particles->fx[i] + now * particles->mean_fx[i] - before * old_x;
+        particles->fy[i] =
+            impulse * particles->fy[i] + now * particles->mean_fy[i] - before * old_y;
     }
 }
 
-static void scale_force(struct particles *particles, double factor)
-{
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < particles->n; i++) {
-        particles->fx[i] *= factor;
-        particles->fy[i] *= factor;
-    }
-}
-
-void coupling_predict(struct coupling *coupling, double dt, double last)
+void coupling_predict(struct coupling *coupling, double dt)
 {
     if (coupling->impedance > 0)
         impulse_set_time(coupling, dt); /* for the force of the corrector */
-    motion_ahead(coupling, coupling->ahead * dt, last);
+    motion_ahead(coupling, coupling->ahead * dt);
 }
 
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last)
@@ -90,10 +81,9 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, kick);
     if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
-    if (coupling->substeps && particles->mean_fx)
-        extrapolate_force(coupling, 0.5 * (coupling->centred ? dt : dt - dt / n), last);
-    /* Over its sub-steps the structure gets exactly the impulse given to the fluid. */
-    if (kick != dt) scale_force(particles, kick / dt);
+    const double middle = 0.5 * (coupling->centred ? dt : dt - dt / n);
+    coupling->lead = middle - coupling->ahead * dt;
+    if (particles->mean_fx) extrapolate_force(coupling, dt, kick, last);
         /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {

@@ -25,6 +25,7 @@ struct coupling {
      * step after the step's start; the solid kicks in the middle of its drifts. */
     double ahead;
     bool centred;
+    double lead; /* s: from the last evaluation to the middle of the structure's kicks */
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
     double *exchange_time;
 };
@@ -44,12 +45,11 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 
 /* --- a step of dt of the fluid --- */
 
-/* With a predictor and sub-steps, before its evaluation: moves the structure ahead. `last` is
- * the step before. */
-void coupling_predict(struct coupling *coupling, double dt, double last);
+/* With a predictor and sub-steps, before its evaluation: moves the structure ahead. */
+void coupling_predict(struct coupling *coupling, double dt);
 
 /* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
- * Returns the largest displacement of a particle, m. */
+ * `last` is the step before. Returns the largest displacement of a particle, m. */
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
 
 #endif

@@ -89,7 +89,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
                                     const struct vector_constants *k, effect_set fx)
 {
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
-           wet_y[CLUSTER] = {0};
+           wet_y[CLUSTER] = {0}, drag_x[CLUSTER] = {0}, drag_y[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS, own += GROUPS) {
         struct receiver s = dummy_at(sides, own);
         s.u = vspread(own + PACKED_U * CLUSTER);
@@ -103,11 +103,15 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
         s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
         for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
-        drag_force(fluid, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
+        drag_force(fluid, neighbours, &s, volume, k, &drag_x[r], &drag_y[r]);
     }
     for (int r = 0; r < count; r++) {
-        particles->fx[index[r]] = force_x[r];
-        particles->fy[index[r]] = force_y[r];
+        particles->fx[index[r]] = force_x[r] + drag_x[r];
+        particles->fy[index[r]] = force_y[r] + drag_y[r];
+        if (particles->drag_x) {
+            particles->drag_x[index[r]] = drag_x[r];
+            particles->drag_y[index[r]] = drag_y[r];
+        }
         if (!(fx & FX_IMPEDANCE)) continue;
         particles->wet_x[index[r]] = wet_x[r];
         particles->wet_y[index[r]] = wet_y[r];

@@ -10,8 +10,8 @@
 
 /* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
  * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
- * velocity that the fluid uses. Zero for dry and clamped particles. dt = 0: the root of the
- * rate at which it is removed. */
+ * velocity of T-35 in the middle of the kicks. Zero for dry and clamped particles. dt = 0: the root
+ * of the rate at which it is removed. */
 static void find_normal(const struct coupling *coupling, struct particles *particles, int64_t i,
                         double dt)
 {
@@ -22,8 +22,9 @@ static void find_normal(const struct coupling *coupling, struct particles *parti
     const double root = wet > 0 ? sqrt(dt > 0 ? k / (1 + k) : k) / wet : 0;
     particles->face_x[i] = root * particles->wet_x[i];
     particles->face_y[i] = root * particles->wet_y[i];
-    particles->face_v[i] =
-        particles->wx[i] * particles->face_x[i] + particles->wy[i] * particles->face_y[i];
+    const double wx = particles->wx[i] + coupling->lead * particles->recent_ax[i],
+                 wy = particles->wy[i] + coupling->lead * particles->recent_ay[i];
+    particles->face_v[i] = wx * particles->face_x[i] + wy * particles->face_y[i];
     particles->face_dv[i] = particles->face_work[i] = 0;
 }
 

@@ -2,42 +2,40 @@
  * The motion of a structure that the fluid uses. */
 #include "coupling/motion.h"
 
+/* T-35: weight of the last step in the mean that extrapolates the velocity. With 1/4 and more the
+ * motion of some light bodies grows by itself. */
+#define RECENT 0.2
+
 void motion_after_substeps(struct coupling *coupling, double dt)
 {
     struct particles *const particles = coupling->particles;
-    const double time = reduced_averaging_time(coupling, dt), per_dt = 1 / dt,
-                 weight = dt / (dt + time);
-    /* The mean acceleration is centred half a step plus that time ago, the mean velocity half a
-     * step ago. Midway between then and now, the acceleration is a quarter of a step older. */
-    const double half = 0.5 * dt, age = time + 0.25 * dt;
+    const double per_dt = 1 / dt, half = 0.5 * dt,
+                 weight = dt / (dt + reduced_averaging_time(coupling, dt));
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        const double ax = particles->ax[i], ay = particles->ay[i];
-        particles->ax[i] = ax + weight * ((particles->vx[i] - particles->vx0[i]) * per_dt - ax);
-        particles->ay[i] = ay + weight * ((particles->vy[i] - particles->vy0[i]) * per_dt - ay);
-        particles->jx[i] += weight * ((particles->ax[i] - ax) * per_dt - particles->jx[i]);
-        particles->jy[i] += weight * ((particles->ay[i] - ay) * per_dt - particles->jy[i]);
-        particles->wx[i] = (particles->ux[i] - particles->x0[i]) * per_dt +
-                           half * (particles->ax[i] + age * particles->jx[i]);
-        particles->wy[i] = (particles->uy[i] - particles->y0[i]) * per_dt +
-                           half * (particles->ay[i] + age * particles->jy[i]);
+        const double ax = (particles->vx[i] - particles->vx0[i]) * per_dt;
+        const double ay = (particles->vy[i] - particles->vy0[i]) * per_dt;
+        particles->ax[i] += weight * (ax - particles->ax[i]);
+        particles->ay[i] += weight * (ay - particles->ay[i]);
+        particles->recent_ax[i] += RECENT * (ax - particles->recent_ax[i]);
+        particles->recent_ay[i] += RECENT * (ay - particles->recent_ay[i]);
+        particles->wx[i] =
+            (particles->ux[i] - particles->x0[i]) * per_dt + half * particles->recent_ax[i];
+        particles->wy[i] =
+            (particles->uy[i] - particles->y0[i]) * per_dt + half * particles->recent_ay[i];
     }
 }
 
-void motion_ahead(struct coupling *coupling, double half, double last)
+void motion_ahead(struct coupling *coupling, double half)
 {
     struct particles *const particles = coupling->particles;
-    const double age = reduced_averaging_time(coupling, last) + 0.5 * last + 0.5 * half;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        const double ax = particles->ax[i] + age * particles->jx[i],
-                     ay = particles->ay[i] + age * particles->jy[i];
-        particles->x[i] =
-            particles->X[i] + particles->ux[i] + half * (particles->wx[i] + 0.5 * half * ax);
-        particles->y[i] =
-            particles->Y[i] + particles->uy[i] + half * (particles->wy[i] + 0.5 * half * ay);
-        particles->wx[i] += half * ax;
-        particles->wy[i] += half * ay;
+        const double ax = half * particles->recent_ax[i], ay = half * particles->recent_ay[i];
+        particles->x[i] = particles->X[i] + particles->ux[i] + half * (particles->wx[i] + 0.5 * ax);
+        particles->y[i] = particles->Y[i] + particles->uy[i] + half * (particles->wy[i] + 0.5 * ay);
+        particles->wx[i] += ax;
+        particles->wy[i] += ay;
     }
 }
 

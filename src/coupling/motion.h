@@ -16,11 +16,10 @@ SPHFSI_INLINE double averaging_time(const struct coupling *coupling)
 }
 
 /* Age of that acceleration in steps, beyond the age due to averaging. It is the mean over a
- * step, half a step old at its end, and half a step older at the corrector of `symplectic`.
- * Three quarters more are from measurement (docs/theory.md, Sec. 7). */
+ * step, half a step old at its end, and half a step older at the corrector of `symplectic`. */
 SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
 {
-    return 0.5 + 0.75 + coupling->ahead;
+    return 0.5 + coupling->ahead;
 }
 
 /* Time over which the velocity is extrapolated, in half steps (T-35): from the middle of a
@@ -31,8 +30,7 @@ SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
     return coupling->substeps ? 1 + 2 * coupling->ahead : 1;
 }
 
-/* Averaging time after a step of dt with sub-steps, s: reduced by that age, to a quarter at
- * least. */
+/* Averaging time after a step of dt, s: reduced by that age, to a quarter at least. */
 SPHFSI_INLINE double reduced_averaging_time(const struct coupling *coupling, double dt)
 {
     const double time = averaging_time(coupling);
@@ -42,8 +40,8 @@ SPHFSI_INLINE double reduced_averaging_time(const struct coupling *coupling, dou
 /* T-35: after sub-steps in a step of dt. */
 void motion_after_substeps(struct coupling *coupling, double dt);
 
-/* T-35, with sub-steps: position and velocity `half` ahead; `last`: the step before. */
-void motion_ahead(struct coupling *coupling, double half, double last);
+/* T-35, with sub-steps: position and velocity `half` ahead. */
+void motion_ahead(struct coupling *coupling, double half);
 
 /* Single rate: position and velocity of the structure; a share `weight` of the present acceleration
  * enters the mean. */

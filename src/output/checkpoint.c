@@ -136,8 +136,8 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
 static void list_parts(struct parts *list, struct image *m, struct simulation *sim)
 {
     static const unsigned new_in_fork[KIND_COUNT] = {
-        [KIND_FLUID] = G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX,
-        [KIND_SOLID] = G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION | G_MATRIX,
+        [KIND_FLUID] = G_WETTED | G_MEAN_FORCE | G_SPLIT_IMPULSE | G_SLOPE | G_FRICTION | G_MATRIX,
+        [KIND_SOLID] = G_WETTED | G_MEAN_FORCE | G_SPLIT_IMPULSE | G_SLOPE | G_FRICTION | G_MATRIX,
         [KIND_WALL] = G_REFERENCE | G_RATE | G_FORCE, /* those of moving walls */
     };
     list->n = 0;

@@ -58,7 +58,7 @@ static enum err fork_clamps(struct simulation *sim, const double *free, struct d
         particles->vx[i] = particles->vy[i] = 0;
         if (particles->wx)
             particles->wx[i] = particles->wy[i] = particles->ax[i] = particles->ay[i] =
-                particles->jx[i] = particles->jy[i] = 0;
+                particles->recent_ax[i] = particles->recent_ay[i] = 0;
     }
     solid_place_clamps(&sim->solid, particles, sim->state.time);
     for (int64_t i = 0; i < particles->n; i++) {

@@ -90,7 +90,7 @@ static void correct_at_single_rate(struct simulation *sim, double dt)
     energy_of_solid(sim, dt, 1, true);
     solid_book_work(&sim->solid, solid, solid->vx0, solid->vy0, dt);
     solid_place_clamps(&sim->solid, solid, sim->state.time + dt);
-    motion_at_single_rate(&sim->coupling, dt / (dt + averaging_time(&sim->coupling)));
+    motion_at_single_rate(&sim->coupling, dt / (dt + reduced_averaging_time(&sim->coupling, dt)));
     sim->state.solid_substeps++;
     sim->substeps = 1;
 }
@@ -109,7 +109,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     const double dt = timestep_choose(sim, t_limit, &hits);
     energy_test_due(sim);
     predict_fluid(&sim->kind[KIND_FLUID], 0.5 * dt);
-    if (multirate) coupling_predict(&sim->coupling, dt, sim->state.dt);
+    if (multirate) coupling_predict(&sim->coupling, dt);
     if (single_rate) predict_at_single_rate(sim, dt);
     phase_add(sim, PHASE_update, clock);
 

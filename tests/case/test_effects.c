@@ -90,6 +90,8 @@ static const struct {
      EFFECT_COUPLING, "line 6: [solid s]"},
     {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_IMPEDANCE,
      EFFECT_IMPEDANCE, "default: [numerics] multirate"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_IMPEDANCE,
+     EFFECT_FORCE_EXTRAPOLATION, "line 6: [solid s]"},
     {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_CONTACT | FX_KELVIN_VOIGT,
      EFFECT_KELVIN_VOIGT, "line 10: [solid s] damping_time"},
     {TOP PLAIN_SOLID "mass_damping = 10\n", FX_SOLID | FX_CONTACT | FX_MASS_DAMPING,
@@ -120,8 +122,8 @@ static const struct {
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
     {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\n",
      FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_FORCE_EXTRAPOLATION |
-         FX_IMPEDANCE,
-     EFFECT_FORCE_EXTRAPOLATION, "line 3: integrator"},
+         FX_IMPEDANCE | FX_SPLIT_IMPULSE,
+     EFFECT_SPLIT_IMPULSE, "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
     {TOP PLAIN_SOLID "[numerics]\nsolid_steps = implicit\n", FX_SOLID | FX_CONTACT | FX_IMPLICIT,
      EFFECT_IMPLICIT, "line 11: [numerics] solid_steps"},
@@ -139,9 +141,11 @@ static void test_the_set_follows_from_the_case(void)
     effect_set tested = EFFECT_BIT(EFFECT_MULTIRATE); /* follows from the bounds: test_timestep.c */
     for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         rig_open(&rig, scenes[k].text, NULL);
-        /* The default integrator is an effect of the fluid, and the energy account is on. */
+        /* The default integrator is an effect of the fluid and extrapolates the force on
+         * structures, and the energy account is on. */
         const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
-        const effect_set always = (by_default ? FX_LEAPFROG : 0) | FX_ENERGY_ACCOUNT;
+        const effect_set always = (by_default ? FX_LEAPFROG : 0) | FX_ENERGY_ACCOUNT |
+                                  (scenes[k].effects & FX_COUPLING ? FX_FORCE_EXTRAPOLATION : 0);
         tested |= EFFECT_BIT(scenes[k].effect);
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(scenes[k].effects | always,
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,

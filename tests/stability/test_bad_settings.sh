@@ -48,9 +48,9 @@ says 0 'shifting_speed = largest with gravity raises a free surface' column.cfg 
 says 0 'is above 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6
 says 0 \
-    '.solid plate., 0.3 times as dense .* numerics.fixed_step = 0.0001 s; use at most 8.27e-05 s' \
-    thin.cfg integrator=leapfrog plate.density=300 numerics.fixed_step=1e-4
-says 0 'added_mass *8.265e-05 s .* <- limits the step' thin.cfg integrator=leapfrog \
+    '.solid plate., 0.3 times as dense .* numerics.fixed_step = 0.00012 s; use at most 0.000101 s' \
+    thin.cfg integrator=leapfrog plate.density=300 numerics.fixed_step=1.2e-4
+says 0 'added_mass *0.0001013 s .* <- limits the step' thin.cfg integrator=leapfrog \
     plate.density=300
 says 1 'particles start in one cell of .* limit of 320' gate.cfg numerics.h_over_dp=2 \
     'thickness=100 mm' gate.dp=dp/3

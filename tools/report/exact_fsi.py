@@ -16,7 +16,7 @@ import sphfsi
 
 REPORT = OUT / "exact_fsi.md"
 CASE = ROOT / "cases" / "verify" / "fsi_bar.cfg"
-DENSITIES = (0.1, 1, 100) if QUICK else (0.1, 1, 10, 100)
+DENSITIES = (0.1, 1, 100) if QUICK else (0.01, 0.1, 1, 10, 100)
 RATIOS = (25, 50) if QUICK else (50, 100, 200)
 STEPS = ("explicit", "implicit")
 # Time: particles over L, steps of the fluid over the least number, of the run to compare with, too.
