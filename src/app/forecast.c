@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
 
+#include "implicit/implicit.h"
 #include "output/probes.h"
 #include "output/series.h"
 #include "time/timestep.h"
@@ -10,15 +11,16 @@
 #include <string.h>
 
 enum { FIRST_STEPS = 20, ROWS_MEASURED = 5 };
-/* Wall time, s: of the first steps, which are not measured, at most; of all measured steps; of one
- * repeat. Repeats are short, so that other work on the machine does not disturb all of them. */
+/* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured
+ * steps; of one repeat. Repeats are short, so that other work on the machine does not disturb all
+ * of them. */
 static const double first_seconds = 0.1, measured_seconds = 0.2, repeat_seconds = 0.005;
 
 /* --- measurement --- */
 
-/* Trial steps: the least wall time per step and per phase of all repeats, since other work on the
- * machine can only add to it. Not every repeat sorts, so sorting counts with its mean, limited to
- * 5 % of a step. */
+/* Trial steps: the least time per step (of this thread on its core) and per phase (by the wall
+ * clock) of all repeats, since other work on the machine can only add to it. Not every repeat
+ * sorts, so sorting counts with its mean, limited to 5 % of a step. */
 struct trial {
     double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
@@ -34,13 +36,13 @@ static bool has_fluid_of_start(const struct simulation *sim, int64_t n_start)
 
 static enum err take_steps(struct trial *trial, struct simulation *sim, struct diag *d)
 {
-    const double end = sim->scene->top.end_time, begin = wall_clock();
+    const double end = sim->scene->top.end_time, begin = thread_clock();
     const struct state before = sim->state;
     double phase[PHASE_COUNT], now;
     memcpy(phase, sim->phase_seconds, sizeof phase);
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
-        now = wall_clock();
+        now = thread_clock();
     } while (sim->state.time < end && now - begin < repeat_seconds &&
              has_fluid_of_start(sim, trial->n_start));
     const double steps = (double)(sim->state.steps - before.steps);
@@ -84,17 +86,17 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     struct trial trial = {.n_start = sim->kind[KIND_FLUID].n};
     /* The first steps include the first touch of memory and the first sort, and find the bounds of
      * the time step. A guard that stops the run in them is reported. */
-    const double start = wall_clock();
+    const double start = thread_clock();
     int first = 0;
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
     } while (++first <= FIRST_STEPS && sim->state.time < end &&
-             has_fluid_of_start(sim, trial.n_start) && wall_clock() - start < first_seconds);
-    const double begin = wall_clock();
+             has_fluid_of_start(sim, trial.n_start) && thread_clock() - start < first_seconds);
+    const double begin = thread_clock();
     /* A guard that stops the run later is not: the run will report it. */
     struct diag ignored = {.code = ERR_OK};
     enum err e = ERR_OK;
-    while (!e && sim->state.time < end && wall_clock() - begin < measured_seconds &&
+    while (!e && sim->state.time < end && thread_clock() - begin < measured_seconds &&
            has_fluid_of_start(sim, trial.n_start))
         e = take_steps(&trial, sim, &ignored);
     if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", ignored.text);
@@ -128,12 +130,12 @@ static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struc
     for (int file = -1; file < probes.n_files; file++) {
         double least = HUGE_VAL, row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
         for (int k = 0; k < ROWS_MEASURED; k++) {
-            const double begin = wall_clock();
+            const double begin = thread_clock();
             if (file < 0)
                 simulation_ledger(sim);
             else
                 probes_sample(&probes, sim, file, false, row, rate);
-            least = min2(least, wall_clock() - begin);
+            least = min2(least, thread_clock() - begin);
         }
         const double interval =
             file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
@@ -176,9 +178,8 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     const double end = sim->scene->top.end_time;
     struct forecast f = {.dt = expected_step(sim)};
     f.steps = ceil(end / f.dt);
-    if (n_solid > 0)
-        f.substeps =
-            f.steps * (sim->effects & FX_MULTIRATE ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
+    const bool substeps = sim->effects & FX_MULTIRATE && !implicit_is_next(&sim->solid);
+    if (n_solid > 0) f.substeps = f.steps * (substeps ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
     f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows;
     f.memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);

@@ -14,12 +14,15 @@ static int omp_get_thread_num(void) { return 0; }
 static void omp_set_num_threads(int n) { (void)n; }
 #endif
 
-double wall_clock(void)
+static double seconds_of(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
+
+double wall_clock(void) { return seconds_of(CLOCK_MONOTONIC); }
+double thread_clock(void) { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 
 int thread_count(void) { return omp_get_max_threads(); }
 

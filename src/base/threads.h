@@ -46,8 +46,9 @@ int team_next(struct team *team, double seconds);
 int thread_team(void);
 int thread_index(void);
 
-/* Seconds of the monotonic clock. */
+/* Seconds of the monotonic clock; and those that this thread has had a core. */
 double wall_clock(void);
+double thread_clock(void);
 
 /* Settings of the calling thread that the library changes during a call: the locale, since numbers
  * in files have a decimal point, and the number of threads of parallel regions. */

@@ -33,6 +33,12 @@ want=$("$SPHFSI" --explain "${plate[@]}" 2>/dev/null | steps_of)
 got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/plate/summary.json")
 near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
 
+# An implicit step of a solid is one step, however many sub-steps it takes the place of.
+stiff=(cases/hydrostatic_plate.cfg --set "dp=25 mm" --until 0.01 --explain)
+"$SPHFSI" "${stiff[@]}" 2>/dev/null >"$work/stiff"
+grep -q 'with sub-steps alone' "$work/stiff" || fail "the plate takes no implicit steps"
+grep -q 'about .* solid sub-steps' "$work/stiff" && fail "$(grep 'solid sub-steps' "$work/stiff")"
+
 # A budget: the finest spacing within it, costs that grow as dp shrinks, and what is no time.
 budget() { "${PYTHON:-python3}" tools/budget.py "$@"; }
 "${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||

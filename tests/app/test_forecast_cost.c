@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run from given costs of a step, bytes of its files; and how costs are measured. The
  * linker puts these in between:
- * --wrap: wall_clock simulation_step */
+ * --wrap: thread_clock simulation_step */
 #include "app/forecast.h"
 
 #include "rig.h"
@@ -48,12 +48,12 @@ static void test_bytes_of_the_files(void)
 static double clock_step, now;
 static int steps;
 
-double __real_wall_clock(void);
-double __wrap_wall_clock(void);
-double __wrap_wall_clock(void)
+double __real_thread_clock(void);
+double __wrap_thread_clock(void);
+double __wrap_thread_clock(void)
 {
     now += clock_step;
-    return clock_step > 0 ? now : __real_wall_clock();
+    return clock_step > 0 ? now : __real_thread_clock();
 }
 
 enum err __real_simulation_step(struct simulation *sim, double limit, struct diag *d);
