@@ -186,6 +186,11 @@ static void warn_of_region(struct check *check, const struct region *region)
     if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
+        if (shape->thin && check->scene->n_fluid && check->scene->fluid[0].wall_repulsion == 0)
+            warn_at(check->diag, check->scene, shape->line,
+                    "single particles may pass through this line of [%s %s], which has no "
+                    "thickness; wall_repulsion above 0 in [fluid %s] prevents that",
+                    region->word, region->name, check->scene->fluid[0].common.name);
         if (shape->thin && check->scene->n_rigid)
             warn_at(check->diag, check->scene, shape->line,
                     "rigid bodies do not touch this line of [%s %s] but pass through it, because "

@@ -113,8 +113,9 @@ static int near_pieces(const struct fluid *fluid, const struct cells *cells, int
                 continue;
             for (int j = 0; j < line->n_pieces; j++) {
                 const double *const a = line->piece[j].from, *const b = line->piece[j].to;
-                if (min2(a[0], b[0]) > high[0] || max2(a[0], b[0]) < low[0] ||
-                    min2(a[1], b[1]) > high[1] || max2(a[1], b[1]) < low[1])
+                if (line->piece[j].length == 0 || min2(a[0], b[0]) > high[0] ||
+                    max2(a[0], b[0]) < low[0] || min2(a[1], b[1]) > high[1] ||
+                    max2(a[1], b[1]) < low[1])
                     continue;
                 struct near_piece *const p = &out[n++];
                 *p = (struct near_piece){.from = {(real)((a[0] + shift[0]) * inv_h),

@@ -14,7 +14,8 @@ static const char scene[] =
     "[fluid water]\nshape = box 0, 0, 0.2, 0.15\nsound_speed = 20\nsurface = 0.15\n"
     "[wall tank]\nshape = polyline thickness -0.03: 0, 0.25; 0, 0; 0.4, 0; 0.4, 0.25\n"
     "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
-    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n"
+    "[contact c]\nbetween = gate, tank\nenabled = off\n"; /* a thin line has none */
 
 #define STANDARD                                                                                  \
     "water.diffusion_form=antuono", "water.diffusion_limiter=strain", "water.wall_repulsion=0.3", \
@@ -48,6 +49,12 @@ static const struct {
      "hydrostatic",
      FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING |
          FX_MASSES},
+    {"standard_inviscid_thin",
+     "0",
+     "0.1",
+     {STANDARD, "tank.shape=polyline thickness 0: 0, 0.25; 0, 0; 0.4, 0; 0.4, 0.25"},
+     "hydrostatic",
+     FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING | FX_MASSES | FX_THIN},
     {"standard_inviscid",
      "0",
      "0.1",
