@@ -3,6 +3,7 @@
  * change of energy, solved by Newton's method. */
 #include "beam/wet.h"
 #include "base/elementary.h"
+#include "geometry/motion.h"
 
 #include <float.h>
 #include <math.h>

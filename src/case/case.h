@@ -152,14 +152,13 @@ enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 
-/* case/motion.c: opens the text table `name` given by a key of a line. Messages begin with the
+/* case/tables.c: opens the text table `name` given by a key of a line. Messages begin with the
  * place of the key, or with the table's name and line. The caller closes `csv`, also after a
  * failure. */
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d) SPHFSI_CHECKED;
-/* The tables of motions and of gravity. */
-enum err motion_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
-enum err gravity_load(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
+/* The tables of gravity and of motions. */
+enum err case_load_tables(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
 #endif

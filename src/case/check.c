@@ -296,6 +296,18 @@ static enum err check_damping(struct reader *r, const void *section)
     return ERR_OK;
 }
 
+/* Whether a body has a clamp, a hinge or a guide, or is itself a spring. */
+static bool is_held(const struct scene *scene, const char *name)
+{
+    const int solid = scene_find_solid(scene, name), beam = scene_find_beam(scene, name),
+              rigid = scene_find_wall(scene, name) - scene_rigid_wall(scene, 0);
+    if (solid >= 0) return scene->solid[solid].clamp.n + scene->solid[solid].hinge.n > 0;
+    if (beam >= 0) return scene->beam[beam].clamp.n + scene->beam[beam].hinge.n > 0;
+    if (rigid < 0) return true;
+    const struct scene_rigid *const of = &scene->rigid[rigid];
+    return of->hinge.n > 0 || of->guide[0] != 0 || of->guide[1] != 0 || !of->turns;
+}
+
 /* Each body once: a force that counts twice is a mistake. A reaction is that of clamps
  * and hinges. */
 static enum err check_body(struct reader *r, const struct scene_probe *p)
@@ -309,30 +321,13 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
         for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)
                 return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
-    const int body = scene_find_solid(r->scene, p->body),
-              rigid = scene_find_wall(r->scene, p->body) - scene_rigid_wall(r->scene, 0);
-    const int beam = scene_find_beam(r->scene, p->body);
-    const struct scene_rigid *const of = rigid >= 0 && beam < 0 ? &r->scene->rigid[rigid] : NULL;
-    if (p->quantity == PROBE_SECTION_FORCE && beam < 0)
+    if (p->quantity == PROBE_SECTION_FORCE && scene_find_beam(r->scene, p->body) < 0)
         return bad_section(r, "measures the force in a cross-section of a [beam]; %s is none",
                            p->body);
-    if (p->quantity == PROBE_REACTION && beam >= 0 &&
-        r->scene->beam[beam].clamp.n + r->scene->beam[beam].hinge.n == 0)
+    if (p->quantity == PROBE_REACTION && !is_held(r->scene, p->body))
         return bad_section(r,
-                           "measures the force of the clamps and hinges of [beam %s], which has "
-                           "none; give the beam a `clamp` or a `hinge`",
-                           p->body);
-    if (p->quantity == PROBE_REACTION && of && of->hinge.n == 0 && of->guide[0] == 0 &&
-        of->guide[1] == 0 && of->turns)
-        return bad_section(r,
-                           "measures the force of the hinge or guide of [rigid %s], which has "
-                           "none; give it a `hinge` or a `guide`, or measure a [spring]",
-                           p->body);
-    if (p->quantity == PROBE_REACTION && body >= 0 &&
-        r->scene->solid[body].clamp.n + r->scene->solid[body].hinge.n == 0)
-        return bad_section(r,
-                           "measures the force of the clamps and hinges of [solid %s], which has "
-                           "none; give the solid a `clamp` or a `hinge`",
+                           "measures the force that holds %s, but nothing does; give it a `clamp`, "
+                           "a `hinge` or a `guide`, or measure a [spring]",
                            p->body);
     return ERR_OK;
 }

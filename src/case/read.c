@@ -158,15 +158,6 @@ static enum err check_needed(struct reader *r)
     return ERR_OK;
 }
 
-/* The files that a case names; problems of both kinds are reported together. */
-static enum err load_tables(struct reader *r)
-{
-    const enum err gravity = gravity_load(r->scene, r->diag);
-    if (gravity != ERR_OK && gravity != ERR_INPUT) return gravity;
-    const enum err motion = motion_load(r->scene, r->diag);
-    return gravity ? gravity : motion;
-}
-
 /* Problems of lines and values are reported together with names that are not found; what else
  * concerns several values is looked at when all of them are valid. */
 static enum err read_all(struct reader *r, const char *text, int n_sets, const char *const *sets)
@@ -189,7 +180,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     case_apply_defaults(scene);
     TRY(case_check_names(r));
     if (valid) TRY(case_check(r));
-    return r->n_problems > 0 ? ERR_INPUT : load_tables(r);
+    return r->n_problems > 0 ? ERR_INPUT : case_load_tables(scene, r->diag);
 }
 
 /* --- from text, from a file --- */

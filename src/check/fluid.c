@@ -6,6 +6,7 @@
 #include "base/box2.h"
 #include "base/elementary.h"
 #include "case/params.h"
+#include "geometry/motion.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -77,6 +77,9 @@ struct expr_jet {
     double value, d1, d2;
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
+/* The integral of one in t by Gauss-Legendre quadrature with three points, exact for polynomials of
+ * order 5. */
+double expr_integral(const struct expr *e, double from, double to);
 
 /* Whether its value jumps by more than `size` between two times, or has no value, at time `at`. The
  * interval is halved as long as the slopes do not explain the change. So a smooth function, however

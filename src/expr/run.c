@@ -175,6 +175,15 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
     return stack[0];
 }
 
+double expr_integral(const struct expr *e, double from, double to)
+{
+    const double half = 0.5 * (to - from), middle = 0.5 * (to + from), off = half * sqrt(0.6);
+    return half *
+           (5 * expr_jet_at(e, middle - off).value + 8 * expr_jet_at(e, middle).value +
+            5 * expr_jet_at(e, middle + off).value) /
+           9;
+}
+
 /* Difference of a change from the one predicted by the slopes at both ends. */
 static double unexplained(double from, double to, double slope_from, double slope_to, double dt)
 {

@@ -2,6 +2,7 @@
 #include "fluid/lines.h"
 
 #include "base/elementary.h"
+#include "geometry/motion.h"
 
 #include <string.h>
 

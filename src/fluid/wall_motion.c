@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid/wall_motion.h"
+#include "geometry/motion.h"
 
 #include <math.h>
 #include <string.h>

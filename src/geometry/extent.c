@@ -4,6 +4,7 @@
 #include "base/elementary.h"
 
 #include "case/case.h"
+#include "geometry/motion.h"
 
 #include <math.h>
 

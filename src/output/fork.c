@@ -4,6 +4,7 @@
 #include "output/checkpoint.h"
 #include "base/elementary.h"
 #include "coupling/impulse.h"
+#include "geometry/motion.h"
 #include "time/energy.h"
 
 #include <inttypes.h>

@@ -3,6 +3,7 @@
 #include "output/probes.h"
 #include "output/fluid_sample.h"
 #include "base/elementary.h"
+#include "geometry/motion.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/elementary.h"
+#include "geometry/motion.h"
 #include "geometry/outline.h"
 
 /* The outlines of a wall or rigid body at the start, and where it is. */

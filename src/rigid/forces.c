@@ -6,6 +6,7 @@
 
 #include "base/cholesky.h"
 #include "base/elementary.h"
+#include "geometry/motion.h"
 
 /* --- hinges and guides --- */
 

@@ -3,6 +3,7 @@
 #include "solid/contact_pair.h"
 
 #include "base/box2.h"
+#include "geometry/motion.h"
 #include "particles/kernel.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cholesky.h"
+#include "geometry/motion.h"
 #include "particles/kernel.h"
 #include "solid/solid.h"
 

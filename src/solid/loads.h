@@ -3,6 +3,7 @@
 #ifndef SPHFSI_SOLID_LOADS_H
 #define SPHFSI_SOLID_LOADS_H
 
+#include "geometry/motion.h"
 #include "solid/types.h"
 
 /* One [load] section: its particles are `first` to `end` of the list. */

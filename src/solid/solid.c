@@ -9,6 +9,7 @@
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "case/params.h"
+#include "geometry/motion.h"
 #include "solid/packed.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)

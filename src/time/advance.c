@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "geometry/motion.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

@@ -6,6 +6,7 @@
 
 #include "base/box2.h"
 #include "fluid/eos.h"
+#include "geometry/motion.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
 #include "time/advance.h"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "beam/wet.h"
+#include "geometry/motion.h"
 #include "particles/kernel.h"
 
 void move_walls(struct simulation *sim, double time)

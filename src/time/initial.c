@@ -6,6 +6,7 @@
 
 #include "beam/wet.h"
 #include "fluid/eos.h"
+#include "geometry/motion.h"
 #include "particles/kernel.h"
 #include "implicit/implicit.h"
 #include "solid/hinges.h"

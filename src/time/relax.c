@@ -5,6 +5,7 @@
 #include "time/relax.h"
 #include "base/box2.h"
 #include "base/elementary.h"
+#include "geometry/motion.h"
 
 #include <math.h>
 #include <stdio.h>

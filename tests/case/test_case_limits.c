@@ -85,8 +85,7 @@ static void test_values_that_do_not_fit_together(void)
         {TOP SOLID "[probe p]\npoint = 5 mm, 5 mm\n",
          "l.cfg:8: [probe p] needs `body`, the solid that is measured"},
         {TOP SOLID "[probe p]\nquantity = reaction\nbody = a\n",
-         "l.cfg:8: [probe p] measures the force of the clamps and hinges of [solid a], which has "
-         "none"},
+         "l.cfg:8: [probe p] measures the force that holds a, but nothing does"},
         {TOP SOLID "[probe p]\nquantity = pressure\npoint = 0, 0\n",
          "l.cfg:8: [probe p] measures pressure, but there is no fluid"},
         {TOP WATER "[probe p]\nquantity = flux\npoint = 0, 0\nto = 0, 0\n",

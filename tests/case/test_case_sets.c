@@ -2,6 +2,7 @@
  * Settings of the command line that name what is not there, and numbers, units and sections that
  * only just are none: each is refused with what would be right. */
 #include "geometry/load.h"
+#include "geometry/motion.h"
 #include "unity.h"
 
 #include <string.h>

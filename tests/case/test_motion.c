@@ -4,6 +4,7 @@
 #include "case/scene.h"
 #include "check/check.h"
 #include "geometry/load.h"
+#include "geometry/motion.h"
 #include "unity.h"
 
 #include <math.h>

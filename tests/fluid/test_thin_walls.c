@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Thin lines (T-110, T-111): walls of no thickness with fluid on both sides. */
 #include "rig.h"
+#include "geometry/motion.h"
 #include "unity.h"
 
 #include "fluid/lines.h"

@@ -8,6 +8,7 @@
 #include "expr/expr.h"
 #include "case/scene.h"
 #include "geometry/load.h"
+#include "geometry/motion.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
  * that it gives is booked, and one that is written as an expression but does not vary keeps
  * the bits of a number. */
 #include "rig.h"
+#include "geometry/motion.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -1,89 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * What a case prescribes as a function of time: gravity (T-70), motions, and the tables that both
- * may use. */
-#include "case/case.h"
-#include "base/csv.h"
+ * What a case prescribes, at a time: gravity (T-70), motions, and the tables of both. */
+#include "geometry/motion.h"
 #include "base/elementary.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-/* --- tables --- */
-
-enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
-                    const char *key, struct diag *d)
-{
-    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
-    struct diag why = {.code = ERR_OK};
-    scene_location(scene, line, place);
-    if (!scene_file(scene, name, path, sizeof path))
-        return diag_add(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
-    csv->path = name;
-    csv->diag = &why;
-    const enum err e = csv_open(csv, path);
-    csv->diag = d;
-    if (e && csv->text) return diag_add(d, e, "%s", why.text);
-    if (e)
-        return diag_add(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: %s: %.400s", place, key, why.text);
-    return ERR_OK;
-}
-
-/* Columns for a number of rows. */
-static enum err table_allocate(struct scene *scene, struct scene_table *table, int rows,
-                               struct diag *d)
-{
-    double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
-    for (size_t k = 0; k < COUNT_OF(columns); k++) {
-        *columns[k] = arena_alloc(&scene->arena, (size_t)rows, sizeof(double), "table", d);
-        if (!*columns[k]) return ERR_MEMORY;
-    }
-    return ERR_OK;
-}
-
-/* `what` it is of, with its columns; of a motion: its first row is zero. */
-struct table_kind {
-    const char *what, *columns;
-    bool from_rest;
-};
-
-static enum err read_table(struct scene *scene, struct scene_table *table,
-                           const struct table_kind *kind, struct csv *csv)
-{
-    double row[3];
-    int more;
-    TRY(table_allocate(scene, table, csv->lines, csv->diag));
-    for (; (more = csv_row(csv, row)) > 0; table->n++) {
-        const int k = table->n;
-        if (k > 0 && row[0] <= table->t[k - 1])
-            return diag_add(csv->diag, ERR_INPUT,
-                            "%s:%d: times must increase, but %g s follows %g s", csv->path,
-                            csv->line, row[0], table->t[k - 1]);
-        if (k == 0 && kind->from_rest && (row[0] < 0 || row[1] != 0 || row[2] != 0))
-            return diag_add(csv->diag, ERR_INPUT,
-                            "%s:%d: the first row must have a time of 0 or later and no "
-                            "displacement, usually `0, 0, 0`",
-                            csv->path, csv->line);
-        table->t[k] = row[0];
-        table->x[k] = row[1];
-        table->y[k] = row[2];
-    }
-    if (more == 0 && table->n < 2)
-        return diag_add(csv->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d",
-                        csv->path, kind->what, table->n == 1 ? "is" : "are", table->n);
-    return more < 0 ? ERR_INPUT : ERR_OK;
-}
-
-static enum err table_load(struct scene *scene, struct scene_table *table,
-                           const struct table_kind *kind, const char *name, int line,
-                           const char *key, struct diag *d)
-{
-    struct csv csv = {.columns = kind->columns, .n = 3, .limit = 1e9};
-    enum err e = table_open(scene, &csv, name, line, key, d);
-    if (!e) e = read_table(scene, table, kind, &csv);
-    csv_close(&csv);
-    return e;
-}
 
 /* The row at or before a time, but not before the first nor the last one. */
 static int table_row(const struct scene_table *table, double t)
@@ -124,63 +45,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
     g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
 }
 
-enum err gravity_load(struct scene *scene, struct diag *d)
-{
-    static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
-                                           false};
-    if (!*scene->top.gravity_file) return ERR_OK;
-    const int line = scene_line(scene, SECTION_top, 0, "gravity_file");
-    return table_load(scene, &scene->gravity_data, &kind, scene->top.gravity_file, line,
-                      "gravity_file", d);
-}
-
-/* --- tables of motions --- */
-
-/* Slopes of the monotone cubic (Fritsch and Carlson 1980, with the harmonic mean of Brodlie): no
- * overshoot between rows. Zero at both ends, where the motion starts and ends at rest. */
-static void set_slopes(int n, const double *t, const double *d, double *v)
-{
-    for (int k = 1; k + 1 < n; k++) {
-        const double h0 = t[k] - t[k - 1], h1 = t[k + 1] - t[k];
-        const double s0 = (d[k] - d[k - 1]) / h0, s1 = (d[k + 1] - d[k]) / h1;
-        const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-        v[k] = s0 * s1 > 0 ? (w0 + w1) / (w0 / s0 + w1 / s1) : 0;
-    }
-}
-
-/* --- the path of a velocity that depends on time --- */
-
-enum { PATH_PIECES = 4096 };
-
-/* Gauss-Legendre quadrature with three points, exact for polynomials of order 5. */
-static double integral(const struct expr *e, double from, double to)
-{
-    const double half = 0.5 * (to - from), middle = 0.5 * (to + from), off = half * sqrt(0.6);
-    return half *
-           (5 * expr_jet_at(e, middle - off).value + 8 * expr_jet_at(e, middle).value +
-            5 * expr_jet_at(e, middle + off).value) /
-           9;
-}
-
-/* Rows of the path at equal times until the end of the case, so that it is a function of time
- * alone. */
-static enum err load_path(struct scene *scene, const struct scene_motion *m,
-                          struct scene_table *table, struct diag *d)
-{
-    const double until_end = min2(scene->top.end_time, m->stop) - m->start;
-    const double length = until_end > 0 ? until_end : scene->top.end_time;
-    TRY(table_allocate(scene, table, PATH_PIECES + 1, d));
-    table->n = PATH_PIECES + 1;
-    for (int k = 1; k < table->n; k++) {
-        table->t[k] = length * k / PATH_PIECES;
-        for (int c = 0; c < 2; c++) {
-            const struct expr *const e = m->velocity_in_time.e[c];
-            double *const path = c ? table->y : table->x;
-            if (e) path[k] = path[k - 1] + integral(e, table->t[k - 1], table->t[k]);
-        }
-    }
-    return ERR_OK;
-}
+/* --- motions: displacements or angles with their first two derivatives --- */
 
 static struct expr_jet velocity_at(const struct scene_motion *motion,
                                    const struct scene_table *table, int c, double t)
@@ -191,36 +56,9 @@ static struct expr_jet velocity_at(const struct scene_motion *motion,
     const int last = table->n - 1, row = (int)min2(last, floor(t / table->t[last] * last));
     double from = table->t[row], d = (c ? table->y : table->x)[row];
     for (; t - from > table->t[1]; from += table->t[1]) /* a run that goes on after the end */
-        d += integral(e, from, from + table->t[1]);
-    return (struct expr_jet){d + integral(e, from, t), now.value, now.d1};
+        d += expr_integral(e, from, from + table->t[1]);
+    return (struct expr_jet){d + expr_integral(e, from, t), now.value, now.d1};
 }
-
-enum err motion_load(struct scene *scene, struct diag *d)
-{
-    static const struct table_kind kind = {"a motion", "time (s), dx (m), dy (m)", true};
-    scene->motion_data = arena_alloc(&scene->arena, (size_t)scene->n_motion,
-                                     sizeof *scene->motion_data, "motions", d);
-    if (!scene->motion_data) return ERR_MEMORY;
-    enum err bad = ERR_OK;
-    for (int k = 0; k < scene->n_motion; k++) {
-        const struct scene_motion *const m = &scene->motion[k];
-        struct scene_table *const table = &scene->motion_data[k];
-        const struct scene_expr *const v = &m->velocity_in_time;
-        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_path(scene, m, table, d));
-        if (!*m->file) continue; /* of a table or a rotation */
-        char name[2 * SCENE_NAME];
-        snprintf(name, sizeof name, "[motion %s] file", m->common.name);
-        const enum err e = table_load(scene, table, &kind, m->file, m->common.line, name, d);
-        if (e != ERR_OK && e != ERR_INPUT) return e;
-        if (e) bad = e;
-        if (e) continue;
-        set_slopes(table->n, table->t, table->x, table->vx);
-        set_slopes(table->n, table->t, table->y, table->vy);
-    }
-    return bad;
-}
-
-/* --- evaluation: displacements or angles with their first two derivatives --- */
 
 /* c1 t + c2 t^2 + ... by Horner's rule. */
 static struct expr_jet polynomial_at(const struct number_list *c, double t)

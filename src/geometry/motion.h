@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ * Gravity and motions of a scene at a time. */
+#ifndef SPHFSI_GEOMETRY_MOTION_H
+#define SPHFSI_GEOMETRY_MOTION_H
+
+#include "case/scene.h"
+
+/* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given, plus the table of
+ * top.gravity_file. top.gravity itself is the value at t = 0 without the table. */
+void scene_gravity_at(const struct scene *scene, double t, double g[2]);
+bool scene_gravity_varies(const struct scene *scene);
+
+struct motion_state motion_at(const struct scene *scene, int motion_index, double time);
+
+/* Position, velocity and acceleration (x, v and a) of a point with a motion, initially at (X, Y).
+ * Used for all prescribed motion: walls for the fluid and for contact, and clamps. */
+struct motion_point {
+    double x[2], v[2], a[2];
+};
+struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
+
+#endif
