@@ -141,10 +141,10 @@ static enum err check_solid(struct reader *r, const void *section)
         return bad_section(r, "has a `clamp_motion` but no `clamp`");
     /* A cell holds a limited number of particles. */
     const double ratio = a->dp > 0 ? scene->top.dp / a->dp : 1;
-    if (ratio < 1 - 1e-9 || (ratio > 3 + 1e-9 && scene->n_fluid > 0))
+    if (ratio < 1 - 1e-9 || (ratio > 4 + 1e-9 && scene->n_fluid > 0))
         return bad_section(
-            r, "dp = %g m must be between a third of the dp at the top, %g m, and that dp%s", a->dp,
-            scene->top.dp, scene->n_fluid ? "" : "; without fluid it may be finer");
+            r, "dp = %g m must be between a quarter of the dp at the top, %g m, and that dp%s",
+            a->dp, scene->top.dp, scene->n_fluid ? "" : "; without fluid it may be finer");
     for (int k = 0; k < a->hinge.n; k++) {
         const char *const to = a->hinge.item[k].other;
         if (strcmp(to, a->common.name) == 0)

@@ -26,9 +26,10 @@ SPHFSI_INLINE uint32_t morton_key(uint32_t cx, uint32_t cy)
 
 /* --- cells --- */
 
-/* Most particles of one kind in a cell; some twenty are normal. If there are more, particles
- * have collapsed onto each other, and a guard stops the run. */
-enum { CELL_CAPACITY = 320 };
+/* Most particles of one kind in a cell. Some twenty are normal, some 370 of a solid at a quarter of
+ * the fluid's spacing. If there are more, particles have collapsed onto each other, and a guard
+ * stops the run. */
+enum { CELL_CAPACITY = 480 };
 
 /* Particles that sweeps process together. */
 enum { CLUSTER = 4 };

@@ -14,7 +14,8 @@ static struct particles *p;
 void setUp(void) { rig_one_thread(); }
 void tearDown(void) { rig_close(&rig); }
 
-static const char *const spacings[] = {"floor.dp=10 mm", "floor.dp=5 mm", "floor.dp=10 mm/3"};
+static const char *const spacings[] = {"floor.dp=10 mm", "floor.dp=5 mm", "floor.dp=10 mm/3",
+                                       "floor.dp=2.5 mm"};
 
 /* Water 0.2 m deep over a floor of 0.4 m that is a solid. */
 static const char tank[] =
@@ -120,12 +121,13 @@ static void test_momentum(void)
 
 static void test_bad_input(void)
 {
-    static const char *const wrong[] = {"floor.dp=11 mm", "floor.dp=3 mm"};
+    static const char *const wrong[] = {"floor.dp=11 mm", "floor.dp=2.4 mm"};
     for (int k = 0; k < 2; k++) {
         struct scene scene;
         struct diag d = {0};
         TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, tank, "t.cfg", 1, &wrong[k], &d));
-        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, "must be between a third of the dp at the top"),
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text,
+                                            "must be between a quarter of the dp at the top"),
                                      d.text);
     }
 }
