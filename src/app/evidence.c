@@ -5,6 +5,7 @@
 #include "app/embedded.h"
 #include "base/csv.h"
 #include "case/params.h"
+#include "geometry/sampling.h"
 
 #include <math.h>
 #include <stdio.h>

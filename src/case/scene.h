@@ -168,20 +168,6 @@ struct scene_lattice {
     bool area_free;    /* clamps hold a part */
 };
 
-/* A position in the axes of a lattice; and the inverse. */
-SPHFSI_INLINE void lattice_place(const struct scene_lattice *l, double x, double y, double at[2])
-{
-    const bool turned = l->angle != 0;
-    at[0] = turned ? x * l->turn[0] + y * l->turn[1] : x;
-    at[1] = turned ? y * l->turn[0] - x * l->turn[1] : y;
-}
-SPHFSI_INLINE void place_of_lattice(const struct scene_lattice *l, double x, double y, double at[2])
-{
-    const bool turned = l->angle != 0;
-    at[0] = turned ? x * l->turn[0] - y * l->turn[1] : x;
-    at[1] = turned ? x * l->turn[1] + y * l->turn[0] : y;
-}
-
 /* A dummy of a thin line: beside its part of that number, at a fraction `along` of it, `off` to the
  * left of the line and `beyond` the place in its direction, m. */
 struct line_dummy {

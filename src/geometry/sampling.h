@@ -48,6 +48,20 @@ struct sampler {
     int problems;           /* found so far */
 };
 
+/* A position in the axes of a lattice; and the inverse. */
+SPHFSI_INLINE void lattice_place(const struct scene_lattice *l, double x, double y, double at[2])
+{
+    const bool turned = l->angle != 0;
+    at[0] = turned ? x * l->turn[0] + y * l->turn[1] : x;
+    at[1] = turned ? y * l->turn[0] - x * l->turn[1] : y;
+}
+SPHFSI_INLINE void place_of_lattice(const struct scene_lattice *l, double x, double y, double at[2])
+{
+    const bool turned = l->angle != 0;
+    at[0] = turned ? x * l->turn[0] - y * l->turn[1] : x;
+    at[1] = turned ? x * l->turn[1] + y * l->turn[0] : y;
+}
+
 /* A place in the axes of a region's lattice, with the rounding of centres. */
 SPHFSI_INLINE void geometry_place(const struct region *region, double x, double y, double at[2])
 {

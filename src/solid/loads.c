@@ -3,6 +3,7 @@
 
 #include "expr/expr.h"
 #include "geometry/outline.h"
+#include "geometry/sampling.h"
 
 #include <math.h>
 
