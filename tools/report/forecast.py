@@ -31,8 +31,6 @@ def arguments():
     parser.add_argument("--seconds", type=float, default=1 if QUICK else 6,
                         help="aimed at for a run, as foreseen")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
-    parser.add_argument("--data", type=Path, default=OUT / "forecast.json")
-    parser.add_argument("--no-report", action="store_true", help="only the data")
     return parser.parse_args()
 
 
@@ -92,11 +90,10 @@ def main():
         for threads in all_threads:
             rows.append(compare(case, threads, args.seconds))
             print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
-    store_rows(args.data, {"machine": machine(), "seconds": args.seconds}, "rows", rows)
-    print(f"written {args.data}")
-    results = args.data.with_name("accuracy.json")
-    return 0 if args.no_report or not results.exists() else study_report.write(results,
-                                                                               OUT)
+    store_rows(OUT / "forecast.json", {"machine": machine(), "seconds": args.seconds}, "rows", rows)
+    print(f"written {OUT / 'forecast.json'}")
+    results = OUT / "accuracy.json"
+    return study_report.write(results, OUT) if results.exists() else 0
 
 
 if __name__ == "__main__":

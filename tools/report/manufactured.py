@@ -3,10 +3,7 @@
 """Orders of convergence against manufactured solutions: in the fluid, at no-slip walls and in the
 solid.
 
-  tools/report/manufactured.py                      writes docs/results/manufactured.md (some
-                                                    minutes on one
-  core)
-  tools/report/manufactured.py wall --ratios 25 50  one scene at some resolutions, to the screen
+  tools/report/manufactured.py    writes docs/results/manufactured.md (some minutes on one core)
 
 A field is chosen, and the acceleration that makes it a solution is added to that of the program.
 The scenes are cases/verify/manufactured_*.cfg; the method is that of Roache (2002) and, for
@@ -149,15 +146,12 @@ def run_solid(ratio):
             "stress": math.sqrt(np.mean(off[inside]) / np.mean((P**2).sum((0, 1))[inside]))}
 
 
-def run(scene, scheme, ratio):
-    return run_solid(ratio) if scene == "solid" else run_flow(scene, scheme, ratio)
-
-
-def study(scene, ratios):
+def study(scene):
     """[scheme, quantity, errors by ratio] of a scene."""
     out = []
     for scheme in SCHEMES if scene != "solid" else ("-",):
-        runs = [run(scene, scheme, ratio) for ratio in ratios]
+        runs = [run_solid(ratio) if scene == "solid" else run_flow(scene, scheme, ratio)
+                for ratio in RATIOS[scene]]
         out += [[scheme, quantity, [r[quantity] for r in runs]] for quantity in runs[0]]
     return out
 
@@ -179,15 +173,8 @@ def report(studies):
 
 
 def main():
-    parser = options(__doc__)
-    parser.add_argument("scene", nargs="?", choices=RATIOS)
-    parser.add_argument("--ratios", nargs="+", type=int, help="particles over the length L")
-    args = parser.parse_args()
-    if args.scene:
-        for scheme, quantity, errors in study(args.scene, args.ratios or RATIOS[args.scene]):
-            print(scheme, quantity, " ".join(f"{e:.4g}" for e in errors))
-        return
-    write(REPORT, REPORT.name, **report({scene: study(scene, RATIOS[scene]) for scene in RATIOS}))
+    options(__doc__).parse_args()
+    write(REPORT, REPORT.name, **report({scene: study(scene) for scene in RATIOS}))
 
 
 if __name__ == "__main__":

@@ -34,11 +34,8 @@ REPORT = OUT / "stability.md"
 # Steps of the comparison of the integrators, over the limit; the first run finds the limit.
 FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
 FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` runs the long form)",
-        "long": "long",
-        "kept": "as each row says; `make test` runs the quick form, which is coarse and short; "
-                "`make stability` runs the long form of all"}
-COMMAND = {"quick": "tools/report/stability.py --quick --report", "long": "make stability",
-           "kept": "tools/report/stability.py --kept --report"}
+        "long": "long"}
+COMMAND = {"quick": "tools/report/stability.py --quick --report", "long": "make stability"}
 
 
 def measure(folder, log):
@@ -109,18 +106,15 @@ def words(found):
 
 def run_suite(scenes, form, top, minutes):
     """Rows of (scene, whether the criterion holds, whether that is as expected, measures, seconds,
-    form). `kept`: the long form where there is a run of it, or else the quick one."""
+    form)."""
     rows = []
     for scene in scenes:
-        this = form
-        if form == "kept":
-            this = "long" if job_of(scene, "long", top).record() else "quick"
-        if scene.get("only", this) != this:
+        if scene.get("only", form) != form:
             continue
-        found, seconds = measured(job_of(scene, this, top), minutes)
+        found, seconds = measured(job_of(scene, form, top), minutes)
         good = holds(scene["criterion"], found)
-        as_said = good != (scene.get("fails", False) in (True, this))
-        rows.append((scene, good, as_said, found, seconds, this))
+        as_said = good != (scene.get("fails", False) in (True, form))
+        rows.append((scene, good, as_said, found, seconds, form))
         print(f"{'ok  ' if as_said else 'NOT '} {seconds:6.1f} s  {scene['name']}: "
               f"{'passes' if good else 'fails'} ({words(found)})", flush=True)
     return rows
@@ -217,17 +211,15 @@ def main():
     parser.add_argument("--report", action="store_true", help="write docs/results/stability.md")
     parser.add_argument("--keep", action="store_true", help="keep the runs in build/stability and "
                         "do not repeat those that are there")
-    parser.add_argument("--kept", action="store_true", help="the long form of scenes whose long "
-                        "run is kept, the quick form of others")
     parser.add_argument("--minutes", type=float, default=60,
                         help="stop a run that takes more processor time (%(default)g)")
     parser.add_argument("--only", default="", help="only scenes whose name contains this")
     args = parser.parse_args()
     scenes = tomllib.loads((SUITE / "suite.toml").read_text(encoding="utf-8"))["scene"]
     scenes = [scene for scene in scenes if args.only in scene["name"]]
-    form = "quick" if args.quick else "kept" if args.kept else "long"
+    form = "quick" if args.quick else "long"
     with tempfile.TemporaryDirectory() as scratch:
-        top = ROOT / "build" / "stability" if args.keep or args.kept else Path(scratch)
+        top = ROOT / "build" / "stability" if args.keep else Path(scratch)
         rows = run_suite(scenes, form, top, args.minutes)
         bad = [row[0]["name"] for row in rows if not row[2]]
         if bad:

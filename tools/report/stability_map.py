@@ -3,13 +3,11 @@
 """The stability map: runs a plate between waters (tests/stability/thin.cfg) over density,
 thickness, stiffness, one wet side or two, integrator and scheme. Keeps the results in
 docs/results/stability_map.json and draws docs/img/stability_map.png.
-tools/report/stability_report.py puts both into docs/results/stability.md.
+tools/report/stability.py puts both into docs/results/stability.md.
 
-Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), then the
-picture
+Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), the picture
          tools/report/stability_map.py --most 100     at most 100 of those that no result is kept of
          tools/report/stability_map.py --draw         the picture from the results that are kept"""
-import argparse
 import functools
 import itertools
 import math
@@ -18,8 +16,8 @@ import random
 from concurrent.futures import ThreadPoolExecutor
 
 import common
-from common import (IMAGES, OUT, QUICK, ROOT, fill, plt, program_version, store_rows, summary_of,
-                    table)
+from common import (IMAGES, OUT, QUICK, ROOT, fill, options, plt, program_version, store_rows,
+                    summary_of, table)
 
 CASE = ROOT / "tests/stability/thin.cfg"
 RESULTS = OUT / "stability_map.json"
@@ -224,8 +222,7 @@ def draw(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options(__doc__)
     parser.add_argument("--draw", action="store_true", help="only draw the results that are kept")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
     parser.add_argument("--most", type=int, default=10 if QUICK else None,

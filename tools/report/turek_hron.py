@@ -8,8 +8,7 @@ examples:
   tools/report/turek_hron.py run fsi2 --across 10        runs the case into runs/turek_hron/fsi2-10
   tools/report/turek_hron.py read runs/turek_hron/*      prints what the runs show
   tools/report/turek_hron.py keep runs/turek_hron/*      adds it to docs/results/turek_hron.json
-  tools/report/turek_hron.py report                      writes docs/results/turek_hron.md from
-                                                         there
+  tools/report/turek_hron.py report                      writes docs/results/turek_hron.md from it
   tools/report/turek_hron.py pictures runs/turek_hron/fsi2-10   draws docs/img/turek_hron_*.png
 """
 import json

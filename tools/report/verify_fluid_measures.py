@@ -313,6 +313,10 @@ def measure_opening(runs):
 
 
 BAFFLE_TIP = 18.3  # mm, converged
+# column, words, unit
+BAFFLE_LOADS = [("load_fy_N_per_m", "vertical load", "N/m"),
+                ("load_fx_N_per_m", "horizontal load", "N/m"),
+                ("load_mz_Nm_per_m", "moment of the load", "N")]
 
 
 def more(values):
@@ -325,44 +329,35 @@ def measure_baffle(runs):
     """Half of the runs have dp, half dp/2. In each half only the skin of the search differs, which
     does not matter. Of each load the largest row, its largest mean over 20 rows (20 ms), and the
     impulse to 0.4 s; of the foot the largest row."""
-    top = {"tip": [], "vertical": [], "horizontal": [], "moment": [], "foot": []}
-    means, impulses = {}, {}
-    for run in runs:
-        p = run.table("probes.csv")
-        top["foot"].append(float(abs(p["foot_mz_Nm_per_m"]).max()))
-        for name, column in (("vertical", "load_fy_N_per_m"), ("horizontal", "load_fx_N_per_m"),
-                             ("moment", "load_mz_Nm_per_m")):
-            row, early = p[column], p["time_s"] <= 0.4
-            means.setdefault(name, []).append(float(abs(np.convolve(row, np.ones(20) / 20,
-                                                                    "valid")).max()))
-            impulses.setdefault(name,
-                                []).append(float(np.trapezoid(row[early], p["time_s"][early])))
-        for name, column, unit in (("tip", "tip_dx_m", 1e3), ("vertical", "load_fy_N_per_m", 1),
-                                   ("horizontal", "load_fx_N_per_m", 1),
-                                   ("moment", "load_mz_Nm_per_m", 1)):
-            top[name].append(unit * float(abs(p[column]).max()))
-    half, rows = len(runs) // 2, []
+    tables = [run.table("probes.csv") for run in runs]
+
+    def largest(column, rows=1):
+        """Of the means over so many rows."""
+        return [float(abs(metrics.running_mean(p[column], rows)).max()) for p in tables]
+
+    half, rows, tips, foot = len(runs) // 2, [], largest("tip_dx_m"), largest("foot_mz_Nm_per_m")
     for words, part, limit in (("4 across", slice(0, half), 3),
                                ("8 across", slice(half, None), 1.5)):
-        tip = np.array(top["tip"][part])
+        tip = np.array([1e3 * each for each in tips[part]])
         rows += [(f"{words}: largest tip displacement, mean of {half}, mm", float(tip.mean()),
                   None),
                  (f"{words}: the same, % more than converged ({BAFFLE_TIP} mm)",
                   float(100 * (tip.mean() / BAFFLE_TIP - 1)), limit),
                  (f"{words}: its standard deviation, %", float(100 * tip.std(ddof=1) / tip.mean()),
                   None)]
-    for name, words, unit in (("vertical", "vertical load", "N/m"),
-                              ("horizontal", "horizontal load", "N/m"),
-                              ("moment", "moment of the load", "N")):
-        one, two = np.mean(top[name][:half]), np.mean(top[name][half:])
-        spread = 100 * np.std(top[name][half:], ddof=1) / two
+    for column, words, unit in BAFFLE_LOADS:
+        top, early = largest(column), [p["time_s"] <= 0.4 for p in tables]
+        impulses = [float(np.trapezoid(p[column][k], p["time_s"][k]))
+                    for p, k in zip(tables, early)]
+        two = np.mean(top[half:])
         rows += [(f"8 across: largest {words}, {unit}", float(two), None),
-                 (f"8 across: {words}, standard deviation, %", float(spread), None),
-                 (f"{words}, 4 across against 8, % more", float(100 * (one / two - 1)), 5),
-                 (f"{words}, means over 20 ms: the same", more(means[name]), None),
-                 (f"{words}, impulse to 0.4 s: the same", more(impulses[name]), None)]
-    rows += [("8 across: largest moment in the clamp, N", float(np.mean(top["foot"][half:])), None),
-             ("moment in the clamp, 4 across against 8, % more", more(top["foot"]), None)]
+                 (f"8 across: {words}, standard deviation, %",
+                  float(100 * np.std(top[half:], ddof=1) / two), None),
+                 (f"{words}, 4 across against 8, % more", more(top), 5),
+                 (f"{words}, means over 20 ms: the same", more(largest(column, 20)), None),
+                 (f"{words}, impulse to 0.4 s: the same", more(impulses), None)]
+    rows += [("8 across: largest moment in the clamp, N", float(np.mean(foot[half:])), None),
+             ("moment in the clamp, 4 across against 8, % more", more(foot), None)]
     for words, run in (("4 across", runs[0]), ("8 across", runs[half])):
         rows += [(f"{words}: {what}", value, limit) for what, value, limit in penetration(run)]
         rows.append((f"{words}: widest cavity upstream, dp", cavity(run, 0.5, -1), 1))
