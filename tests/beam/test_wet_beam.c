@@ -59,9 +59,10 @@ static void test_momentum_is_exchanged(void)
         const struct ledger row = simulation_ledger(&rig.sim);
         const double all = 2000 * 5e-3 * 0.7;
         assert_at_most(0.7, state(12)->v[0], "velocity after the impact");
-        /* Verlet's two solutions have the momentum in their mean. */
-        assert_near(k == 1 ? 0.03 * all : 1e-4 * all, all, row.momentum_x, "momentum, x");
-        assert_near(k == 1 ? 0.03 * all : 1e-4 * all, 0, row.momentum_y, "momentum, y");
+        /* The pressure that returns the impulse acts on a wetted surface that changes meanwhile.
+         * Verlet's two solutions have the momentum in their mean. */
+        assert_near(k == 1 ? 0.03 * all : 3e-4 * all, all, row.momentum_x, "momentum, x");
+        assert_near(k == 1 ? 0.03 * all : 3e-4 * all, 0, row.momentum_y, "momentum, y");
     }
 }
 
