@@ -120,11 +120,11 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
 
 SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *particles,
                                  enum kind kind, const struct cells *cells, int32_t cell, bool all,
-                                 const struct vector_constants *k, effect_set fx)
+                                 const struct vector_constants *k, effect_set fx, bool thin)
 {
     const struct cell_list *const list = &cells->kind[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
     bool gathered = false;
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m,
@@ -156,5 +156,10 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
-        force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx);
+        if (fx & FX_THIN)
+            force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx,
+                          true);
+        else
+            force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx,
+                          false);
 }

@@ -50,8 +50,8 @@ SPHFSI_INLINE four_double extrapolated_pressure(const struct fluid_constants *k,
 /* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less
  * the mean velocity of the fluid around them. Halfway between dummies and fluid the velocity is
  * that of the surface. */
-static void mirrored_velocity(const struct neighbours *neighbours, const struct receiver *s,
-                              double *u, double *v)
+SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const struct receiver *s,
+                                     double *u, double *v)
 {
     vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
     for (int k = 0; k < neighbours->n; k++)
@@ -152,9 +152,9 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
  * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
-static void no_slip(const struct fluid *fluid, const struct particles *particles,
-                    const struct dummies *d, const struct neighbours *neighbours,
-                    const struct cell_sides *sides)
+SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *particles,
+                           const struct dummies *d, const struct neighbours *neighbours,
+                           const struct cell_sides *sides)
 {
     const bool own_image = fluid->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
@@ -246,10 +246,11 @@ _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole bloc
 /* Pressures and state of the dummies of a cell. No fluid reads a cluster that none is near to; at
  * rest none of it changes anyway. */
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *particles,
-                                   enum kind kind, const struct cells *cells, int32_t cell)
+                                   enum kind kind, const struct cells *cells, int32_t cell,
+                                   bool thin)
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
     const int32_t clusters = clusters_in(&cells->kind[kind], cell);
     static const double none[CLUSTER] = {0};
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY]; /* of the clusters near fluid */
@@ -289,5 +290,8 @@ static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIN
     struct particles *const particles = &kinds[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++)
-        dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k]);
+        if (fluid->effects & FX_THIN)
+            dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k], true);
+        else
+            dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k], false);
 }

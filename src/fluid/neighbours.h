@@ -142,14 +142,14 @@ struct cell_sides {
     const struct near_piece *piece;
 };
 
+/* `thin`, a constant: whether there are thin lines at all. */
 SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const struct cells *cells,
-                                              int32_t cell)
+                                              int32_t cell, bool thin)
 {
-    struct near_piece *const piece = fluid->neighbour_scratch[thread_index()].pieces;
-    return (
-        struct cell_sides){(real)(cells->side[0] / fluid->k.h), (real)(cells->side[1] / fluid->k.h),
-                           fluid->effects & FX_THIN ? near_pieces(fluid, cells, cell, piece) : 0,
-                           piece};
+    struct near_piece *const piece = thin ? fluid->neighbour_scratch[thread_index()].pieces : NULL;
+    return (struct cell_sides){(real)(cells->side[0] / fluid->k.h),
+                               (real)(cells->side[1] / fluid->k.h),
+                               thin ? near_pieces(fluid, cells, cell, piece) : 0, piece};
 }
 
 /* Particles a, one in each group of four lanes; with their positions relative to the centres of the

@@ -185,12 +185,12 @@ SPHFSI_INLINE void slopes_from(real sum[SLOPE_SUMS][CLUSTER], four_double slope[
     slope[1] = (four_double)((four_long)y & plane);
 }
 
-static void slopes_of_cell(const struct fluid *fluid, struct particles *particles,
-                           const struct cells *cells, int32_t cell)
+SPHFSI_INLINE void slopes_of_cell(const struct fluid *fluid, struct particles *particles,
+                                  const struct cells *cells, int32_t cell, bool thin)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
@@ -231,7 +231,10 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
     if (fluid->keeps_slopes) return; /* packed with the other fields */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
-        slopes_of_cell(fluid, particles, cells, list->active[k]);
+        if (fluid->effects & FX_THIN)
+            slopes_of_cell(fluid, particles, cells, list->active[k], true);
+        else
+            slopes_of_cell(fluid, particles, cells, list->active[k], false);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
         pack_slopes_of_cell(fluid, &by, particles, cells, list->active[k]);

@@ -97,7 +97,6 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
                                        struct pair_set fx)
 {
     struct receiver a = receiver_at(sides, own);
-    if (!(PAIR_HAS(fx, THIN))) a.piece = NULL;
     a.u = vspread(own + PACKED_U * CLUSTER);
     a.v = vspread(own + PACKED_V * CLUSTER);
     a.p = vspread(own + PACKED_P * CLUSTER);
@@ -144,7 +143,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const int32_t cell = list->active[n];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell);
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, PAIR_HAS(fx, THIN));
     bool around[KIND_COUNT] = {false};
     neighbour_clusters_copy(&neighbour_scratch->around[KIND_FLUID],
                             &fluid->packed[KIND_FLUID].boxes, &fluid->around[n], cells, fluid->k.h);
