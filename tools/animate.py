@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Makes a film of a run's snapshots: MP4 where ffmpeg is there, else GIF."""
 
-import argparse
-
 import runfiles
-from plot_fields import add_look, check_look, chosen_fields, chosen_ranges
+from plot_fields import add_look, chosen_fields, chosen_ranges, parse_look
 from sphfsi import draw_fields
 from sphfsi.snapshots import Snapshots
 
@@ -16,16 +14,14 @@ Several runs stand side by side, at the instants of the first. One colour scale 
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(__doc__, EXAMPLE)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
     add_look(parser)
     parser.add_argument("--fps", type=float, default=10, help="frames a second (%(default)s)")
     parser.add_argument("--dpi", type=float, default=150, help="dots an inch (%(default)s)")
     parser.add_argument("--out", metavar="FILE", help=".mp4 (needs ffmpeg) or .gif "
                         "(default: fields.mp4 or fields.gif in the first run's folder)")
-    args = parser.parse_args()
-    check_look(parser, args)
+    args = parse_look(parser)
     if args.fps <= 0 or args.dpi <= 0:
         parser.error("--fps and --dpi are more than 0")
     return args

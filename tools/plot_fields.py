@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: MIT
 """Draws snapshots of runs: the fluid and the solid coloured by a field, to scale."""
 
-import argparse
-import sys
-
 import runfiles
 from sphfsi import draw_fields
 from sphfsi.snapshots import FIELDS, Snapshots
@@ -29,17 +26,15 @@ def add_look(parser):
                         help="part of the plane to draw, m (default: all but single drops)")
 
 
-def check_look(parser, args):
-    if not args.run:
-        parser.print_help()
-        sys.exit(1)
+def parse_look(parser):
+    args = runfiles.parse(parser)
     if args.window and (args.window[0] >= args.window[1] or args.window[2] >= args.window[3]):
         parser.error("--window needs X0 < X1 and Y0 < Y1")
+    return args
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(__doc__, EXAMPLE)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
     parser.add_argument("--time", nargs="+", type=float, metavar="T",
                         help="instants in s; the nearest snapshots are drawn (default: four over "
@@ -47,9 +42,7 @@ def arguments():
     add_look(parser)
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
                         "(default: fields.png in the first run's folder)")
-    args = parser.parse_args()
-    check_look(parser, args)
-    return args
+    return parse_look(parser)
 
 
 def chosen_fields(args):

@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: MIT
 """Draws a run's ledger: shares of the energy, momentum, extremes and the time step."""
 
-import argparse
-import sys
-
 import runfiles
 from runfiles import np
 from sphfsi.draw_ledger import draw, energy_shares, read_ledger
@@ -14,16 +11,11 @@ EXAMPLE = """example:
 """
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(__doc__, EXAMPLE)
     parser.add_argument("run", nargs="?", metavar="RUN", help="folder of a run")
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
                         "(default: ledger.png in the run's folder)")
-    args = parser.parse_args()
-    if not args.run:
-        parser.print_help()
-        sys.exit(1)
-    return args
+    return runfiles.parse(parser)
 
 
 def main():

@@ -3,10 +3,8 @@
 """Draws what probes recorded against time, for several runs, with the references of their case: a
 panel for each unit, displacements above forces."""
 
-import argparse
 import csv
 import itertools
-import sys
 from pathlib import Path
 
 import runfiles
@@ -20,8 +18,7 @@ EXAMPLE = """example:
 
 
 def arguments(description, example, default, picture):
-    parser = argparse.ArgumentParser(description=description, epilog=example,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(description, example)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of "
                                                               "tools/refine.py")
     parser.add_argument("--name", action="append", default=[], metavar="TEXT",
@@ -38,10 +35,7 @@ def arguments(description, example, default, picture):
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
                         f"(default: {picture} in the first folder)")
     parser.add_argument("--csv", metavar="FILE", help="write the table, in SI units")
-    args = parser.parse_args()
-    if not args.run:
-        parser.print_help()
-        sys.exit(1)
+    args = runfiles.parse(parser)
     if len(args.label) > len(args.reference):
         parser.error("--label without its --reference")
     return args

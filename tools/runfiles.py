@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Reads the files of a run's folder and holds what all figures share: style, colours, saving."""
 
+import argparse
 import shlex
 import sys
 import traceback
@@ -45,6 +46,21 @@ def sentence(problem):
         return str(problem)
     traceback.print_exc()
     return f"{type(problem).__name__}: {problem}"
+
+
+def options(text, example=""):
+    """A parser that shows both as they are written."""
+    return argparse.ArgumentParser(description=text, epilog=example,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def parse(parser):
+    """The arguments; without a run the help is shown."""
+    args = parser.parse_args()
+    if not args.run:
+        parser.print_help()
+        sys.exit(1)
+    return args
 
 
 def run_tool(main):

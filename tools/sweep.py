@@ -31,8 +31,7 @@ MOST_FORECASTS = 16
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(__doc__, EXAMPLE)
     parser.add_argument("case", nargs="?", help="case file")
     parser.add_argument("--vary", action="append", default=[], metavar="KEY=VALUES",
                         help="values A,B,C or a range LOW:HIGH:STEP (of a sample LOW:HIGH); may be "

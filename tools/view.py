@@ -5,11 +5,9 @@ that one picks, probe curves with a cursor, measuring with the mouse.
 
 example: tools/view.py runs/gate --every 2 --out gate.html"""
 
-import argparse
 import base64
 import html
 import json
-import sys
 import zlib
 from pathlib import Path
 
@@ -22,18 +20,14 @@ LARGEST = 20e6  # bytes of the page
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = runfiles.options(__doc__)
     parser.add_argument("run", nargs="?", metavar="RUN", help="folder of a run")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="every N-th snapshot "
                                                                           "(%(default)s)")
     parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Y0", "Y1"),
                         help="part of the plane, m (default: all but single drops)")
     parser.add_argument("--out", metavar="FILE", help="(default: film.html in the run's folder)")
-    args = parser.parse_args()
-    if not args.run:
-        parser.print_help()
-        sys.exit(1)
+    args = runfiles.parse(parser)
     if args.every < 1:
         parser.error("--every is 1 or more")
     return args
