@@ -232,3 +232,31 @@ def run_scenes(doc, names, run_scene, path, report):
     known = {name: known[name] for name in names if name in known}
     versions = ", ".join(sorted({entry["version"] for entry in known.values()}))
     write(path, path.name, versions=versions, **report(known))
+
+
+def figures_report(known):
+    """The answer and the tables of a report whose scenes each have rows of figures."""
+    rows = [(name, *figure) for name, scene in known.items() for figure in scene["figures"]]
+    return {"answer": judged([(f"{name}, {what}", *rest) for name, what, *rest in rows]),
+            "figures": table(["scene", "figure", "found", "limit"],
+                             [[name, what, cell(found, limit), limit_text(limit)]
+                              for name, what, found, limit in rows]),
+            "seconds": table(["scene", "processor time, s"],
+                             [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
+
+
+def run_figures(doc, scenes, path):
+    """run_scenes for scenes whose measure gives rows of figures: `scenes` has for each name a case,
+    the settings of each of its runs, and measure(runs), which gives (words, value, limit)."""
+    def run_scene(name):
+        scene, variants, measure = scenes[name]
+
+        def finished(runs):
+            if any(run.stopped for run in runs):
+                raise BadFile(f"a guard stopped {scene}")
+            return measure(runs)
+        figures, seconds = measure_scene(scene, variants, finished)
+        for what, value, _ in figures:
+            print(name, what, number(value), flush=True)
+        return {"figures": figures, "seconds": seconds}
+    run_scenes(doc, scenes, run_scene, path, figures_report)

@@ -12,8 +12,7 @@ The scenes are cases/verify/open_*.cfg and cylinder.cfg. The figures are kept in
 docs/results/open_verification.json."""
 import math
 
-from common import (OUT, BadFile, cell, judged, limit_text, measure_scene, np, number, run_scenes,
-                    run_tool, table)
+from common import OUT, np, run_figures, run_tool
 from sphfsi.snapshots import KINDS, Snapshots
 
 REPORT = OUT / "open_verification.md"
@@ -145,28 +144,5 @@ SCENES = {"vortex, 30 spacings over the channel": vortex(30), "vortex, 60 spacin
                                                     measure_cylinder)}
 
 
-def report(known):
-    rows = [(name, *figure) for name, scene in known.items() for figure in scene["figures"]]
-    return {"answer": judged([(f"{name}, {what}", *rest) for name, what, *rest in rows]),
-            "figures": table(["scene", "figure", "found", "limit"],
-                             [[name, what, cell(found, limit), limit_text(limit)]
-                              for name, what, found, limit in rows]),
-            "seconds": table(["scene", "processor time, s"],
-                             [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
-
-
-def run_scene(name):
-    scene, variants, measure = SCENES[name]
-
-    def finished(runs):
-        if any(run.stopped for run in runs):
-            raise BadFile(f"a guard stopped {scene}")
-        return measure(runs)
-    figures, seconds = measure_scene(scene, variants, finished)
-    for what, value, _ in figures:
-        print(name, what, number(value), flush=True)
-    return {"figures": figures, "seconds": seconds}
-
-
 if __name__ == "__main__":
-    run_tool(lambda: run_scenes(__doc__, SCENES, run_scene, REPORT, report))
+    run_tool(lambda: run_figures(__doc__, SCENES, REPORT))

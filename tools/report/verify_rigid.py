@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Rigid bodies, waves and damping zones against theory (make verify-rigid, minutes on one core): a
+cylinder that heaves, a wedge that enters water, waves of a piston that leave, a floating box, a
+body as dense as water.
+
+examples:
+  tools/report/verify_rigid.py               writes docs/results/rigid_verification.md
+  tools/report/verify_rigid.py --only wedge  runs these scenes again, keeps the other figures
+
+The scenes are cases/verify/rigid_*.cfg and wave_piston.cfg, and the template floating_box. The
+figures are kept in docs/results/rigid_verification.json."""
+import math
+
+from common import OUT, np, run_figures, run_tool
+
+REPORT = OUT / "rigid_verification.md"
+G, RHO = 9.81, 1000.0
+
+
+def exp_e1(z):
+    """exp(z) E1(z), by the series of E1."""
+    term, total = np.ones_like(z), -np.euler_gamma - np.log(z)
+    for k in range(1, 120):
+        term = term * -z / k
+        total = total - term / k
+    return np.exp(z) * total
+
+
+def heave_coefficients(size):
+    """Added mass over rho pi a^2/2, and damping over that and the frequency, of a half-submerged
+    cylinder of radius a = 1 in deep water, size = omega^2 a/g: a source and multipoles whose normal
+    velocity is that of the cylinder (Ursell 1949)."""
+    angle = (np.arange(60) + 0.5) * math.pi / 120  # from the vertical
+    turn = np.exp(-1j * angle)
+    wave = np.exp(-size * turn)
+    source = exp_e1(-size * turn)
+    slope = -size * source - 1 / turn
+    values = [(source + 1j * math.pi * wave).real - 1j * math.pi * wave.real]
+    normal = [((slope - 1j * math.pi * size * wave) * turn).real
+              + 1j * math.pi * size * (wave * turn).real]
+    for m in range(1, 10):
+        even, odd = np.cos(2 * m * angle), np.cos((2 * m - 1) * angle)
+        values.append(even + size / (2 * m - 1) * odd)
+        normal.append(-2 * m * even - size * odd)
+    strength = np.linalg.lstsq(np.array(normal, complex).T, np.cos(angle).astype(complex),
+                               rcond=None)[0]
+    found = -2 * np.mean(strength @ np.array(values) * np.cos(angle))
+    return found.real, -found.imag
+
+
+def heave(times, radius):
+    """Height over its initial value of the cylinder, released from rest: the Fourier integral of
+    the linear equation of motion (Maskell and Ursell 1970)."""
+    sizes = np.linspace(0.004, 8, 400)
+    mass = RHO * math.pi * radius**2 / 2
+    found = mass * np.array([heave_coefficients(size) for size in sizes]).T
+    omega = np.linspace(0.02, math.sqrt(sizes[-1] * G / radius), 6000)
+    added, damping = (np.interp(omega, np.sqrt(sizes * G / radius), column) for column in found)
+    stiffness = 2 * RHO * G * radius
+    speed = -stiffness / (stiffness - omega**2 * (mass + added) + 1j * omega**2 * damping)
+    v = 2 / math.pi * np.trapezoid(speed.real * np.cos(np.outer(times, omega)), omega, axis=1)
+    return 1 + np.concatenate([[0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(times))])
+
+
+def extrema(times, values):
+    """Times and values where the curve turns, by a parabola through three rows."""
+    k = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
+    slope, bend = (values[k + 1] - values[k - 1]) / 2, values[k + 1] - 2 * values[k] + values[k - 1]
+    return times[k] - slope / bend * (times[1] - times[0]), values[k] - slope**2 / (2 * bend)
+
+
+def measure_heave(runs):
+    p = runs[0].table()
+    t, y = p["time_s"], p["cylinder_cy_m"] / p["cylinder_cy_m"][0]
+    when, found = extrema(t, y)
+    wanted_when, wanted = extrema(t, heave(t, 0.1))
+    period, wanted_period = when[2] - when[0], wanted_when[2] - wanted_when[0]
+    return [("period between the first two troughs, % too long",
+             100 * (period / wanted_period - 1), 2),
+            *((f"{name}, % of the start, too high", 100 * (found[k] - wanted[k]), 5)
+              for k, name in enumerate(("first trough", "first crest", "second trough")))]
+
+
+def measure_wedge(runs):
+    """F = 14.139 rho V^3 t for a deadrise of 30 degrees; from a third of the time on."""
+    p = runs[0].table()
+    t = p["time_s"]
+    late = t > t[-1] / 3
+    force, t = p["force_fy_N_per_m"][late] / RHO, t[late]
+    return [("force, % too large", 100 * ((force @ t) / (t @ t) / 14.139 - 1), 3),
+            ("its scatter, % of the last force", 100 * np.std(force / (14.139 * t[-1])
+                                                              - t / t[-1]), None)]
+
+
+def measure_waves(runs):
+    """Waves there and back in the last three periods, from gauges a quarter of a length apart."""
+    p, kd, depth = runs[0].table(), runs[0].constants["kd"], 0.4
+    period, k = runs[0].end_time / 12, kd / depth
+    late = p["time_s"] > runs[0].end_time - 3 * period
+    turns = 2 * math.pi * p["time_s"][late] / period
+    basis = np.stack([f(n * turns) for n in (1, 2) for f in (np.cos, np.sin)], axis=1)
+    basis = np.column_stack([basis, np.ones_like(turns)])
+    gauges = []
+    for name in ("near_level_m", "far_level_m"):
+        c, s, *_ = np.linalg.lstsq(basis, p[name][late], rcond=None)[0]
+        gauges.append(c - 1j * s)
+    phase = 2 * math.pi * np.array([1, 1.25])
+    there, back = abs(np.linalg.solve(np.exp(1j * np.outer(phase, (-1, 1))), gauges))
+    height = runs[0].constants["steep"] * 2 * math.pi / k
+    return [("height, % too large", 100 * (2 * float(there) / height - 1), 2),
+            ("height that comes back, %", 100 * float(back / there), 3)]
+
+
+def measure_draft(runs):
+    """Mean of the last half, while it heaves, against what Archimedes says."""
+    p = runs[0].table()
+    height = p["box_cy_m"][p["time_s"] > runs[0].end_time / 2].mean()
+    return [("draft, % too large", 100 * float(0.61 - height) / 0.15, 0.5)]
+
+
+def measure_neutral(runs):
+    p = runs[0].table()
+    return [("largest distance from its place, dp", float(
+        np.hypot(p["box_cx_m"], p["box_cy_m"] - p["box_cy_m"][0]).max()) / runs[0].dp, 0.1)]
+
+
+# name: case, settings of each run, how they are measured
+SCENES = {
+    **{f"heave of a cylinder, {n} spacings in the radius":
+       ("rigid_heave", [[f"across={n}"]], measure_heave) for n in (10, 20)},
+    **{f"wedge, {n} spacings in the last depth":
+       ("rigid_wedge", [[f"across={n}"]], measure_wedge) for n in (10, 20)},
+    **{f"waves of a piston, kd = {kd:g}, {n} spacings in the depth":
+       ("wave_piston", [[f"across={n}", f"kd={kd}", f"steep={steep}"]], measure_waves)
+       for kd, n, steep in ((0.5, 20, 0.01), (1, 20, 0.03), (1.5, 20, 0.03), (1.5, 40, 0.03),
+                            (3, 40, 0.03))},
+    "floating box, 20 spacings across": ("floating_box", [["end_time=16 s"]], measure_draft),
+    "body as dense as water, 10 spacings across": ("rigid_neutral", [[]], measure_neutral)}
+
+
+if __name__ == "__main__":
+    run_tool(lambda: run_figures(__doc__, SCENES, REPORT))
