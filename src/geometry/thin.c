@@ -187,14 +187,15 @@ static enum err refuse_contact(struct sampler *sampler, int wall, const struct s
 {
     const struct scene *const scene = sampler->scene;
     const char *const name = scene->wall[wall].common.name;
+    const bool beam = wall >= scene_beam_wall(scene, 0);
     for (int k = 0; k < scene->n_solid; k++)
         if (scene_contact_of(scene, k, scene->n_solid + wall))
             return geometry_refuse(
                 sampler, shape->line,
-                "this line of [wall %s] has no thickness, so [solid %s] cannot touch it; give it a "
-                "thickness, or say that both stay apart: [contact] between = %s, %s and enabled = "
-                "off",
-                name, scene->solid[k].common.name, scene->solid[k].common.name, name);
+                "this line of [%s %s] has no thickness, so [solid %s] cannot touch it; %ssay that "
+                "both stay apart: [contact] between = %s, %s and enabled = off",
+                beam ? "beam" : "wall", name, scene->solid[k].common.name,
+                beam ? "" : "give it a thickness, or ", scene->solid[k].common.name, name);
     return ERR_OK;
 }
 

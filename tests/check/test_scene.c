@@ -44,6 +44,19 @@ static void test_a_hinge_is_one_particle(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+/* A beam ends at the face that holds it; further it would move in the wall. */
+static void test_a_beam_in_a_wall(void)
+{
+#define BEAM(from)                                                        \
+    HEAD WATER SIDES FLOOR BEAM_AT from "; 0.05, 0.08\nclamp = 0.05, 0\n" \
+                                        "thickness = 1 mm\n" POST
+#define BEAM_AT "[beam plate]\nshape = polyline: 0.05, "
+    read(BEAM("0"));
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(BEAM("-0.01"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "[beam plate] lies in [wall floor]"), warnings);
+}
+
 static void test_a_tank_without_a_floor(void)
 {
     /* All but the nine of each outer column that stand above the foot of a side. */
@@ -488,6 +501,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_sound_tank_gets_no_warning);
     RUN_TEST(test_a_hinge_is_one_particle);
+    RUN_TEST(test_a_beam_in_a_wall);
     RUN_TEST(test_a_tank_without_a_floor);
     RUN_TEST(test_surface_against_gravity_and_below_the_water);
     RUN_TEST(test_a_surface_above_the_water);
