@@ -26,9 +26,9 @@ SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS],
 
 /* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
  * the mirrored velocity. */
-static void drag_force(const struct fluid *fluid, const struct neighbours *neighbours,
-                       const struct receiver *s, const double *volume,
-                       const struct vector_constants *k, double *fx, double *fy)
+SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours *neighbours,
+                              const struct receiver *s, const double *volume,
+                              const struct vector_constants *k, double *fx, double *fy)
 {
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     for (int m = 0; m < neighbours->n; m++)

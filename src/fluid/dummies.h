@@ -139,10 +139,10 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
     double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
-    for (int r = 0; r < d->count; r++)
-        near2[r] = fluid_line_of(fluid, d->kind, d->at[r])
-                       ? square(fluid->k.dp / fluid->k.h) + ETA2
-                       : fluid->near2[d->kind][particles->body[d->at[r]]];
+    for (int r = 0; r < d->count; r++) near2[r] = fluid->near2[d->kind][particles->body[d->at[r]]];
+    for (int r = 0; r < d->count && fluid->effects & FX_THIN; r++)
+        if (fluid_line_of(fluid, d->kind, d->at[r]))
+            near2[r] = square(fluid->k.dp / fluid->k.h) + ETA2;
     if (fluid->effects & FX_ONE_SIDED) {
         put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
         put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));

@@ -280,7 +280,7 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, con
                                     vreal line)
 {
     struct pair q;
-    vreal seen;
+    vreal seen = vset(1);
     separate(a, code, b, line, &q.x, &q.y, &seen);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
