@@ -155,11 +155,13 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
     const effect_set fx =
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++)
+    for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++) {
+        const int32_t cell = fluid->near_fluid[kind][n];
         if (fx & FX_THIN)
-            force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx,
-                          true);
-        else
-            force_on_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][n], all, &k, fx,
-                          false);
+            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx, true);
+        else if (fx & (effect_set)SURFACE_EFFECTS)
+            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx, false);
+        else /* pressure alone */
+            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx & FX_IMPEDANCE, false);
+    }
 }

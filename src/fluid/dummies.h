@@ -87,7 +87,9 @@ struct dummies {
 /* Copies a field of the particles of a cluster, or zeros if it is NULL. */
 SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double out[CLUSTER])
 {
-    for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
+    memset(out, 0, CLUSTER * sizeof *out);
+    if (!field) return;
+    for (int r = 0; r < d->count; r++) out[r] = field[d->at[r]];
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
@@ -229,11 +231,11 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
                ? particles->interface_pressure
                : NULL,
            acting);
-    for (int r = 0; r < CLUSTER && !(fluid->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
+    if (!(fluid->effects & FX_ONE_SIDED)) *(four_double_at *)acting += FOUR(pressure, 0);
     for (int r = 0; r < d->count; r++)
         volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
     /* At rest, particles whose masses fit their density fill a cell at any depth: so do dummies. */
-    for (int r = 0; r < CLUSTER && !(fluid->effects & FX_MASSES); r++) volume[r] /= 1 + dens[r];
+    if (!(fluid->effects & FX_MASSES)) *(four_double_at *)volume /= 1 + FOUR(dens, 0);
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);

@@ -197,10 +197,10 @@ struct fluid {
 SPHFSI_INLINE bool dummies_move(const struct fluid *fluid, enum kind kind,
                                 const struct particles *particles, const int32_t *index, int count)
 {
-    bool moves = kind == KIND_SOLID;
-    for (int r = 0; r < count && fluid->effects & FX_MOTION && !moves; r++)
-        moves = fluid->moves[kind][particles->body[index[r]]];
-    return moves;
+    if (kind == KIND_SOLID || !(fluid->effects & FX_MOTION)) return kind == KIND_SOLID;
+    for (int r = 0; r < count; r++)
+        if (fluid->moves[kind][particles->body[index[r]]]) return true;
+    return false;
 }
 
 /* Whether there are walls or solids in the nine cells around a cell of fluid; of any kind. */

@@ -20,7 +20,6 @@ struct exchange {
     struct pair pair;
     vreal radial; /* of xi in the forces, Pa */
     vreal drag;   /* of -v in the forces, kg/(m^2 s) */
-    vreal x, y;   /* sum of both, between fluid with drag */
     vreal rate;   /* of v.xi in the rate, 1 */
     vreal step;   /* difference of dens that diffuses, 1 */
     vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */

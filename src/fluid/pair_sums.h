@@ -15,15 +15,10 @@ SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struc
                                 bool fluid)
 {
     const struct pair *const q = &e->pair;
+    sum[SUM_X] = vfma(e->radial, q->x, sum[SUM_X]);
+    sum[SUM_Y] = vfma(e->radial, q->y, sum[SUM_Y]);
     sum[SUM_RATE] = vfma(e->rate, q->vx, sum[SUM_RATE]);
-    if (fluid && PAIR_HAS(fx, LAMINAR)) {
-        sum[SUM_X] = sum[SUM_X] + e->x;
-        sum[SUM_Y] = sum[SUM_Y] + e->y;
-    } else {
-        sum[SUM_X] = vfma(e->radial, q->x, sum[SUM_X]);
-        sum[SUM_Y] = vfma(e->radial, q->y, sum[SUM_Y]);
-    }
-    if (!fluid && PAIR_HAS(fx, NO_SLIP)) {
+    if (fluid ? PAIR_HAS(fx, LAMINAR) : PAIR_HAS(fx, NO_SLIP)) {
         sum[SUM_X] = vfma(-e->drag, q->u, sum[SUM_X]);
         sum[SUM_Y] = vfma(-e->drag, q->v, sum[SUM_Y]);
     }
@@ -71,11 +66,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     }
     if (PAIR_HAS(fx, TENSILE)) stress = stress + fx_tensile(a, q, k);
     e.radial = q->slope * stress;
-    if (PAIR_HAS(fx, LAMINAR)) {
-        e.drag = fx_laminar(q, inv, k);
-        e.x = vfma(e.radial, q->x, -(e.drag * q->u));
-        e.y = vfma(e.radial, q->y, -(e.drag * q->v));
-    }
+    if (PAIR_HAS(fx, LAMINAR)) e.drag = fx_laminar(q, inv, k);
     *approach = vmax(*approach, fx_approach(q, inv));
     return e;
 }
