@@ -76,7 +76,8 @@ static void test_beam_on_beam(void)
 }
 
 /* At the coarse spacing of the water until it has passed both posts: the soft one bends first and
- * further, the energy of fluid and bodies does not grow, nothing is lost. */
+ * further, by more than the ratio of the moduli, since it shelters the other. The energy of fluid
+ * and bodies does not grow, nothing is lost. */
 static void test_two_posts(void)
 {
     const char *const sets[] = {"dp=5 mm"};
@@ -85,7 +86,7 @@ static void test_two_posts(void)
     const double soft = displacement(0, 0.305, 0.06, false);
     const double stiff = displacement(1, 0.365, 0.06, false);
     TEST_ASSERT_TRUE(soft > 2e-3);
-    TEST_ASSERT_TRUE(fabs(stiff) < 0.1 * soft);
+    TEST_ASSERT_TRUE(fabs(stiff) < soft / 6);
     const struct ledger row = simulation_ledger(&sim);
     assert_at_most(0.01 * row.kinetic, -row.dissipated, "spurious energy");
     TEST_ASSERT_EQUAL_INT64(0, sim.state.lost);

@@ -138,7 +138,7 @@ static void refused_probes(void)
         {"[probe Z]\nquantity = force\nbody = gate,\n", "there is no [solid] or [wall]"},
         {"[solid post]\nlike = gate\nshape = box 0.3, 0, 0.33, 0.1\n"
          "[probe Z]\nquantity = reaction\nbody = post\n",
-         "give the solid a `clamp`"},
+         "give it a `clamp`"},
     };
     for (size_t k = 0; k < COUNT_OF(wrong); k++) {
         snprintf(text, sizeof text, "%s%s", tiny_case, wrong[k][0]);

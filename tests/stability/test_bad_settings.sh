@@ -52,8 +52,8 @@ says 0 \
     thin.cfg integrator=leapfrog plate.density=300 numerics.fixed_step=1.2e-4
 says 0 'added_mass *0.0001013 s .* <- limits the step' thin.cfg integrator=leapfrog \
     plate.density=300
-says 1 'particles start in one cell of .* limit of 320' gate.cfg numerics.h_over_dp=2 \
-    'thickness=100 mm' gate.dp=dp/3
+says 1 'particles start in one cell of .* limit of 480' gate.cfg numerics.h_over_dp=2 \
+    'thickness=100 mm' gate.dp=dp/4
 says 0 'unstable at any time step' beam.cfg beam.hourglass_form=printed beam.gradient=linear
 "$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1
 if grep -q 'warning' "$dir/output"; then
