@@ -76,9 +76,11 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
         if (strcmp(scene->wall[k].motion, motion->common.name) == 0) return;
     for (int k = 0; k < scene->n_solid; k++)
         if (strcmp(scene->solid[k].clamp_motion, motion->common.name) == 0) return;
+    for (int k = 0; k < scene->n_beam; k++)
+        if (strcmp(scene->beam[k].motion, motion->common.name) == 0) return;
     warn_at(check->diag, check->scene, motion->common.line,
-            "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
-            "[solid]",
+            "[motion %s] moves nothing: name it by `motion` of a [wall] or [beam], or by "
+            "`clamp_motion` of a [solid]",
             motion->common.name);
 }
 

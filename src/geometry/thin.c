@@ -158,6 +158,18 @@ double geometry_line_distance(const struct scene *scene, const double at[2])
     return nearest;
 }
 
+/* Whether the boxes of a part, with its extensions, and of a connection are apart: no crossing. */
+static bool is_apart(const struct scene_line *line, int k, const double from[2], const double to[2])
+{
+    const double more = max2(k == 0 ? line->extend[0] : 0, k + 2 == line->n ? line->extend[1] : 0);
+    for (int c = 0; c < 2; c++) {
+        const double a = line->pt[k][c], b = line->pt[k + 1][c];
+        if (max2(from[c], to[c]) < min2(a, b) - more || min2(from[c], to[c]) > max2(a, b) + more)
+            return true;
+    }
+    return false;
+}
+
 int geometry_between(const struct scene *scene, const double from[2], const double to[2])
 {
     const double way[2] = {to[0] - from[0], to[1] - from[1]};
@@ -165,6 +177,7 @@ int geometry_between(const struct scene *scene, const double from[2], const doub
         const struct scene_line *const line = &scene->line[j];
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
+            if (is_apart(line, k, from, to)) continue;
             const struct part part = line_part(line, k);
             const double before = k == 0 ? line->extend[0] : 0,
                          after = part.length + (k + 2 == line->n ? line->extend[1] : 0);
