@@ -221,7 +221,7 @@ static void test_leapfrog_steps(void)
 {
     open("integrator=leapfrog", "numerics.multirate=off");
     static struct memory half;
-    static double rate[5][MOST], old[2][MOST];
+    static double rate[5][MOST], last[2][MOST];
     take_fluid(&half);
     for (int64_t i = 0; i < fluid->n; i++) {
         fluid->vx_half[i] = fluid->vx[i];
@@ -257,8 +257,8 @@ static void test_leapfrog_steps(void)
             double *const force[2] = {&solid->fx[i], &solid->fy[i]};
             for (int c = 0; c < 2; c++) {
                 const double now = *force[c];
-                *force[c] += 0.5 * dt[n - 1] / dt[n] * (now - old[c][i]);
-                old[c][i] = now;
+                *force[c] += 0.5 * dt[n - 1] / dt[n] * (now - last[c][i]);
+                last[c][i] = now;
             }
         }
         solid_stress(&rig.sim.solid, solid);
