@@ -74,7 +74,7 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
 struct cells_around {
     uint32_t code[10];
     uint8_t count[10], n;
-    bool half; /* the last one is the cell in the middle, whose clusters are served in turn */
+    bool half; /* the last one is the cell in the middle, whose clusters are served one by one */
 };
 
 _Static_assert(CELL_CAPACITY / CLUSTER <= UINT8_MAX, "a number of clusters fits into a byte");

@@ -34,7 +34,7 @@ def columns(path):
 
 
 def close(a, b):
-    return math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-15)
+    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-15)
 
 
 def mean(table, name, end):
@@ -71,12 +71,12 @@ def check(folder, said):
                     assert part["why_no_order"], (name, part)
                     continue
                 order = math.log((c - b) / (b - a)) / math.log(ratio)
-                assert math.isclose(part["order"], order, rel_tol=1e-4), (name, part, order)
+                assert math.isclose(part["order"], order, rel_tol=1e-9), (name, part, order)
             if got["spacing"]["order"] is not None:
                 order = got["spacing"]["order"]
                 error = (2.45 - 0.425 * order) * abs(middle - fine) / (RATIO**order - 1)
                 assert math.isclose(got["spacing"]["band"], 1.645 / 1.960 * error,
-                                    rel_tol=1e-4), (name, got)
+                                    rel_tol=1e-9), (name, got)
             checked += 1
     assert checked >= 4, checked
     # The table is the same, rounded.
