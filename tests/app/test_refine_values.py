@@ -51,7 +51,7 @@ def check(folder, said):
     runs = [folder / f"dp-{d:.6g}" for d in dp]
     steps = [runs[1], folder / "step-0.707", folder / "step-0.5"]
     assert all(run.is_dir() for run in runs + steps), list(folder.iterdir())
-    checked = 0
+    checked = extrapolated = 0
     for file, results in (("probes.csv", report), ("ledger.csv", report["ledger"])):
         tables = [columns(run / file) for run in runs + steps]
         end = min(table["time_s"][-1] for table in tables)
@@ -65,6 +65,7 @@ def check(folder, said):
             assert close(got["band"], total) and got["scatter"] == 0, (name, got)
             if got["band"] > abs(fine) or got["spacing"]["order"] is None:
                 assert got["extrapolated"] is None, (name, got)
+            limit = fine
             for part, (a, b, c), ratio in ((got["spacing"], (fine, middle, coarse), RATIO),
                                            (got["step"], (shorter, longer, middle), 2**0.5)):
                 if part["order"] is None:
@@ -72,13 +73,17 @@ def check(folder, said):
                     continue
                 order = math.log((c - b) / (b - a)) / math.log(ratio)
                 assert math.isclose(part["order"], order, rel_tol=1e-9), (name, part, order)
+                limit += a - (a if part is got["spacing"] else c) + (a - b) / (ratio**order - 1)
             if got["spacing"]["order"] is not None:
                 order = got["spacing"]["order"]
                 error = (2.45 - 0.425 * order) * abs(middle - fine) / (RATIO**order - 1)
                 assert math.isclose(got["spacing"]["band"], 1.645 / 1.960 * error,
                                     rel_tol=1e-9), (name, got)
+            if got["extrapolated"] is not None:
+                assert math.isclose(got["extrapolated"], limit, rel_tol=1e-9), (name, got, limit)
+                extrapolated += 1
             checked += 1
-    assert checked >= 4, checked
+    assert checked >= 4 and extrapolated, checked
     # The table is the same, rounded.
     lines = said.splitlines()
     at = lines.index("M1_dy_m")
