@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # A run with beams that stops and goes on gives the same bits, on another number of threads, too,
 # and so does its effective case; probes on beams say what they cannot measure.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
+. tests/support/shell.sh
 cat >"$dir/beam.cfg" <<'END'
 dp = 5 cm
 end_time = 0.5
@@ -47,31 +43,11 @@ quantity = reaction
 body = arch
 END
 
-fail() {
-    echo "FAILED: $1"
-    failures=$((failures + 1))
-}
-
-run() {
-    "$sphfsi" "$@" --quiet >"$dir/output" 2>&1 && return
-    fail "$*"
-    cat "$dir/output"
-}
-
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
-
-at=$dir/all
-run "$dir/beam.cfg" --out "$at" --threads 1
-run "$dir/beam.cfg" --out "$at-cut" --threads 2 --until 0.23
-run "$dir/beam.cfg" --out "$at-cut" --restart
-run "$at/case.cfg" --out "$at-effective"
-[ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "restart"
-cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "rows"
-[ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "effective case"
-"$sphfsi" "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off" 2>&1 | grep -q \
-    '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' || fail "probe off the beam"
-"$sphfsi" "$dir/beam.cfg" --set tip.quantity=strain --out "$dir/off" 2>&1 | grep -q \
-    'there is no \[solid\] of that name' || fail "strain of a beam"
+restarts "$dir/beam.cfg" "$dir/all" 0.23
+expect 1 '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' \
+    "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off"
+expect 1 'there is no \[solid\] of that name' \
+    "$dir/beam.cfg" --set tip.quantity=strain --out "$dir/off"
 
 cat >"$dir/wet.cfg" <<'END'
 dp = 5 cm
@@ -98,13 +74,6 @@ quantity = force
 body = baffle
 END
 for integrator in symplectic verlet leapfrog; do
-    at=$dir/wet-$integrator
-    run "$dir/wet.cfg" --set integrator=$integrator --out "$at" --threads 1
-    run "$dir/wet.cfg" --set integrator=$integrator --out "$at-cut" --threads 2 --until 0.05
-    run "$dir/wet.cfg" --set integrator=$integrator --out "$at-cut" --restart
-    run "$at/case.cfg" --out "$at-effective"
-    [ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "$at: restart"
-    cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "$at: rows"
-    [ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "$at: effective case"
+    restarts "$dir/wet.cfg" "$dir/wet-$integrator" 0.05 --set integrator=$integrator
 done
 [ $failures = 0 ]

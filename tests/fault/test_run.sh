@@ -54,7 +54,6 @@ cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused run changed it
 # --- the effective case gives the same bits ---
 expect 0 'simulated' "$run/case.cfg" --out "$dir/again"
 cmp "$run/probes.csv" "$dir/again/probes.csv" || fail "case.cfg gives other probes"
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 [ "$(hash "$run")" = "$(hash "$dir/again")" ] || fail "case.cfg gives another state"
 
 # --- restart: what may change and what not ---

@@ -1,11 +1,7 @@
 #!/usr/bin/env bash
 # A run with rigid bodies that stops and goes on gives the same bits, with each integrator, beside
 # fluid and alone, and on another number of threads; its effective case gives them, too.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
+. tests/support/shell.sh
 cat >"$dir/alone.cfg" <<'END'
 dp = 2 cm
 end_time = 0.1
@@ -35,29 +31,9 @@ surface = 0.3
 shape = polyline: 0, 0.6; 0, 0; 0.6, 0; 0.6, 0.6
 END
 
-fail() {
-    echo "FAILED: $1"
-    failures=$((failures + 1))
-}
-
-run() {
-    "$sphfsi" "$@" --quiet >"$dir/output" 2>&1 && return
-    fail "$*"
-    cat "$dir/output"
-}
-
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
-
 for integrator in symplectic verlet leapfrog; do
     for scene in alone beside; do
-        at=$dir/$scene-$integrator
-        run "$dir/$scene.cfg" --set integrator=$integrator --out "$at" --threads 1
-        run "$dir/$scene.cfg" --set integrator=$integrator --out "$at-cut" --threads 2 --until 0.05
-        run "$dir/$scene.cfg" --set integrator=$integrator --out "$at-cut" --restart
-        run "$at/case.cfg" --out "$at-effective"
-        [ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "$at: restart"
-        cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "$at: rows"
-        [ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "$at: effective case"
+        restarts "$dir/$scene.cfg" "$dir/$scene-$integrator" 0.05 --set integrator=$integrator
     done
 done
 [ $failures = 0 ]

@@ -23,3 +23,20 @@ expect() {
     [ $got = "$status" ] || fail "$*: exit status $got instead of $status"
     [ -z "$words" ] || grep -q -- "$words" "$dir/output" || fail "$*: does not say '$words'"
 }
+
+# completes ARGUMENTS...: the program ends well.
+completes() { expect 0 "" "$@" --quiet; }
+
+# restarts CASE FOLDER UNTIL ARGUMENTS...: a run that stops and goes on with another number of
+# threads gives the bits and rows of one in one go, and so does its effective case.
+restarts() {
+    local case=$1 at=$2 until=$3
+    shift 3
+    completes "$case" "$@" --out "$at" --threads 1
+    completes "$case" "$@" --out "$at-cut" --threads 2 --until "$until"
+    completes "$case" "$@" --out "$at-cut" --restart
+    completes "$at/case.cfg" --out "$at-effective"
+    [ -n "$(hash "$at")" ] && [ "$(hash "$at")" = "$(hash "$at-cut")" ] || fail "$at: restart"
+    cmp "$at/probes.csv" "$at-cut/probes.csv" || fail "$at: rows"
+    [ "$(hash "$at")" = "$(hash "$at-effective")" ] || fail "$at: effective case"
+}

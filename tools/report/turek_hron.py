@@ -380,19 +380,28 @@ def pictures(run):
     fig.savefig(IMAGES / "turek_hron_cost.png", dpi=150, bbox_inches="tight")
     if not run:
         return
+    draw_history(Path(run))
+
+
+def draw_history(run):
+    """The last four periods of ux or drag, beside the range of the reference."""
     times, series = columns(run)
-    fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.4 * len(series)), sharex=True)
+    found = period(times, series["uy"] if "uy" in series else series["lift"])
+    if not found:
+        raise SystemExit(f"{run} is not periodic: a history of its last periods cannot be drawn")
+    late = times >= times[-1] - 4 / found[0]
+    fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.7 * len(series)), sharex=True)
     for axis, (name, values) in zip(axes, series.items()):
-        axis.plot(times, values, lw=0.6)
-        # the start may be far larger
-        late = [v for t, v in zip(times, values) if t > times[-1] / 2]
-        margin = 0.2 * (max(late) - min(late)) or 1
-        axis.set_ylim(min(late) - margin, max(late) + margin)
-        axis.set_ylabel(f"{name}, {UNIT[name]}")
-    axes[-1].set_xlabel("time, s")
-    name = Path(run).name.replace("-", "_")
-    path = IMAGES / f"turek_hron_{name}.png"
-    fig.savefig(path, dpi=80, bbox_inches="tight")
+        mean, size, _ = REFERENCE[run.name.split("-")[0]][name]
+        axis.axhspan(mean - size, mean + size, color="0.88", lw=0)
+        axis.plot(times[late], values[late], lw=1.5, color=COLOURS[0])
+        axis.set_ylabel(f"{name}, {UNIT[name]}", fontsize=15)
+        axis.tick_params(labelsize=14)
+    axes[0].set_title("last four periods; grey: range of the reference", fontsize=15)
+    axes[-1].set_xlabel("time, s", fontsize=15)
+    fig.align_ylabels()
+    path = IMAGES / f"turek_hron_{run.name.replace('-', '_')}.png"
+    fig.savefig(path, dpi=110, bbox_inches="tight")
     shrink(path)
 
 
