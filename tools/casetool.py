@@ -10,11 +10,15 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "python"))
 try:
-    from sphfsi import Case, CaseWarning, Error, InputError, Interrupted
+    from sphfsi import Error
 except ModuleNotFoundError as missing:
     sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; "
              f"{ROOT}/tools/setup.sh plot installs it; then run $(cat {ROOT}/build/python) "
              f"{' '.join(sys.argv)}")
+try:
+    from sphfsi import Case, CaseWarning, InputError, Interrupted
+except Error as problem:
+    sys.exit(f"{Path(sys.argv[0]).stem}: {problem}")
 
 UNITS = {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600}
 

@@ -5,6 +5,8 @@ they are lost."""
 import csv
 import json
 import math
+import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -99,6 +101,17 @@ def check(folder, said):
     return report
 
 
+def check_without_library(folder):
+    """One sentence, not a traceback, where nothing is built."""
+    for part in "tools", "python":
+        shutil.copytree(part, folder / part, ignore=shutil.ignore_patterns("_lib"))
+    named = {k: v for k, v in os.environ.items() if k not in ("SPHFSI_LIBRARY", "PYTHONPATH")}
+    said = subprocess.run([sys.executable, folder / "tools" / "refine.py", PLATE[0]],
+                          capture_output=True, text=True, env=named)
+    assert said.returncode == 1 and said.stderr.startswith("refine: there is no libsphfsi.so")
+    assert said.stderr.count("\n") == 1, said.stderr
+
+
 def main():
     with tempfile.TemporaryDirectory() as top:
         folder = Path(top) / "r"
@@ -117,6 +130,7 @@ def main():
         assert not list(folder.glob("*.part")), list(folder.glob("*.part"))
         lost.write_bytes(kept)
         assert refine(folder).stdout == again.stdout
+        check_without_library(Path(top))
     return 0
 
 
