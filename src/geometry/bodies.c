@@ -59,7 +59,7 @@ enum err geometry_check_bodies(struct sampler *sampler)
 {
     for (int r = 0; r < sampler->n_regions; r++) {
         const struct region *const region = &sampler->regions[r];
-        if (region->kind != KIND_SOLID) continue;
+        if (region->kind != KIND_SOLID || region->n == 0) continue;
         const double across = geometry_rows_across(region);
         if (across < 2)
             TRY(geometry_refuse(sampler, region->line,

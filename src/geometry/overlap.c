@@ -97,8 +97,7 @@ static enum err find_overlaps(struct sampler *sampler, const struct samples *sam
         for (int64_t j = first; j <= k; j++)
             for (int r = 0; r < sampler->n_regions; r++) {
                 const struct region *const its = &sampler->regions[r];
-                if (r == region || samples->thin[j] ||
-                    !geometry_covers_strictly(its, samples->x[j], samples->y[j]))
+                if (r == region || !geometry_covers_strictly(its, samples->x[j], samples->y[j]))
                     continue;
                 covered[j] |= r < region;
                 if ((other && its != other) || may_lie_in(sampler, samples, j, its)) continue;
@@ -145,22 +144,28 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
     return all ? ERR_OK : ERR_MEMORY;
 }
 
+/* The particles of a wall are followed by the dummies of its lines. */
 static enum err store(struct sampler *sampler, const struct samples *samples, const uint8_t *kept,
                       enum kind kind)
 {
-    struct scene_points *const to = &sampler->scene->points[kind];
-    int64_t n = 0;
-    for (int64_t k = 0; k < samples->n; k++)
-        n += kept[k] && sampler->regions[samples->region[k]].kind == kind;
+    struct scene *const scene = sampler->scene;
+    struct scene_points *const to = &scene->points[kind];
+    int64_t n = 0, k = 0;
+    for (int64_t j = 0; j < samples->n; j++)
+        n += kept[j] && sampler->regions[samples->region[j]].kind == kind;
+    for (int j = 0; j < scene->n_line && kind == KIND_WALL; j++) n += scene->line[j].n_dummies;
     TRY(geometry_points(sampler, kind, n, false, to));
-    for (int64_t k = 0; k < samples->n; k++) {
-        const struct region *region = &sampler->regions[samples->region[k]];
-        if (!kept[k] || region->kind != kind) continue;
-        to->x[to->n] = samples->x[k];
-        to->y[to->n] = samples->y[k];
-        to->body[to->n] = region->body;
-        if (to->clamped) to->clamped[to->n] = samples->clamped[k];
-        to->n++;
+    for (int r = 0; r < sampler->n_regions; r++) {
+        const struct region *const region = &sampler->regions[r];
+        for (; k < samples->n && samples->region[k] == r; k++) {
+            if (!kept[k] || region->kind != kind) continue;
+            to->x[to->n] = samples->x[k];
+            to->y[to->n] = samples->y[k];
+            to->body[to->n] = region->body;
+            if (to->clamped) to->clamped[to->n] = samples->clamped[k];
+            to->n++;
+        }
+        if (kind == KIND_WALL && region->kind == kind) geometry_thin_store(scene, region->body);
     }
     return ERR_OK;
 }
@@ -175,8 +180,8 @@ enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
     TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,
                           &sampler->temp, sampler->diag));
     for (int64_t k = 0; k < samples->n; k++) {
-        kept[k] = samples->thin[k] || (!covered[k] && !is_crowded(&t, sampler, samples, k));
-        if (kept[k] && !samples->thin[k]) point_grid_insert(&t, k);
+        kept[k] = !covered[k] && !is_crowded(&t, sampler, samples, k);
+        if (kept[k]) point_grid_insert(&t, k);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++)
         TRY(store(sampler, samples, kept, (enum kind)kind));

@@ -12,7 +12,7 @@
 
 /* Approximate bytes of a particle, to refuse absurd cases: fields, neighbour lists and copies. */
 static const double bytes_per_particle = 300;
-static const double max_lattice = 1e9, max_cells = 1e10;
+static const double max_cells = 1e9; /* of the shapes' boxes together, or away from the origin */
 
 /* --- regions --- */
 
@@ -36,7 +36,7 @@ static enum err check_size(struct sampler *sampler)
             const double low = fabs(region->box.low[c] - region->lattice.origin[c]) / own;
             const double high = fabs(region->box.high[c] - region->lattice.origin[c]) / own;
             wide[c] = (region->box.high[c] - region->box.low[c]) / own + 3;
-            if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
+            if (low > max_cells || high > max_cells) cells = HUGE_VAL;
         }
         cells += wide[0] * wide[1];
     }
@@ -135,172 +135,104 @@ static double centre(const struct region *region, int c, int64_t index)
     return region->lattice.origin[c] + ((double)index + 0.5) * region->lattice.spacing[c];
 }
 
-/* x, limited to the region's left and right end. */
-static double inside(const struct region *region, double x)
+/* Whether a point is in a piece, of those on the lattice or of all; counts those of each shape. */
+static bool is_inside(const struct region *region, double x, double y, bool all, int64_t *per_shape)
 {
-    return min2(max2(x, region->box.low[0]), region->box.high[0]);
-}
-
-/* Marks a row's points inside a piece with `value`; returns their number. */
-static int64_t mark(struct sampler *sampler, const struct region *region, const struct outline *o,
-                    double y, unsigned char value)
-{
-    if (y < o->box.low[1] || y > o->box.high[1]) return 0;
-    const int n = outline_crossings(o, y, sampler->scratch);
-    int64_t marked = 0;
-    for (int k = 0; k + 1 < n; k += 2) {
-        const int64_t from = index_from(region, 0, inside(region, sampler->scratch[k]));
-        const int64_t to = index_from(region, 0, inside(region, sampler->scratch[k + 1]));
-        if (to <= from) continue;
-        memset(sampler->mask + (from - region->first[0]), value, (size_t)(to - from));
-        marked += to - from;
-    }
-    return marked;
-}
-
-/* Fills the mask for row j from pieces in layers or the others; optionally counts the points in
- * each shape. */
-static void mark_row(struct sampler *sampler, const struct region *region, int64_t j,
-                     bool with_layered, int64_t *per_shape)
-{
-    const double y = centre(region, 1, j) + NUDGE_Y * region->lattice.spacing[1];
-    memset(sampler->mask, 0, (size_t)region->count[0]);
+    bool inside = false;
     for (int k = 0; k < region->add.n; k++) {
-        if (region->layered[k] && !with_layered) continue;
-        const int64_t marked = mark(sampler, region, &region->add.item[k], y, 1);
-        if (per_shape) per_shape[region->add.shape[k]] += marked;
+        if (!outline_contains(&region->add.item[k], x, y)) continue;
+        per_shape[region->add.shape[k]]++;
+        inside |= all || !region->layered[k];
     }
-    for (int k = 0; k < region->minus.n; k++) mark(sampler, region, &region->minus.item[k], y, 0);
+    return inside && outlines_find(&region->minus, x, y) < 0;
 }
 
-static enum err prepare_rows(struct sampler *sampler)
+/* Adds a point given in the axes of its lattice. */
+static enum err sample_point(struct sampler *sampler, const struct region *region, double x,
+                             double y, struct samples *to)
 {
-    int64_t widest = 1;
-    int most = 2;
-    for (int k = 0; k < sampler->n_regions; k++) {
-        struct region *region = &sampler->regions[k];
-        for (int c = 0; c < 2; c++) {
-            region->first[c] = index_from(region, c, region->box.low[c]) - 1;
-            region->count[c] = index_from(region, c, region->box.high[c]) + 1 - region->first[c];
-        }
-        widest = region->count[0] > widest ? region->count[0] : widest;
-        const int ends = outlines_ends(&region->add) + outlines_ends(&region->minus);
-        most = ends > most ? ends : most;
-    }
-    sampler->mask = geometry_alloc(sampler, (size_t)widest, 1);
-    sampler->scratch = geometry_alloc(sampler, (size_t)most + 4, sizeof(double));
-    return sampler->mask && sampler->scratch ? ERR_OK : ERR_MEMORY;
+    struct arena *const a = &sampler->temp;
+    const size_t n = (size_t)to->n;
+    double at[2];
+    to->x = arena_grow(a, to->x, n, sizeof *to->x, "sampling", sampler->diag);
+    to->y = arena_grow(a, to->y, n, sizeof *to->y, "sampling", sampler->diag);
+    to->region = arena_grow(a, to->region, n, sizeof *to->region, "sampling", sampler->diag);
+    to->clamped = arena_grow(a, to->clamped, n, 1, "sampling", sampler->diag);
+    if (!to->x || !to->y || !to->region || !to->clamped) return ERR_MEMORY;
+    place_of_lattice(&region->lattice, x, y, at);
+    to->x[n] = at[0];
+    to->y[n] = at[1];
+    to->region[n] = (int32_t)(region - sampler->regions);
+    to->n++;
+    return ERR_OK;
 }
 
-/* The points of a wall with layers: the lattice in the pieces along it, then the layers, then the
- * lattice behind them. */
-static enum err lay_layers(struct sampler *sampler, struct region *region)
+/* Visits the points of a region's lattice row by row, or column by column if it is upright: adds
+ * those inside, or offers all as points `behind` the layers. */
+static enum err lay_lattice(struct sampler *sampler, const struct region *region, bool behind,
+                            struct layers *layers, int64_t *per_shape, struct samples *to)
+{
+    int64_t first[2], end[2];
+    for (int c = 0; c < 2; c++) {
+        first[c] = index_from(region, c, region->box.low[c]) - 1;
+        end[c] = index_from(region, c, region->box.high[c]) + 1;
+    }
+    const int outer = region->kind == KIND_SOLID && end[1] - first[1] > end[0] - first[0] ? 0 : 1;
+    int64_t at[2];
+    for (at[outer] = first[outer]; at[outer] < end[outer]; at[outer]++)
+        for (at[!outer] = first[!outer]; at[!outer] < end[!outer]; at[!outer]++) {
+            const double x = centre(region, 0, at[0]), y = centre(region, 1, at[1]);
+            if (!is_inside(region, x + NUDGE_X * region->lattice.spacing[0],
+                           y + NUDGE_Y * region->lattice.spacing[1], behind, per_shape))
+                continue;
+            if (!behind) TRY(sample_point(sampler, region, x, y, to));
+            if (region->has_layers) TRY((behind ? layers_fill : layers_take)(layers, x, y));
+        }
+    return ERR_OK;
+}
+
+/* The lattice in the pieces along it, then the layers, then the lattice behind them. */
+static enum err lay_points(struct sampler *sampler, struct region *region, int64_t *per_shape,
+                           struct samples *to)
 {
     struct layers l;
-    TRY(layers_create(&l, sampler, region));
-    for (int behind = 0; behind < 2; behind++) {
-        for (int64_t j = region->first[1]; j < region->first[1] + region->count[1]; j++) {
-            mark_row(sampler, region, j, behind, NULL);
-            for (int64_t i = 0; i < region->count[0]; i++) {
-                if (!sampler->mask[i]) continue;
-                const double x = centre(region, 0, region->first[0] + i), y = centre(region, 1, j);
-                TRY(behind ? layers_fill(&l, x, y) : layers_take(&l, x, y));
-            }
-        }
-        if (!behind) TRY(layers_trace(&l));
+    const int64_t before = to->n;
+    if (region->has_layers) TRY(layers_create(&l, sampler, region));
+    TRY(lay_lattice(sampler, region, false, &l, per_shape, to));
+    if (region->has_layers) {
+        TRY(layers_trace(&l));
+        TRY(lay_lattice(sampler, region, true, &l, per_shape, to));
+        for (int64_t k = l.first; k < l.points.n; k++)
+            TRY(sample_point(sampler, region, l.points.x[k], l.points.y[k], to));
     }
-    region->n = l.points.n;
-    region->n_layered = l.points.n - l.first;
-    if (region->n_layered > 0) {
-        region->layer_x = l.points.x + l.first;
-        region->layer_y = l.points.y + l.first;
-    }
+    region->n = to->n - before;
     return ERR_OK;
 }
 
 /* Shapes without particles are reported together, before anything needs their particles. */
-static enum err count_points(struct sampler *sampler, struct region *region)
+static enum err sample_region(struct sampler *sampler, struct region *region, struct samples *to)
 {
-    int64_t *per_shape = geometry_alloc(sampler, (size_t)region->list->n, sizeof *per_shape);
+    int64_t *const per_shape = geometry_alloc(sampler, (size_t)region->list->n, sizeof *per_shape);
     if (!per_shape) return ERR_MEMORY;
-    for (int64_t j = 0; j < region->count[1]; j++) {
-        mark_row(sampler, region, region->first[1] + j, true, per_shape);
-        for (int64_t i = 0; i < region->count[0]; i++) region->n += sampler->mask[i];
-    }
-    if (region->has_layers) TRY(lay_layers(sampler, region));
-    if (region->kind == KIND_WALL) region->n += geometry_thin_count(sampler->scene, region->body);
-    bool empty = false;
+    TRY(lay_points(sampler, region, per_shape, to));
+    bool missing = region->n == 0;
     for (int k = 0; k < region->list->n; k++) {
+        missing &= per_shape[k] > 0;
         if (per_shape[k] || region->list->item[k].thin) continue;
-        empty = true;
         TRY(geometry_refuse(sampler, region->list->item[k].line,
                             "shape %d of [%s %s] contains no particle, because it is narrower "
                             "than dp = %g m or lies between lattice points; enlarge or move it",
                             k + 1, region->word, region->name, region->lattice.dp));
     }
-    if (region->n || empty) return ERR_OK;
+    if (!missing) return ERR_OK;
     return geometry_refuse(sampler, region->line, "nothing is left of [%s %s] after its `minus`",
                            region->word, region->name);
-}
-
-/* Stores a point given in the axes of its lattice. */
-static void put_point(const struct sampler *sampler, const struct region *region,
-                      struct samples *samples, int64_t k, double x, double y)
-{
-    double at[2];
-    place_of_lattice(&region->lattice, x, y, at);
-    samples->x[k] = at[0];
-    samples->y[k] = at[1];
-    samples->region[k] = (int32_t)(region - sampler->regions);
-}
-
-/* Appends a region's points: row by row, or column by column with `upright`. */
-static enum err append_points(struct sampler *sampler, const struct region *region, bool upright,
-                              struct samples *samples)
-{
-    int64_t *next = NULL;
-    if (upright) { /* position of each column: a counting sort over the rows */
-        next = geometry_alloc(sampler, (size_t)region->count[0] + 1, sizeof *next);
-        if (!next) return ERR_MEMORY;
-        for (int64_t j = 0; j < region->count[1]; j++) {
-            mark_row(sampler, region, region->first[1] + j, false, NULL);
-            for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += sampler->mask[i];
-        }
-        for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += next[i];
-    }
-    int64_t filled = 0;
-    for (int64_t j = 0; j < region->count[1]; j++) {
-        mark_row(sampler, region, region->first[1] + j, false, NULL);
-        for (int64_t i = 0; i < region->count[0]; i++) {
-            if (!sampler->mask[i]) continue;
-            const int64_t k = samples->n + (upright ? next[i]++ : filled);
-            put_point(sampler, region, samples, k, centre(region, 0, region->first[0] + i),
-                      centre(region, 1, region->first[1] + j));
-            filled++;
-        }
-    }
-    samples->n += filled;
-    for (int64_t k = 0; k < region->n_layered; k++)
-        put_point(sampler, region, samples, samples->n++, region->layer_x[k], region->layer_y[k]);
-    return ERR_OK;
 }
 
 /* An error if there was bad input. */
 static enum err problems_found(const struct sampler *sampler)
 {
     return sampler->problems ? ERR_INPUT : ERR_OK;
-}
-
-static void append_thin(const struct sampler *sampler, const struct region *region,
-                        struct samples *samples)
-{
-    const int64_t n = geometry_thin_count(sampler->scene, region->body);
-    geometry_thin_points(sampler->scene, region->body, samples->x + samples->n,
-                         samples->y + samples->n);
-    for (int64_t k = 0; k < n; k++) {
-        samples->region[samples->n] = (int32_t)(region - sampler->regions);
-        samples->thin[samples->n++] = 1;
-    }
 }
 
 static enum err sample_regions(struct sampler *sampler, struct samples *samples)
@@ -310,27 +242,12 @@ static enum err sample_regions(struct sampler *sampler, struct samples *samples)
     TRY(geometry_choose_lattices(sampler));
     TRY(turn_regions(sampler));
     TRY(check_size(sampler));
-    TRY(prepare_rows(sampler));
-    int64_t total = 0;
     for (int k = 0; k < sampler->n_regions; k++) {
-        TRY(count_points(sampler, &sampler->regions[k]));
-        total += sampler->regions[k].n;
-    }
-    TRY(problems_found(sampler));
-    samples->x = geometry_alloc(sampler, (size_t)total, sizeof *samples->x);
-    samples->y = geometry_alloc(sampler, (size_t)total, sizeof *samples->y);
-    samples->region = geometry_alloc(sampler, (size_t)total, sizeof *samples->region);
-    samples->clamped = geometry_alloc(sampler, (size_t)total, 1);
-    samples->thin = geometry_alloc(sampler, (size_t)total, 1);
-    if (!samples->x || !samples->y || !samples->region || !samples->clamped || !samples->thin)
-        return ERR_MEMORY;
-    for (int k = 0; k < sampler->n_regions; k++) {
-        struct region *region = &sampler->regions[k];
+        struct region *const region = &sampler->regions[k];
         const int64_t from = samples->n;
-        const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
-        TRY(append_points(sampler, region, upright, samples));
-        if (region->kind == KIND_SOLID) TRY(geometry_clamp(sampler, region, from, samples));
-        if (region->kind == KIND_WALL) append_thin(sampler, region, samples);
+        TRY(sample_region(sampler, region, samples));
+        if (region->kind == KIND_SOLID && region->n > 0)
+            TRY(geometry_clamp(sampler, region, from, samples));
     }
     return ERR_OK;
 }
@@ -342,8 +259,7 @@ enum err geometry_draw(struct sampler *sampler)
         sampler->regions[k].lattice = sampler->regions[k].kind == KIND_SOLID
                                           ? sampler->scene->solid_lattice[sampler->regions[k].body]
                                           : sampler->scene->lattice;
-    TRY(turn_regions(sampler));
-    return prepare_rows(sampler);
+    return turn_regions(sampler);
 }
 
 enum err scene_sample(struct scene *scene, struct diag *d)
@@ -355,7 +271,6 @@ enum err scene_sample(struct scene *scene, struct diag *d)
     if (!err) err = geometry_check_bodies(&sampler);
     if (!err) err = problems_found(&sampler);
     if (!err) err = geometry_merge(&sampler, &points);
-    if (!err) geometry_thin_number(scene);
     if (!err) err = geometry_pack(&sampler);
     if (!err) err = geometry_open(&sampler);
     if (!err) err = geometry_extent(&sampler);

@@ -26,15 +26,12 @@ struct region {
     const struct shape_list *list, *minus_list;
     struct outlines add, minus;
     struct scene_lattice lattice;
-    struct box2 box;            /* of the shapes */
-    int64_t first[2], count[2]; /* lattice points within the box */
-    int64_t n, n_clamped;       /* points inside, and those that a clamp holds */
-    int64_t n_hinged;           /* of the latter those in a hinge */
-    struct outlines clamps;     /* of a solid */
-    bool *layered; /* [add.n]: whether a piece is sampled in layers (geometry/layers.h) */
+    struct box2 box;        /* of the shapes */
+    int64_t n, n_clamped;   /* points inside, and those that a clamp holds */
+    int64_t n_hinged;       /* of the latter those in a hinge */
+    struct outlines clamps; /* of a solid */
+    bool *layered;          /* [add.n]: whether a piece is sampled in layers (geometry/layers.h) */
     bool has_layers;
-    int64_t n_layered;
-    double *layer_x, *layer_y; /* those of the layers, after the lattice's */
 };
 
 struct sampler {
@@ -43,8 +40,6 @@ struct sampler {
     struct arena temp;
     int n_regions;
     struct region *regions; /* solids, walls, fluids: in order of priority */
-    unsigned char *mask;    /* of a row */
-    double *scratch;        /* crossings of a line */
     int problems;           /* found so far */
 };
 
@@ -76,7 +71,6 @@ struct samples {
     double *x, *y;
     int32_t *region;
     uint8_t *clamped;
-    uint8_t *thin; /* of a thin line, which overlaps nothing */
 };
 
 /* Zeroed memory that lasts until the scene is sampled; NULL: there is none. */
@@ -102,13 +96,10 @@ SPHFSI_INLINE enum err geometry_go_on(struct sampler *sampler, enum err e)
 /* Gives the lines of a wall their thickness, once the outlines of the fluid are known. */
 enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SPHFSI_CHECKED;
 
-/* The thin lines of all walls and their dummies (geometry/thin.c), once walls have outlines. Number
- * and places of the dummies of a wall. */
+/* The thin lines of all walls and their dummies (geometry/thin.c), once walls have outlines. */
 enum err geometry_thin(struct sampler *sampler) SPHFSI_CHECKED;
-int64_t geometry_thin_count(const struct scene *scene, int wall);
-void geometry_thin_points(const struct scene *scene, int wall, double *x, double *y);
-/* Numbers them among the particles of walls, of which they are the last of each wall. */
-void geometry_thin_number(struct scene *scene);
+/* Appends the dummies of a wall's lines to its particles. */
+void geometry_thin_store(struct scene *scene, int wall);
 
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *sampler) SPHFSI_CHECKED;

@@ -142,7 +142,7 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
         line->extend[last] = extension(sampler, line, last);
         line->tip[last] = !closed && line->extend[last] == 0;
     }
-    for (int k = 0; k + 1 < line->n; start += line_part(line, k++).length)
+    for (int k = 0; k + 1 < line->n && scene->n_fluid; start += line_part(line, k++).length)
         for (int side = -1; side < 2; side += 2) TRY(lay_part(sampler, line, k, start, step, side));
     return ERR_OK;
 }
@@ -227,31 +227,18 @@ enum err geometry_thin(struct sampler *sampler)
     return ERR_OK;
 }
 
-int64_t geometry_thin_count(const struct scene *scene, int wall)
+void geometry_thin_store(struct scene *scene, int wall)
 {
-    int64_t n = 0;
-    for (int k = 0; k < scene->n_line; k++)
-        if (scene->line[k].wall == wall) n += scene->line[k].n_dummies;
-    return n;
-}
-
-void geometry_thin_points(const struct scene *scene, int wall, double *x, double *y)
-{
-    for (int k = 0; k < scene->n_line; k++)
-        for (int64_t j = 0; j < scene->line[k].n_dummies && scene->line[k].wall == wall; j++) {
+    struct scene_points *const to = &scene->points[KIND_WALL];
+    for (struct scene_line *line = scene->line; line < scene->line + scene->n_line; line++) {
+        if (line->wall != wall) continue;
+        line->first = to->n;
+        for (int64_t j = 0; j < line->n_dummies; j++) {
             double at[2];
-            place_of(&scene->line[k], &scene->line[k].dummy[j], at);
-            *x++ = at[0];
-            *y++ = at[1];
+            place_of(line, &line->dummy[j], at);
+            to->x[to->n] = at[0];
+            to->y[to->n] = at[1];
+            to->body[to->n++] = wall;
         }
-}
-
-void geometry_thin_number(struct scene *scene)
-{
-    int64_t end = scene->points[KIND_WALL].n;
-    for (int k = scene->n_line - 1; k >= 0; k--) {
-        struct scene_line *const line = &scene->line[k];
-        while (scene->points[KIND_WALL].body[end - 1] != line->wall) end--;
-        end = line->first = end - line->n_dummies;
     }
 }
