@@ -245,18 +245,6 @@ static void warn_of_flutter(const struct check *check, int body)
             quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
-/* A wall has no momentum to receive, and a rigid body has the contact of a wall. */
-static void warn_of_rigid_contact(const struct check *check, int solid)
-{
-    const struct scene *const scene = check->scene;
-    for (int k = 0; k < scene->n_rigid; k++)
-        if (scene_contact_of(scene, solid, scene->n_solid + scene_rigid_wall(scene, k)))
-            warn_at(check->diag, scene, scene->rigid[k].common.line,
-                    "contact of [rigid %s] with [solid %s] pushes the solid only, not the rigid "
-                    "body; if they cannot meet, switch it off by a [contact] with `enabled = off`",
-                    scene->rigid[k].common.name, scene->solid[solid].common.name);
-}
-
 enum err warn_of_solids(struct check *check)
 {
     const struct scene *const scene = check->scene;
@@ -270,7 +258,6 @@ enum err warn_of_solids(struct check *check)
     TRY(warn_of_full_clamps(check));
     for (int k = 0; k < scene->n_solid; k++) {
         warn_of_hinge(check, k);
-        warn_of_rigid_contact(check, k);
         warn_of_other_motions(check, k);
         warn_of_material(check, k);
         warn_of_flutter(check, k);

@@ -34,7 +34,8 @@ struct rigid_equations {
     double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
     double change[3], faster[3];      /* of the velocity before, and delta */
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
-    double touch[RIGID_STAGES][3];    /* changes by contact */
+    double pushed[3];                 /* change by contact with solids */
+    double touch[RIGID_STAGES][3];    /* changes by contact with walls and rigid bodies */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */
 void rigid_solve(struct rigid *rigid, int k, double end, double kick);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/motion.h"
 #include "rigid/forces.h"
 
 /* The motion of the wall that a body is hinged to; -1: none. */
@@ -74,12 +75,10 @@ void rigid_publish(const struct rigid *rigid, double time, double dt)
  * keeps the mean acceleration of a light body stable. */
 static double exchange_time(const struct rigid *rigid) { return 2 * rigid->mean_time; }
 
-/* The generalised vector of a vector w at a particle: with its moment about the centre of mass at
- * the last evaluation. */
-static void with_moment(const struct rigid_body *body, double x, double y, double wx, double wy,
+/* The generalised vector of a vector w at a point: with its moment about the centre of mass. */
+static void with_moment(const struct motion_state *m, double x, double y, double wx, double wy,
                         double to[3])
 {
-    const struct motion_state *const m = &body->wall->placed;
     to[0] = wx;
     to[1] = wy;
     to[2] = (x - m->centre[0] - m->d[0]) * wy - (y - m->centre[1] - m->d[1]) * wx;
@@ -95,10 +94,10 @@ static void find_fluid(const struct rigid *rigid, const struct rigid_body *body,
     for (int64_t i = body->wall->first; i < body->wall->end; i++) {
         const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
         double f[3], normal[3];
-        with_moment(body, p->x[i], p->y[i], p->fx[i], p->fy[i], f);
+        with_moment(&body->wall->placed, p->x[i], p->y[i], p->fx[i], p->fy[i], f);
         for (int c = 0; c < 3; c++) force[c] += f[c];
         if (!(wet > 0)) continue;
-        with_moment(body, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
+        with_moment(&body->wall->placed, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
         for (int c = 0; c < 3; c++)
             for (int e = 0; e < 3; e++)
                 impedance[c][e] += rigid->impedance / wet * normal[c] * normal[e];
@@ -114,7 +113,7 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
     for (int64_t i = body->wall->first; i < body->wall->end; i++) {
         const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
         double normal[3], along = 0;
-        with_moment(body, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
+        with_moment(&body->wall->placed, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
         for (int c = 0; c < 3 && wet > 0; c++) along += normal[c] / wet * faster[c];
         p->interface_pressure[i] = left * p->interface_pressure[i] - 2 * rigid->impedance * along;
     }
@@ -127,6 +126,16 @@ static double part_of(const struct rigid *rigid, double kick)
 {
     const double exchange = exchange_time(rigid);
     return exchange > 0 ? kick / exchange : 0;
+}
+
+/* The published motion goes on as without contact. */
+static void publish_free(const struct rigid *rigid, int k, double kick)
+{
+    const double *const change = rigid->eq[k].change;
+    struct motion_state *const now = &rigid->scene->rigid_motion[k].now;
+    now->a[0] = change[0] / kick;
+    now->a[1] = change[1] / kick;
+    now->angular_acceleration = change[2] / kick;
 }
 
 static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
@@ -153,6 +162,26 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     }
 }
 
+/* T-102a: the change of the velocity by an impulse, with the fluid's resistance. */
+static void velocity_by(const struct rigid_equations *eq, const double impulse[3], double change[3])
+{
+    for (int c = 0; c < 3; c++) {
+        change[c] = 0;
+        for (int e = 0; e < 3; e++) change[c] += eq->yields[c][e] * impulse[e];
+    }
+}
+
+static void add_pushed(struct rigid *rigid, int k)
+{
+    struct rigid_equations *const eq = &rigid->eq[k];
+    velocity_by(eq, rigid->body[k].pushed, eq->pushed);
+    for (int c = 0; c < 3; c++) {
+        eq->impulse[c] += rigid->body[k].pushed[c];
+        eq->change[c] += eq->pushed[c];
+        eq->faster[c] += eq->pushed[c];
+    }
+}
+
 static void move_body(struct rigid *rigid, int k, double now, double dt, double late, double kick,
                       double end)
 {
@@ -172,36 +201,84 @@ static void move_body(struct rigid *rigid, int k, double now, double dt, double 
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
         s->v[c] = eq->before[c] + change;
-        s->x[c] += late * s->v[c] + dt * eq->touch[RIGID_PUSH][c];
+        s->x[c] +=
+            late * (s->v[c] - eq->pushed[c]) + body->moved[c] + dt * eq->touch[RIGID_PUSH][c];
     }
     rigid_hold(rigid, k, end);
     for (int c = 0; c < 3; c++) {
-        const double impact = eq->touch[RIGID_IMPACT][c] / kick;
+        const double impact = eq->touch[RIGID_IMPACT][c] / kick, push = eq->pushed[c] / kick;
         /* An impact is no acceleration that the fluid could expect to go on. */
-        s->last[c] = (s->v[c] - eq->start[c]) / kick - impact;
+        const double steady = (s->v[c] - eq->start[c]) / kick - impact;
         /* The force that turns the velocity within the step is a reaction, too. */
         s->reaction[c] +=
-            body->mass[c] * (s->last[c] + impact - (body->mean[c] - eq->before[c]) * 2 / kick);
-        s->a[c] += weight * (s->last[c] - s->a[c]);
+            body->mass[c] * (steady + impact - (body->mean[c] - eq->before[c]) * 2 / kick);
+        /* Contact with solids is not half a step behind. */
+        s->last[c] = steady - push;
+        s->a[c] += weight * (steady - s->a[c]);
     }
     if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, eq->faster);
 }
 
-void rigid_advance(struct rigid *rigid, const double gravity[2], double time, double dt,
-                   double kick)
+void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick)
 {
-    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late, end = time + dt;
+    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late;
+    rigid->end = time + dt;
     for (int k = 0; k < rigid->n && rigid->centred; k++)
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
     rigid_find_loads(rigid);
     for (int k = 0; k < rigid->n; k++) {
+        struct rigid_body *const body = &rigid->body[k];
+        memset(body->pushed, 0, sizeof body->pushed);
+        memset(body->moved, 0, sizeof body->moved);
         prepare_body(rigid, k, gravity, now, dt, kick);
-        rigid_solve(rigid, k, end, kick);
+        rigid_solve(rigid, k, rigid->end, kick);
+        publish_free(rigid, k, kick);
     }
+}
+
+void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
+{
+    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late;
+    for (int k = 0; k < rigid->n; k++) add_pushed(rigid, k);
     rigid_touch(rigid, now, dt);
-    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, dt, late, kick, end);
+    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, dt, late, kick, rigid->end);
     rigid_pass_work(rigid, kick);
     rigid_contact_work(rigid);
+}
+
+/* --- contact with solids --- */
+
+void rigid_clear_push(struct rigid *rigid)
+{
+    for (int k = 0; k < rigid->n; k++) memset(rigid->body[k].push, 0, sizeof rigid->body[k].push);
+}
+
+void rigid_push(struct rigid *rigid, int k, const struct motion_state *m, const double at[2],
+                const double force[2])
+{
+    double w[3];
+    with_moment(m, at[0], at[1], force[0], force[1], w);
+    for (int c = 0; c < 3; c++) rigid->body[k].push[c] += w[c];
+}
+
+void rigid_kick(struct rigid *rigid, double time, double dt)
+{
+    for (int k = 0; k < rigid->n; k++) {
+        struct rigid_body *const body = &rigid->body[k];
+        struct rigid_motion *const motion = &rigid->scene->rigid_motion[k];
+        double impulse[3], change[3];
+        for (int c = 0; c < 3; c++) impulse[c] = dt * body->push[c];
+        velocity_by(&rigid->eq[k], impulse, change);
+        motion->now = motion_at(rigid->scene, scene_rigid_motion(rigid->scene, k), time);
+        motion->time = time;
+        motion->now.v[0] += change[0];
+        motion->now.v[1] += change[1];
+        motion->now.rate += change[2];
+        for (int c = 0; c < 3; c++) {
+            body->pushed[c] += impulse[c];
+            body->moved[c] += (rigid->end - time) * change[c];
+        }
+    }
 }
 
 /* --- energy --- */

@@ -27,6 +27,8 @@ struct rigid_body {
     double load[3];                        /* of springs in the coming step, N/m and N */
     double stiffness[3][3], damping[3][3]; /* of springs to a place */
     double mean[3];                        /* velocity over the last step, m/s and 1/s */
+    /* Of contact with solids: the force now; its impulse and what it moves in the coming step. */
+    double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
     double work, driven, passed;
 };
@@ -52,6 +54,7 @@ struct rigid {
     double impedance; /* rho0 c0; 0: no fluid */
     double mean_time; /* h/c0: of the mean acceleration, s; 0: no fluid */
     bool centred;     /* forces are found in the middle of a step */
+    double end;       /* of the step that has begun, s */
 };
 
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
@@ -70,10 +73,22 @@ double rigid_spring_rates(const struct rigid *rigid, double *damping);
  */
 void rigid_publish(const struct rigid *rigid, double time, double dt);
 
-/* A step of dt from a time on. The rates of the last evaluation act for `kick`, as on the fluid
- * (T-96). */
-void rigid_advance(struct rigid *rigid, const double gravity[2], double time, double dt,
-                   double kick);
+/* Begins a step of dt from a time on: the motion of the bodies without contact, which is published.
+ * The rates of the last evaluation act for `kick`, as on the fluid (T-96). */
+void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick);
+
+/* Ends it, after the sub-steps of solids. */
+void rigid_advance(struct rigid *rigid, double time, double dt, double kick);
+
+/* --- contact with solids, between these two (T-102a) --- */
+
+/* Sets the force to zero; adds one at a point, with the body where `m` says. */
+void rigid_clear_push(struct rigid *rigid);
+void rigid_push(struct rigid *rigid, int k, const struct motion_state *m, const double at[2],
+                const double force[2]);
+
+/* The force of this time acts for dt: the published motion changes. */
+void rigid_kick(struct rigid *rigid, double time, double dt);
 
 /* The force of a spring at its end `to`, and where that is. */
 void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);

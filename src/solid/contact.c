@@ -138,6 +138,11 @@ static void find_forces(struct contact *contact)
     for (int64_t k = 0; k < contact->n_pairs; k++) pair_force(contact, &contact->pair[k]);
 }
 
+static bool moves_by_itself(const struct contact *contact, int body)
+{
+    return body < contact->n_solids || contact_rigid_of(contact, body) >= 0;
+}
+
 void contact_forces(struct contact *contact, struct particles *particles, double time)
 {
     contact_place(contact, particles, time);
@@ -147,19 +152,25 @@ void contact_forces(struct contact *contact, struct particles *particles, double
 #pragma omp single
     {
         contact->power = 0;
+        if (contact->rigid) rigid_clear_push(contact->rigid);
         for (int64_t k = 0; k < contact->n_pairs; k++) {
             const struct contact_pair *const pair = &contact->pair[k];
             if (!pair->touches) continue;
             const int32_t a = contact->edge[pair->edge].a, b = contact->edge[pair->edge].b;
-            const int other = contact->point[a].body;
+            const int one = contact->point[pair->point].body, other = contact->point[a].body;
             contact->touched |=
-                other < contact->n_solids && contact->point[pair->point].body != other;
+                one != other && moves_by_itself(contact, one) && moves_by_itself(contact, other);
             contact_add_force(contact, particles, pair->point, pair->force[0]);
             contact_add_force(contact, particles, a, pair->force[1]);
             contact_add_force(contact, particles, b, pair->force[2]);
         }
         if (contact->friction) contact_friction_forces(contact, particles);
     }
+}
+
+void contact_kick(struct contact *contact, double dt)
+{
+    if (contact->rigid) rigid_kick(contact->rigid, contact->time, dt);
 }
 
 /* Number of spacings that two points may approach in excess of their present speeds times the
@@ -216,6 +227,13 @@ static void add_rows(struct contact *contact, const struct particles *particles,
     contact_add_row(contact, particles, pair->point, 1, stiffness, damping);
     contact_add_row(contact, particles, e->a, 1 - s, stiffness, damping);
     contact_add_row(contact, particles, e->b, s, stiffness, damping);
+    if (!contact->rigid) return;
+    const struct contact_point *const p = closest->point;
+    const double r = closest->distance;
+    const double n[2] = {closest->offset[0] / r, closest->offset[1] / r};
+    const double alone = own * elastic_stiffness(q.stiffness, closest->min_reach, left);
+    contact_add_body_row(contact, p->body, p->x, r > 0 ? n : NULL, alone, own * q.damping);
+    contact_add_body_row(contact, closest->a->body, p->x, r > 0 ? n : NULL, alone, own * q.damping);
 }
 
 static void find_depth(struct contact *contact, const struct contact_closest *closest,
@@ -287,6 +305,7 @@ static void watch_pairs(struct contact *contact, const struct particles *particl
         struct contact_point *const p = &contact->point[k];
         p->row = p->row_damping = p->wall_row = p->wall_damping = 0;
     }
+    for (int k = 0; k < contact->n_walls; k++) contact->body_row[k] = contact->body_damping[k] = 0;
     for (int64_t first = 0, end; first < contact->n_pairs; first = end) {
         for (end = first;
              end < contact->n_pairs && contact->pair[end].point == contact->pair[first].point;
@@ -300,6 +319,13 @@ static void watch_pairs(struct contact *contact, const struct particles *particl
         contact->omega2 = max2(contact->omega2, p->row + p->wall_row);
         contact->damping = max2(contact->damping, p->row_damping + p->wall_damping);
     }
+    double omega2 = 0, damping = 0;
+    for (int k = 0; k < contact->n_walls; k++) {
+        omega2 = max2(omega2, contact->body_row[k]);
+        damping = max2(damping, contact->body_damping[k]);
+    }
+    contact->omega2 += omega2;
+    contact->damping += damping;
 }
 
 bool contact_watch(struct contact *contact, const struct particles *particles, double time,
@@ -343,13 +369,10 @@ void contact_forget(struct contact *contact, const struct particles *walls)
     contact->known = false;
 }
 
-void contact_name(const struct contact *contact, int body, char text[CONTACT_NAME])
+const struct scene_section_common *contact_section(const struct contact *contact, int body)
 {
-    if (body < contact->n_solids)
-        snprintf(text, CONTACT_NAME, "[solid %s]", contact->scene->solid[body].common.name);
-    else
-        snprintf(text, CONTACT_NAME, "[wall %s]",
-                 contact->scene->wall[body - contact->n_solids].common.name);
+    return body < contact->n_solids ? &contact->scene->solid[body].common
+                                    : &contact->scene->wall[body - contact->n_solids].common;
 }
 
 /* --- start --- */
@@ -468,7 +491,13 @@ static enum err bodies_create(struct contact *contact, struct arena *a, struct d
     contact->group = arena_alloc(a, n, sizeof *contact->group, "contact", d);
     contact->motion =
         arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->motion, "contact", d);
-    if (!contact->law || !contact->group || !contact->motion) return ERR_MEMORY;
+    contact->body_row =
+        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->body_row, "contact", d);
+    contact->body_damping =
+        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->body_damping, "contact", d);
+    if (!contact->law || !contact->group || !contact->motion || !contact->body_row ||
+        !contact->body_damping)
+        return ERR_MEMORY;
     for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
     for (int k = 0; k < contact->n_walls; k++)
         contact->group[contact->n_solids + k] =

@@ -5,6 +5,7 @@
 #define SPHFSI_SOLID_CONTACT_H
 
 #include "base/point_grid.h"
+#include "rigid/rigid.h"
 #include "solid/types.h"
 
 /* Constants of two bodies, of a body and a wall, or of a body and itself. */
@@ -85,11 +86,14 @@ struct contact {
     double margin;
     int64_t n_pairs, max_pairs;
     struct contact_pair *pair;
-    struct motion_state *motion; /* [n_walls] now */
-    int stale;                   /* some point has moved by half of the margin */
-    bool list_full;              /* no memory for a longer list */
-    double power;                /* of moving walls at the last call of contact_forces, W/m */
-    bool touched;                /* two bodies have exchanged a force; the account resets it */
+    struct motion_state *motion; /* [n_walls] at a time, s */
+    double time;
+    struct rigid *rigid;             /* those of the walls that are rigid bodies; NULL: none */
+    double *body_row, *body_damping; /* [n_walls] of a rigid body: its part in the bound, T-62a */
+    int stale;                       /* some point has moved by half of the margin */
+    bool list_full;                  /* no memory for a longer list */
+    double power;                    /* of walls that a [motion] moves, from contact_forces, W/m */
+    bool touched;                    /* two bodies have exchanged a force; the account resets it */
     /* What the next step must respect, from contact_watch. */
     bool near;              /* some surfaces may touch */
     double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
@@ -117,6 +121,9 @@ void contact_forget(struct contact *contact, const struct particles *walls);
  * parallel region all threads call it together. */
 void contact_forces(struct contact *contact, struct particles *particles, double time);
 
+/* The last forces on rigid bodies act for dt. By one thread. */
+void contact_kick(struct contact *contact, double dt);
+
 /* Lets the places that friction holds points to slide where a spring exceeds friction, after the
  * forces of a step. By one thread. */
 void contact_slide(struct contact *contact, struct particles *particles);
@@ -124,8 +131,7 @@ void contact_slide(struct contact *contact, struct particles *particles);
 /* Energy of contact, J/m, with walls at their positions at `time`. */
 double contact_energy(struct contact *contact, const struct particles *particles, double time);
 
-/* "[solid a]" or "[wall b]" of a body, walls after solids. */
-enum { CONTACT_NAME = 160 };
-void contact_name(const struct contact *contact, int body, char text[CONTACT_NAME]);
+/* The section of a body, walls after solids. */
+const struct scene_section_common *contact_section(const struct contact *contact, int body);
 
 #endif

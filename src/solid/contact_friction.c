@@ -276,6 +276,8 @@ static void add_wall_spring(struct contact *contact, const struct particles *par
     struct contact_point *const p = &contact->point[point];
     const double per_mass = contact_inv_mass(contact, particles, p);
     if (!(h.friction > 0)) return;
+    contact_add_body_row(contact, contact->point[contact->edge[edge].a].body, p->x, NULL,
+                         h.stiffness, h.damping);
     p->wall_row = max2(p->wall_row, h.stiffness * per_mass);
     p->wall_damping = max2(p->wall_damping, h.damping * per_mass);
 }

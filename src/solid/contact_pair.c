@@ -145,6 +145,11 @@ void contact_add_force(struct contact *contact, struct particles *particles, int
                        const double f[2])
 {
     const struct contact_point *const p = &contact->point[point];
+    const int rigid = contact_rigid_of(contact, p->body);
+    if (rigid >= 0) {
+        rigid_push(contact->rigid, rigid, &contact->motion[p->body - contact->n_solids], p->x, f);
+        return;
+    }
     if (p->body >= contact->n_solids) {
         contact->power -= f[0] * p->v[0] + f[1] * p->v[1];
         return;
@@ -161,6 +166,20 @@ void contact_add_row(struct contact *contact, const struct particles *particles,
     const double per_mass = contact_inv_mass(contact, particles, p);
     p->row += weight * stiffness * per_mass;
     p->row_damping += weight * damping * per_mass;
+}
+
+void contact_add_body_row(struct contact *contact, int body, const double x[2], const double *n,
+                          double stiffness, double damping)
+{
+    const int k = contact_rigid_of(contact, body), wall = body - contact->n_solids;
+    if (k < 0) return;
+    const struct motion_state *const m = &contact->motion[wall];
+    const double *const mass = contact->rigid->body[k].mass;
+    const double arm[2] = {x[0] - m->centre[0] - m->d[0], x[1] - m->centre[1] - m->d[1]};
+    const double arm2 = n ? square(arm[0] * n[1] - arm[1] * n[0]) : square(arm[0]) + square(arm[1]);
+    const double per_mass = 1 / mass[0] + arm2 / mass[2];
+    contact->body_row[wall] += stiffness * per_mass;
+    contact->body_damping[wall] += damping * per_mass;
 }
 
 /* --- list --- */
@@ -247,10 +266,12 @@ void contact_place(struct contact *contact, const struct particles *particles, d
     const double far2 = square(0.5 * contact->margin);
     if (contact->n_moving_points > contact->n_solid_points) {
 #pragma omp single
-        for (int k = 0; k < contact->n_walls; k++)
+        for (int k = 0; k < contact->n_walls; k++) {
+            contact->time = time;
             contact->motion[k] =
                 motion_at(contact->scene,
                           scene_find_motion(contact->scene, contact->scene->wall[k].motion), time);
+        }
     }
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < contact->n_moving_points; k++) {

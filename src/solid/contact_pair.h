@@ -52,23 +52,35 @@ SPHFSI_INLINE struct contact_law *contact_law_of(const struct contact *contact, 
     return &contact->law[a * contact->n_bodies + b];
 }
 
+/* The number of a body among the rigid ones; below 0: another. */
+SPHFSI_INLINE int contact_rigid_of(const struct contact *contact, int body)
+{
+    const int k = body - contact->n_solids - scene_rigid_wall(contact->scene, 0);
+    return contact->rigid && k < contact->scene->n_rigid ? k : -1;
+}
+
 /* The spacing of a solid or wall, m. */
 SPHFSI_INLINE double contact_dp(const struct contact *contact, int body)
 {
     return body < contact->n_solids ? contact->solid->body[body].dp : contact->scene->top.dp;
 }
 
-/* To a solid's particle, or to the power of moving walls. */
+/* To a solid's particle or a rigid body, or to the power of other walls. */
 void contact_add_force(struct contact *contact, struct particles *particles, int32_t point,
                        const double f[2]);
 
-/* How much a force moves a point, 1/kg; 0: a wall. */
+/* How much a force moves a point, 1/kg; 0: a wall or rigid body. */
 double contact_inv_mass(const struct contact *contact, const struct particles *particles,
                         const struct contact_point *point);
 
 /* A part of the rows of T-62a. */
 void contact_add_row(struct contact *contact, const struct particles *particles, int32_t point,
                      double weight, double stiffness, double damping);
+
+/* The part of a force between a solid and a place x in the row of a wall's body: of a rigid one. n:
+ * the direction of the force; NULL: any. */
+void contact_add_body_row(struct contact *contact, int body, const double x[2], const double *n,
+                          double stiffness, double damping);
 
 /* Memory for a list of so many pairs; keeps those listed. */
 enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct diag *d)

@@ -374,6 +374,7 @@ void solid_book_work(struct solid *solid, struct particles *particles, const dou
 {
     if (solid->contact) {
         contact_slide(solid->contact, particles);
+        contact_kick(solid->contact, dt);
         const double work = dt * solid->contact->power;
         solid->work += work;
         solid->work_on[0] += work;

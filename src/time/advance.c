@@ -17,11 +17,16 @@ void advance_structure(struct simulation *sim, double dt, double kick)
     sim->state.solid_evaluations += n;
 }
 
-void advance_rigid(struct simulation *sim, double time, double dt, double kick)
+void begin_rigid(struct simulation *sim, double time, double dt, double kick)
 {
     double gravity[2];
     scene_gravity_at(sim->scene, time + (sim->rigid.centred ? 0.5 * dt : 0), gravity);
-    rigid_advance(&sim->rigid, gravity, time, dt, kick);
+    rigid_begin(&sim->rigid, gravity, time, dt, kick);
+}
+
+void advance_rigid(struct simulation *sim, double time, double dt, double kick)
+{
+    rigid_advance(&sim->rigid, time, dt, kick);
     energy_of_rigid(sim);
 }
 

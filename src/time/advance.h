@@ -43,7 +43,9 @@ void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
  * fluid for `kick`. */
 void advance_structure(struct simulation *sim, double dt, double kick);
 
-/* The step of rigid bodies from a time on, in the same way. */
+/* The step of rigid bodies from a time on, in the same way: before that of solids, which may push
+ * them, and after it. */
+void begin_rigid(struct simulation *sim, double time, double dt, double kick);
 void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 
 /* The step of beams from a time on. */

@@ -380,10 +380,12 @@ static void unite(struct energy_account *account, int one, int other)
 }
 
 /* The energy of contact is a single number: all bodies belong together once any have touched. */
-static void join_bodies(struct energy_account *account)
+static void join_bodies(struct simulation *sim)
 {
-    for (int k = energy_entry(KIND_SOLID, 1); k < ENERGY_ENTRIES; k++)
-        unite(account, energy_entry(KIND_SOLID, 0), k);
+    const int first = energy_entry(KIND_SOLID, 0);
+    for (int k = first + 1; k < ENERGY_ENTRIES; k++) unite(&sim->state.energy, first, k);
+    for (int k = 0; k < sim->rigid.n; k++)
+        unite(&sim->state.energy, first, energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k)));
 }
 
 /* Sections whose boxes are within the kernel's reach of each other belong together from now on; all
@@ -428,7 +430,7 @@ void energy_after_step(struct simulation *sim)
         e->last_work = done;
         e->noted = e->supplied;
     }
-    if (sim->contact.touched) join_bodies(&sim->state.energy); /* they may part before the test */
+    if (sim->contact.touched) join_bodies(sim); /* they may part before the test */
     sim->contact.touched = false;
 }
 
@@ -477,7 +479,7 @@ void energy_begin(struct simulation *sim)
         account->entry[wall].region = wall;
     }
     join_neighbours(sim);
-    if (of[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(account);
+    if (of[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(sim);
 }
 
 /* --- the test for gains --- */

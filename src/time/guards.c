@@ -169,14 +169,14 @@ static struct finding too_fast(const struct simulation *sim, const struct partic
 static enum err check_contact(struct simulation *sim, struct diag *d)
 {
     const struct contact_depth *const at = &sim->contact.deepest;
-    char one[CONTACT_NAME], other[CONTACT_NAME];
+    char one[TITLE_TEXT], other[TITLE_TEXT];
     if (sim->contact.list_full)
         return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
                          time_text(sim).text);
     if (at->overlap < OVERLAP_WARNING || (sim->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
         return ERR_OK;
-    contact_name(&sim->contact, at->body, one);
-    contact_name(&sim->contact, at->other, other);
+    section_title(contact_section(&sim->contact, at->body), one);
+    section_title(contact_section(&sim->contact, at->other), other);
     sim->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
     if (sim->guard.case_at_fault)
         return diag_fail(

@@ -244,6 +244,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
             TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
                              &sim->kind[KIND_WALL],
                              sim->integrator->ahead > 0 || !(sim->effects & FX_FLUID), d));
+        if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)

@@ -73,9 +73,11 @@ static void leapfrog_step(struct simulation *sim, double t_limit)
     energy_of_step(sim, dt);
     update_fluid(sim, dt, dt_old, st->dt_old);
     clock = phase_add(sim, PHASE_update, clock);
-    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, 0.5 * (dt_old + dt));
-    if (sim->effects & FX_RIGID) advance_rigid(sim, sim->state.time, dt, 0.5 * (dt_old + dt));
-    if (sim->effects & FX_BEAM) advance_beams(sim, sim->state.time, dt, 0.5 * (dt_old + dt));
+    const double time = st->time, kick = 0.5 * (dt_old + dt);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, kick);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -116,14 +116,15 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     evaluate_fluid(sim, time + 0.5 * dt);
     energy_of_evaluation(sim, dt);
     clock = wall_clock();
+    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, dt);
     if (multirate) advance_structure(sim, dt, dt);
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
     advance_fluid(sim, correct_rows, &dt);
+    if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
-    if (single_rate) correct_at_single_rate(sim, dt);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }

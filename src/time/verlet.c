@@ -43,10 +43,11 @@ static void verlet_step(struct simulation *sim, double t_limit)
     energy_of_step(sim, dt);
     advance_fluid(sim, update_verlet_rows, &(struct verlet_sizes){dt, sim->state.dt, euler});
     clock = phase_add(sim, PHASE_update, clock);
+    const double time = sim->state.time, kick = 0.5 * (sim->state.dt + dt);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
-    if (sim->effects & FX_RIGID)
-        advance_rigid(sim, sim->state.time, dt, 0.5 * (sim->state.dt + dt));
-    if (sim->effects & FX_BEAM) advance_beams(sim, sim->state.time, dt, 0.5 * (sim->state.dt + dt));
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
