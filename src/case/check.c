@@ -164,7 +164,14 @@ static enum err check_solid(struct reader *r, const void *section)
     return ERR_OK;
 }
 
-/* Two bodies, one of them a solid; a larger gap contains fluid particles of its own. */
+static bool moves_freely(const struct scene *scene, const char *name)
+{
+    const int wall = scene_find_wall(scene, name);
+    return wall < 0 || (wall >= scene_rigid_wall(scene, 0) && wall < scene_beam_wall(scene, 0));
+}
+
+/* Two bodies, one of them a solid or rigid body; a larger gap contains fluid particles of its own.
+ */
 static enum err check_contact(struct reader *r, const void *section)
 {
     const struct scene *const scene = r->scene;
@@ -172,7 +179,10 @@ static enum err check_contact(struct reader *r, const void *section)
     const double max_gap = 4;
     double dp = scene->top.dp;
     char name[2][SCENE_TEXT];
-    if (scene->n_solid == 0) return bad_section(r, "needs a [solid]");
+    if (scene->n_solid + scene->n_rigid == 0) return bad_section(r, "needs a [solid] or a [rigid]");
+    if (scene->n_rigid == 0 && c->restitution > 0)
+        return bad_section(r, "has a `restitution`, which is that of a [rigid]; the rebound of a "
+                              "[solid] follows from its stiffness");
     for (int k = 0; k < scene->n_solid; k++) dp = min2(dp, scene_solid_dp(scene, k));
     if (c->gap > max_gap * dp * (1 + 1e-9))
         return bad_section(r,
@@ -180,11 +190,10 @@ static enum err check_contact(struct reader *r, const void *section)
                            c->gap, max_gap, dp, max_gap * dp);
     if (*c->between && !scene_pair(c->between, name))
         return bad_key(r, "between", c->between, "two names are expected, separated by a comma");
-    if (*c->between && scene_find_solid(scene, name[0]) < 0 &&
-        scene_find_solid(scene, name[1]) < 0 && scene_find_wall(scene, name[0]) >= 0 &&
-        scene_find_wall(scene, name[1]) >= 0)
-        return bad_key(r, "between", c->between,
-                       "one of the two must be a [solid], because walls do not interact");
+    if (*c->between && !moves_freely(scene, name[0]) && !moves_freely(scene, name[1]))
+        return bad_key(
+            r, "between", c->between,
+            "one of the two must be a [solid] or [rigid], because walls do not interact");
     return ERR_OK;
 }
 

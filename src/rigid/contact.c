@@ -17,18 +17,25 @@ struct rigid_shape {
 
 /* A place where the corner of one section is near the outline of another one. */
 struct rigid_touch {
-    int body[2];        /* -1: a wall */
-    double along[2][3]; /* what a unit of impulse is to each body: force and moment */
-    double gap;         /* m */
-    double wall_speed;  /* of walls, along the normal from the second to the first, m/s */
-    double impulse[RIGID_STAGES];
+    int body[2]; /* -1: a wall */
+    const struct touch_law *law;
+    /* Along the normal from the second to the first, and across it: what a unit of impulse is to
+     * each body, force and moment; the speed of walls, m/s; the impulses. */
+    double along[2][2][3], wall_speed[2], impulse[RIGID_STAGES][2];
+    double gap;   /* m */
+    double leave; /* least speed at which it opens after an impact, m/s */
+};
+
+/* Contact of a body with a wall, or with a body before it. */
+struct touch_law {
+    double layer; /* distance that outlines keep, m; NAN: no contact */
+    double friction, restitution;
 };
 
 struct rigid_contact {
-    double reach;              /* a spacing, m */
-    struct rigid_shape *shape; /* [n_wall] */
-    /* [rigid bodies][n_wall]: distance that outlines keep, m; NAN: no contact. */
-    double *layer, kept;
+    double reach;                /* a spacing, m */
+    struct rigid_shape *shape;   /* [n_wall] */
+    struct touch_law *law, *now; /* [rigid bodies][n_wall]; of the pair that is compared */
     int n, most;
     struct rigid_touch *touch;
 };
@@ -53,12 +60,12 @@ struct approach {
 static void add_touch(struct approach *a, const double at[2], const double n[2], double distance)
 {
     struct rigid_contact *const contact = a->contact;
-    const double near = 1e-6 * contact->reach, gap = distance - a->radius - contact->kept;
+    const double near = 1e-6 * contact->reach, gap = distance - a->radius - contact->now->layer;
     const double beyond[2] = {at[0] + near * n[0], at[1] + near * n[1]},
                  before[2] = {at[0] - near * n[0], at[1] - near * n[1]};
     const bool deep = distance < -1e-3 * near;
     /* A quarter of a spacing: deeper, the body passes through, of which a guard warns. */
-    if (gap > contact->reach || gap < -contact->kept - 0.25 * contact->reach) return;
+    if (gap > contact->reach || gap < -contact->now->layer - 0.25 * contact->reach) return;
     if (a->inside ? distance > 1e-3 * near : deep) return;
     if (is_inside(a->of[1], beyond) || !is_inside(a->of[1], before)) return;
     struct rigid_touch *to = &contact->touch[contact->n];
@@ -75,27 +82,30 @@ static void add_touch(struct approach *a, const double at[2], const double n[2],
     const double c = m->turn[0], s = m->turn[1];
     const double normal[2] = {c * n[0] - s * n[1], s * n[0] + c * n[1]};
     const struct motion_point place = motion_of_point(m, at[0], at[1]);
-    *to = (struct rigid_touch){.gap = gap};
+    *to = (struct rigid_touch){.gap = gap, .law = contact->now};
     for (int side = 0; side < 2; side++) {
         const struct motion_state *const of = &a->of[side]->now;
         const double sign = side ? -1 : 1, x = place.x[0] - of->centre[0] - of->d[0],
                      y = place.x[1] - of->centre[1] - of->d[1];
         to->body[side] = a->of[side]->rigid;
-        if (to->body[side] < 0) {
-            const double v[2] = {of->v[0] - of->rate * y, of->v[1] + of->rate * x};
-            to->wall_speed += sign * (normal[0] * v[0] + normal[1] * v[1]);
-            continue;
+        const double v[2] = {of->v[0] - of->rate * y, of->v[1] + of->rate * x};
+        for (int t = 0; t < 2; t++) {
+            const double e[2] = {t ? -normal[1] : normal[0], t ? normal[0] : normal[1]};
+            if (to->body[side] < 0) {
+                to->wall_speed[t] += sign * (e[0] * v[0] + e[1] * v[1]);
+                continue;
+            }
+            to->along[t][side][0] = sign * e[0];
+            to->along[t][side][1] = sign * e[1];
+            to->along[t][side][2] = sign * (x * e[1] - y * e[0]);
         }
-        to->along[side][0] = sign * normal[0];
-        to->along[side][1] = sign * normal[1];
-        to->along[side][2] = sign * (x * normal[1] - y * normal[0]);
     }
 }
 
 /* `sign`: -1 for a piece that is subtracted. */
 static void approach_piece(struct approach *a, const struct outline *o, double sign)
 {
-    const double most = a->contact->reach + a->contact->kept + a->radius;
+    const double most = a->contact->reach + a->contact->now->layer + a->radius;
     const struct box2 place = {{a->at[0], a->at[1]}, {a->at[0], a->at[1]}};
     if (!box2_near(&place, &o->box, most)) return;
     if (o->n == 0) {
@@ -189,6 +199,28 @@ static enum err shape_create(struct rigid *rigid, int w, struct arena *a, struct
     return ERR_OK;
 }
 
+/* A layer of fluid stays between bodies that begin further apart, as between solids. A body on a
+ * hinge may turn into what it touches at the start. */
+static void set_law(struct rigid *rigid, int k, int w)
+{
+    const struct scene *const scene = rigid->scene;
+    struct rigid_contact *const contact = rigid->contact;
+    const int other = contact->shape[w].rigid;
+    const bool hinged = scene->rigid[k].hinge.n || (other >= 0 && scene->rigid[other].hinge.n);
+    const struct scene_contact *const from =
+        scene_contact_of(scene, scene->n_solid + scene_rigid_wall(scene, k), scene->n_solid + w);
+    struct touch_law *const law = contact->now = &contact->law[k * scene->n_wall + w];
+    *law = (struct touch_law){.layer = (double)NAN};
+    if (!from) return;
+    *law = (struct touch_law){0, from->friction, from->restitution};
+    contact->n = 0;
+    approach_pair(rigid, k, w);
+    law->layer = scene_contact_gap(scene, from);
+    for (int j = 0; j < contact->n; j++)
+        law->layer = max2(0, min2(law->layer, contact->touch[j].gap));
+    if (contact->n && hinged) law->layer = (double)NAN;
+}
+
 enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag *d)
 {
     const struct scene *const scene = rigid->scene;
@@ -198,30 +230,15 @@ enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag 
     if (!contact) return ERR_MEMORY;
     contact->reach = scene->top.dp;
     contact->shape = arena_alloc(a, n, sizeof *contact->shape, "rigid bodies", d);
-    contact->layer =
-        arena_alloc(a, n * (size_t)rigid->n, sizeof *contact->layer, "rigid bodies", d);
-    if (!contact->shape || !contact->layer) return ERR_MEMORY;
+    contact->law = arena_alloc(a, n * (size_t)rigid->n, sizeof *contact->law, "rigid bodies", d);
+    if (!contact->shape || !contact->law) return ERR_MEMORY;
     for (int w = 0; w < scene->n_wall; w++) TRY(shape_create(rigid, w, a, d));
     contact->touch =
         arena_alloc(a, (size_t)contact->most, sizeof *contact->touch, "rigid bodies", d);
     if (!contact->touch) return ERR_MEMORY;
     place_shapes(rigid, 0);
-    /* A layer of fluid stays between bodies that begin further apart, as between solids. A body on
-     * a hinge may turn into what it touches at the start. */
-    const double most = scene_contact_gap(scene, &scene->contact_default);
     for (int k = 0; k < rigid->n; k++)
-        for (int w = 0; w < scene_rigid_wall(scene, k); w++) {
-            const int other = contact->shape[w].rigid;
-            double *const layer = &contact->layer[k * scene->n_wall + w];
-            contact->n = 0;
-            approach_pair(rigid, k, w);
-            *layer = most;
-            for (int j = 0; j < contact->n; j++)
-                *layer = max2(0, min2(*layer, contact->touch[j].gap));
-            if (contact->n &&
-                (scene->rigid[k].hinge.n || (other >= 0 && scene->rigid[other].hinge.n)))
-                *layer = NAN;
-        }
+        for (int w = 0; w < scene_rigid_wall(scene, k); w++) set_law(rigid, k, w);
     contact->n = 0;
     return ERR_OK;
 }
@@ -234,29 +251,80 @@ static const double (*yields_in(const struct rigid_equations *eq, enum rigid_sta
     return stage == RIGID_IMPACT ? eq->alone : eq->yields;
 }
 
-/* Velocity at which a touch opens, and what a unit of impulse adds to it. */
-static double opening(const struct rigid *rigid, const struct rigid_touch *t,
-                      enum rigid_stage stage, double *per_impulse)
+/* A pair of bodies and what a unit of an impulse between them is to each. */
+struct row {
+    const int *body;
+    const double (*along)[3];
+};
+
+/* Relative velocity along a row: of displacements without the velocities before. */
+static double rate_of(const struct rigid *rigid, struct row row, enum rigid_stage stage)
 {
-    double rate = stage == RIGID_PUSH ? 0 : t->wall_speed;
-    *per_impulse = 0;
+    double rate = 0;
     for (int side = 0; side < 2; side++) {
-        if (t->body[side] < 0) continue;
-        const struct rigid_equations *const eq = &rigid->eq[t->body[side]];
-        const double(*const yields)[3] = yields_in(eq, stage);
+        if (row.body[side] < 0) continue;
+        const struct rigid_equations *const eq = &rigid->eq[row.body[side]];
         for (int c = 0; c < 3; c++) {
             const double impact = eq->before[c] + (stage == RIGID_STEP ? eq->touch[0][c] : 0);
             const double start =
                 stage == RIGID_PUSH ? 0 : impact + (stage == RIGID_STEP ? eq->change[c] : 0);
-            rate += t->along[side][c] * (start + eq->touch[stage][c]);
-            for (int e = 0; e < 3; e++)
-                *per_impulse += t->along[side][c] * yields[c][e] * t->along[side][e];
+            rate += row.along[side][c] * (start + eq->touch[stage][c]);
         }
     }
     return rate;
 }
 
-/* T-102: projected Gauss-Seidel, in the order of the touches. */
+/* What a unit of impulse adds to it. */
+static double per_impulse(const struct rigid *rigid, struct row row, enum rigid_stage stage)
+{
+    double sum = 0;
+    for (int side = 0; side < 2; side++) {
+        if (row.body[side] < 0) continue;
+        const double(*const yields)[3] = yields_in(&rigid->eq[row.body[side]], stage);
+        for (int c = 0; c < 3; c++)
+            for (int e = 0; e < 3; e++)
+                sum += row.along[side][c] * yields[c][e] * row.along[side][e];
+    }
+    return sum;
+}
+
+static void add_impulse(struct rigid *rigid, struct row row, enum rigid_stage stage, double more)
+{
+    for (int side = 0; side < 2; side++) {
+        if (row.body[side] < 0) continue;
+        struct rigid_equations *const eq = &rigid->eq[row.body[side]];
+        const double(*const yields)[3] = yields_in(eq, stage);
+        for (int c = 0; c < 3; c++)
+            for (int e = 0; e < 3; e++)
+                eq->touch[stage][c] += yields[c][e] * row.along[side][e] * more;
+    }
+}
+
+static struct row row_of(const struct rigid_touch *t, int across)
+{
+    return (struct row){t->body, t->along[across]};
+}
+
+/* T-102, T-102b: changes the impulse along the normal, or by friction across it, to what its own
+ * equation asks for. Returns the change of the velocity. */
+static double relax_touch(struct rigid *rigid, struct rigid_touch *t, enum rigid_stage stage,
+                          int across, double dt)
+{
+    const struct row row = row_of(t, across);
+    const double a = per_impulse(rigid, row, stage);
+    if (!(a > 0)) return 0;
+    const double gap = stage == RIGID_PUSH ? t->gap : max2(t->gap, 0);
+    const double least = across ? 0 : stage == RIGID_IMPACT ? max2(t->leave, -gap / dt) : -gap / dt;
+    const double wall = stage == RIGID_PUSH ? 0 : t->wall_speed[across];
+    const double rate = rate_of(rigid, row, stage) + wall - least;
+    const double most = t->law->friction * t->impulse[stage][0];
+    double *const impulse = &t->impulse[stage][across], before = *impulse;
+    *impulse = across ? max2(-most, min2(most, before - rate / a)) : max2(0, before - rate / a);
+    add_impulse(rigid, row, stage, *impulse - before);
+    return fabs(*impulse - before) * a;
+}
+
+/* Projected Gauss-Seidel, in the order of the touches. */
 static void find_impulses(struct rigid *rigid, enum rigid_stage stage, double dt)
 {
     struct rigid_contact *const contact = rigid->contact;
@@ -265,29 +333,29 @@ static void find_impulses(struct rigid *rigid, enum rigid_stage stage, double dt
         largest = 0;
         for (int j = 0; j < contact->n; j++) {
             struct rigid_touch *const t = &contact->touch[j];
-            const double gap = stage == RIGID_PUSH ? t->gap : max2(t->gap, 0);
-            double per_impulse;
-            const double rate = opening(rigid, t, stage, &per_impulse) + gap / dt;
-            if (!(per_impulse > 0)) continue;
-            const double more = max2(-rate / per_impulse, -t->impulse[stage]);
-            t->impulse[stage] += more;
-            largest = max2(largest, fabs(more) * per_impulse);
-            for (int side = 0; side < 2; side++) {
-                if (t->body[side] < 0) continue;
-                struct rigid_equations *const eq = &rigid->eq[t->body[side]];
-                const double(*const yields)[3] = yields_in(eq, stage);
-                for (int c = 0; c < 3; c++)
-                    for (int e = 0; e < 3; e++)
-                        eq->touch[stage][c] += yields[c][e] * t->along[side][e] * more;
-            }
+            largest = max2(largest, relax_touch(rigid, t, stage, 0, dt));
+            if (t->law->friction > 0 && stage != RIGID_PUSH)
+                largest = max2(largest, relax_touch(rigid, t, stage, 1, dt));
         }
         if (turn == 0) first = largest;
     }
 }
 
-static double impulse_of(const struct rigid_touch *t)
+/* What meets in this step rebounds. */
+static void find_rebounds(const struct rigid *rigid, double dt)
 {
-    return t->impulse[RIGID_IMPACT] + t->impulse[RIGID_STEP];
+    for (int j = 0; j < rigid->contact->n; j++) {
+        struct rigid_touch *const t = &rigid->contact->touch[j];
+        const double rate = rate_of(rigid, row_of(t, 0), RIGID_IMPACT) + t->wall_speed[0];
+        const bool meets = rate + max2(t->gap, 0) / dt < 0 && t->law->restitution > 0;
+        t->leave = meets ? -t->law->restitution * rate : -(double)INFINITY;
+    }
+}
+
+/* Of the step, along the normal or across it. */
+static double impulse_of(const struct rigid_touch *t, int across)
+{
+    return t->impulse[RIGID_IMPACT][across] + t->impulse[RIGID_STEP][across];
 }
 
 void rigid_touch(struct rigid *rigid, double time, double dt)
@@ -298,9 +366,10 @@ void rigid_touch(struct rigid *rigid, double time, double dt)
     contact->n = 0;
     for (int k = 0; k < rigid->n; k++)
         for (int w = 0; w < scene_rigid_wall(rigid->scene, k); w++) {
-            contact->kept = contact->layer[k * rigid->scene->n_wall + w];
-            if (!isnan(contact->kept)) approach_pair(rigid, k, w);
+            contact->now = &contact->law[k * rigid->scene->n_wall + w];
+            if (!isnan(contact->now->layer)) approach_pair(rigid, k, w);
         }
+    find_rebounds(rigid, dt);
     for (int stage = 0; stage < RIGID_STAGES; stage++)
         find_impulses(rigid, (enum rigid_stage)stage, dt);
     for (int k = 0; k < rigid->n; k++)
@@ -309,24 +378,28 @@ void rigid_touch(struct rigid *rigid, double time, double dt)
                 rigid->eq[k].touch[RIGID_IMPACT][c] + rigid->eq[k].touch[RIGID_STEP][c];
             rigid->eq[k].faster[c] += rigid->eq[k].touch[RIGID_STEP][c];
         }
-    for (int j = 0; j < contact->n; j++)
+    for (int j = 0; j < 2 * contact->n; j++) {
+        const struct rigid_touch *const t = &contact->touch[j / 2];
         for (int side = 0; side < 2; side++)
-            for (int c = 0; c < 3 && contact->touch[j].body[side] >= 0; c++)
-                rigid->eq[contact->touch[j].body[side]].impulse[c] +=
-                    impulse_of(&contact->touch[j]) * contact->touch[j].along[side][c];
+            for (int c = 0; c < 3 && t->body[side] >= 0; c++)
+                rigid->eq[t->body[side]].impulse[c] +=
+                    impulse_of(t, j % 2) * t->along[j % 2][side][c];
+    }
 }
 
 void rigid_contact_work(struct rigid *rigid)
 {
-    for (int j = 0; j < rigid->contact->n; j++) {
-        const struct rigid_touch *const t = &rigid->contact->touch[j];
+    for (int j = 0; j < 2 * rigid->contact->n; j++) {
+        const struct rigid_touch *const t = &rigid->contact->touch[j / 2];
         const int a = t->body[0], b = t->body[1], body = a < 0 ? b : a;
+        const double impulse = impulse_of(t, j % 2);
         if (a < 0 || b < 0) {
-            rigid->body[body].driven -= impulse_of(t) * t->wall_speed;
+            rigid->body[body].driven -= impulse * t->wall_speed[j % 2];
             continue;
         }
         double work = 0;
-        for (int c = 0; c < 3; c++) work += impulse_of(t) * t->along[1][c] * rigid->body[b].mean[c];
+        for (int c = 0; c < 3; c++)
+            work += impulse * t->along[j % 2][1][c] * rigid->body[b].mean[c];
         rigid->body[b].passed += work;
         rigid->body[a].passed -= work;
     }
