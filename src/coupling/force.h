@@ -34,7 +34,8 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
     for (int m = 0; m < neighbours->n; m++)
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[m];
-            const struct pair q = pair_load(s, code, candidates(neighbours, code, part), s->line);
+            const real *const b = candidates(neighbours, code, part);
+            const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
             const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
             sum_x[part] = vfma(weight, q.u, sum_x[part]);
             sum_y[part] = vfma(weight, q.v, sum_y[part]);
@@ -58,7 +59,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
-            struct pair q = pair_load(s, code, b, s->line);
+            struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
             q.p = lane(b, PACKED_P);
             vreal stress = fx_pressure(s, &q);
             if (effects & FX_ONE_SIDED)

@@ -79,8 +79,8 @@ enum packed_field {
     /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0. */
     PACKED_LINE = PACKED_REPULSION_FIELDS,
     PACKED_THIN_FIELDS,
-    /* Of the fluid, with artificial viscosity: rho0/rho; where density diffuses by Antuono et al.
-     * 2010: the gradient of dens, times -h/2. */
+    /* Of the fluid, with artificial viscosity: rho0/rho over -2 alpha c0 rho0 (Eq. 7), m^2 s/kg;
+     * where density diffuses by Antuono et al. 2010: the gradient of dens, times -h/2. */
     PACKED_SPECIFIC = PACKED_FIELDS,
     PACKED_VISCOUS_FIELDS,
     PACKED_SLOPE_X = PACKED_VISCOUS_FIELDS,
@@ -132,10 +132,10 @@ extern const struct fluid_sweeps fluid_sweeps_mixed, fluid_sweeps_double;
 
 /* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its
  * particles. The order of sums follows from the chunks, so their number depends on the number n of
- * cells only. A chunk has at most 64 cells. The number of chunks is a multiple of 24, which most
+ * cells only. A chunk has at most 128 cells. The number of chunks is a multiple of 24, which most
  * numbers of threads divide; fewer cells make do with a multiple of 8, or with 4, because pairs
  * across chunks are computed twice. */
-enum { CHUNK_CELLS = 64 };
+enum { CHUNK_CELLS = 128 };
 SPHFSI_INLINE int32_t fluid_chunk_count(int32_t n)
 {
     const int32_t full = (n + CHUNK_CELLS - 1) / CHUNK_CELLS, unit = full > 24  ? 24

@@ -157,7 +157,7 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const s
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
     vreal slope_x, slope_y; /* -h/2 times the gradient of dens, if it is used */
-    vreal specific;         /* rho0/rho, with artificial viscosity */
+    vreal specific;         /* of PACKED_SPECIFIC, with artificial viscosity */
     vreal line;             /* of a dummy: the line that has to lie between, or 0 */
     int n_pieces;           /* of thin lines near its cell; NULL: there are none at all */
     const struct near_piece *piece;
@@ -275,16 +275,17 @@ SPHFSI_INLINE vreal weight_seen(const struct receiver *a, const struct separatio
     return a->piece ? weight * d->seen : weight;
 }
 
-/* Geometry of the pairs, Eq. 5; with the line that has to lie between (T-110). */
+/* Geometry of the pairs, Eq. 5, with the volume in their slope; and with the line that has to lie
+ * between (T-110). */
 SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b,
-                                    vreal line)
+                                    vreal volume, vreal line)
 {
     struct pair q;
     vreal seen = vset(1);
     separate(a, code, b, line, &q.x, &q.y, &seen);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
-    q.slope = lane(b, PACKED_VOLUME) * (t * t * t);
+    q.slope = (volume * t) * (t * t);
     if (a->piece) q.slope = q.slope * seen;
     q.u = a->u - lane(b, PACKED_U);
     q.v = a->v - lane(b, PACKED_V);

@@ -48,6 +48,7 @@ struct packing {
     double inv_h, volume;  /* 1/m; of a particle at rest, in units of h^2 */
     double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
     double slope;          /* factor of the gradient of dens, m */
+    double per_viscosity;  /* 1/(-2 alpha c0 rho0) of Eq. 7, m^2 s/kg */
     effect_set effects;
     bool keeps_slopes;
 };
@@ -61,6 +62,7 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             k->c0 * k->c0 * k->rho0 / EOS_GAMMA,
                             k->rho0 * square(k->c0),
                             -0.5 * k->h,
+                            -0.5 / (k->model->artificial_viscosity * k->c0 * k->rho0),
                             fluid->effects,
                             fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
@@ -96,7 +98,7 @@ SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles
     put_four(out, PACKED_V, FOUR(particles->vy, i));
     const four_double specific = 1 / (1 + dens), own = by->volume * specific;
     put_four(out, PACKED_VOLUME, by->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
-    if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific);
+    if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific * by->per_viscosity);
     put_four(out, PACKED_P, acting_pressure(by, particles, i));
     put_four(out, PACKED_DENS, dens);
     if (by->keeps_slopes) pack_slopes(by, particles, i, out);
@@ -121,7 +123,7 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by
         }
         cluster_close(out, packed->n, own);
         for (int32_t r = own; r < CLUSTER && by->effects & FX_VISCOSITY; r++)
-            out[PACKED_SPECIFIC * CLUSTER + r] = 1; /* the sum of two is a divisor */
+            out[PACKED_SPECIFIC * CLUSTER + r] = -1; /* the sum of two is a divisor */
         cluster_box(&packed->boxes, cluster, out, own);
     }
 }

@@ -27,7 +27,6 @@ struct exchange {
 
 /* Constants of the sweep, in all SIMD lanes. */
 struct vector_constants {
-    vreal viscosity;      /* -2 alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
     vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
@@ -47,7 +46,6 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
     const double per_c2 = fk->h / square(fk->c0);
     const double slope = PAIR_SLOPE * fk->h / (fk->mass / fk->rho0);
     return (struct vector_constants){
-        .viscosity = vset((real)(-2 * fk->model->artificial_viscosity * fk->c0 * fk->rho0)),
         .laminar = vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / fk->h)),
         .tensile = vset((real)fk->model->tensile_control),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
@@ -73,8 +71,9 @@ SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
     return a->p + q->p;
 }
 
-/* 1/((|xi|^2 + eta^2)(rho0/rho_a + rho0/rho_b)): the one division of viscosity and of all laws with
- * 1/(|xi|^2 + eta^2), which is its product with `both`. */
+/* -2 alpha c0 rho0/((|xi|^2 + eta^2)(rho0/rho_a + rho0/rho_b)), kg/(m^2 s), from `both`: that sum
+ * over the viscosity. The one division of viscosity and of all laws with 1/(|xi|^2 + eta^2), which
+ * is its product with `both`. */
 SPHFSI_INLINE vreal pair_damping(const struct pair *q, vreal both, const struct vector_constants *k)
 {
     return vset(1) / ((q->r2 + k->eta2) * both);
@@ -82,10 +81,9 @@ SPHFSI_INLINE vreal pair_damping(const struct pair *q, vreal both, const struct 
 
 /* Eq. 7: rho_a rho_b Pi_ab, Pa, added to the pair's stress; acts on approaching pairs only. With
  * rho_a rho_b/(rho_a + rho_b) = rho0/(rho0/rho_a + rho0/rho_b). */
-SPHFSI_INLINE vreal fx_viscosity(const struct pair *q, vreal damping,
-                                 const struct vector_constants *k, vreal stress)
+SPHFSI_INLINE vreal fx_viscosity(const struct pair *q, vreal damping, vreal stress)
 {
-    return vfma(vmin(q->vx, vset(0)), k->viscosity * damping, stress);
+    return vfma(vmin(q->vx, vset(0)), damping, stress);
 }
 
 /* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|)

@@ -32,8 +32,7 @@ SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struc
 SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b,
                                        vreal line)
 {
-    struct pair q = pair_load(a, code, b, line);
-    q.slope = q.slope * a->volume;
+    struct pair q = pair_load(a, code, b, a->volume * lane(b, PACKED_VOLUME), line);
     q.p = lane(b, PACKED_P);
     return q;
 }
@@ -51,7 +50,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
         const vreal both = a->specific + lane(b, PACKED_SPECIFIC);
         const vreal damping = pair_damping(q, both, k);
         inv = damping * both;
-        stress = fx_viscosity(q, damping, k, stress);
+        stress = fx_viscosity(q, damping, stress);
     } else {
         inv = vset(1) / (q->r2 + k->eta2);
     }
