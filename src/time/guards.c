@@ -51,6 +51,14 @@ static enum err complain(const struct simulation *sim, enum kind kind, struct fi
                      f.quantity, f.value, cause);
 }
 
+/* Whether a warning has not been given yet; it counts as given then. */
+static bool first_time(bool *warned)
+{
+    const bool first = !*warned;
+    *warned = true;
+    return first;
+}
+
 /* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
 static bool fluid_sound(struct simulation *sim)
 {
@@ -73,41 +81,26 @@ static bool fluid_sound(struct simulation *sim)
     "probably because fluid particles entered a wall or solid earlier in the run; a larger " \
     "wall_repulsion or diffusion_form = antuono prevents that"
 
-static enum err complain_of_fluid(const struct simulation *sim, struct finding f, struct diag *d)
-{
-    const double given = sim->scene->given_speed;
-    char cause[200];
-    if (!(given > SPEED_WARNING * sim->scene->c0))
-        return complain(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
-    snprintf(cause, sizeof cause,
-             "the case gives the fluid up to %.4g m/s, but its speed of sound is only %.4g m/s; "
-             "check that speed, or use sound_speed = %.3g or more",
-             given, sim->scene->c0, 10 * given);
-    return complain(sim, KIND_FLUID, f, cause, d);
-}
-
 static enum err check_fluid(struct simulation *sim, struct diag *d)
 {
     if (!fluid_sound(sim)) {
         const struct finding f =
             find_invalid(&sim->kind[KIND_FLUID], sim->guard.speed_limit, sim->guard.dens_limit);
-        if (f.at >= 0) return complain_of_fluid(sim, f, d);
+        if (f.at >= 0)
+            return complain(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
     }
-    if (!sim->guard.warned_speed && sim->state.speed_high > SPEED_WARNING * sim->scene->c0) {
-        sim->guard.warned_speed = true;
+    if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0 &&
+        first_time(&sim->guard.warned_speed))
         diag_warn(d,
                   "%s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
                   "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
                   time_text(sim).text, sim->state.speed_high, SPEED_WARNING, sim->scene->c0);
-    }
     const double dens = max2(sim->state.dens_high, -sim->state.dens_low);
-    if (!sim->guard.warned_dens && dens > DENS_WARNING) {
-        sim->guard.warned_dens = true;
+    if (dens > DENS_WARNING && first_time(&sim->guard.warned_dens))
         diag_warn(d,
                   "%s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
                   "usual, and the run stops at %g %%; a higher sound_speed may help",
                   time_text(sim).text, 100 * dens, 100 * sim->guard.dens_limit);
-    }
     return ERR_OK;
 }
 
@@ -141,28 +134,15 @@ static struct finding smallest_det(const struct particles *particles)
     return f;
 }
 
-/* The first particle faster than the mean of its body by ten times the speed of sound. */
+/* The first particle faster than the first one of its body by ten times the speed of sound. */
 static struct finding too_fast(const struct simulation *sim, const struct particles *particles)
 {
-    for (int64_t i = 0; i < particles->n;) {
-        const int32_t body = particles->body[i];
-        const double limit = 10 * sim->solid.body[body].sound_speed;
-        double sum_x = 0, sum_y = 0;
-        int64_t end = i;
-        for (; end < particles->n && particles->body[end] == body; end++) {
-            if (!isfinite(particles->vx[end] + particles->vy[end]))
-                return (struct finding){end, "speed (m/s)",
-                                        particles->vx[end] + particles->vy[end]};
-            sum_x += particles->vx[end];
-            sum_y += particles->vy[end];
-        }
-        const double mean_x = sum_x / (double)(end - i), mean_y = sum_y / (double)(end - i);
-        for (; i < end; i++) {
-            const double speed2 =
-                square(particles->vx[i] - mean_x) + square(particles->vy[i] - mean_y);
-            if (!(speed2 <= limit * limit))
-                return (struct finding){i, "speed relative to its body (m/s)", sqrt(speed2)};
-        }
+    for (int64_t i = 0, first = 0; i < particles->n; i++) {
+        if (particles->body[i] != particles->body[first]) first = i;
+        const double speed2 = square(particles->vx[i] - particles->vx[first]) +
+                              square(particles->vy[i] - particles->vy[first]);
+        if (!(speed2 <= square(10 * sim->solid.body[particles->body[i]].sound_speed)))
+            return (struct finding){i, "speed relative to its body (m/s)", sqrt(speed2)};
     }
     return (struct finding){-1, "", 0};
 }
@@ -174,8 +154,7 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
     if (sim->contact.list_full)
         return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
                          time_text(sim).text);
-    if (at->overlap < OVERLAP_WARNING || (sim->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
-        return ERR_OK;
+    if (at->overlap < OVERLAP_WARNING) return ERR_OK;
     section_title(contact_section(&sim->contact, at->body), one);
     section_title(contact_section(&sim->contact, at->other), other);
     sim->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
@@ -187,11 +166,11 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
             "motion may help",
             time_text(sim).text, (long long)sim->state.steps, one, other, at->overlap, at->x,
             at->y);
-    sim->guard.warned_contact = true;
-    diag_warn(d,
-              "%s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
-              "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
-              time_text(sim).text, one, other, at->overlap, at->x, at->y);
+    if (first_time(&sim->guard.warned_contact))
+        diag_warn(d,
+                  "%s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
+                  "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
+                  time_text(sim).text, one, other, at->overlap, at->x, at->y);
     return ERR_OK;
 }
 
@@ -219,15 +198,13 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
                         "the material is inverted; finer particles, more hourglass control or a "
                         "stiffer law may help",
                         d);
-    if (!sim->guard.warned_det && det.value < DET_WARNING) {
-        sim->guard.warned_det = true;
+    if (det.value < DET_WARNING && first_time(&sim->guard.warned_det))
         diag_warn(
             d,
             "%s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
             "the material is inverted and the run stops; a finer dp or a stiffer law may help",
             time_text(sim).text, (long long)particles->id[det.at], particles->x[det.at],
             particles->y[det.at], det.value);
-    }
     return ERR_OK;
 }
 
@@ -259,12 +236,11 @@ static enum err check_step(struct simulation *sim, struct diag *d)
                          "%s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
                          time_text(sim).text, dt);
-    if (!sim->guard.warned_step)
+    if (first_time(&sim->guard.warned_step))
         diag_warn(d,
                   "%s: the time step has fallen to %.3g s, limited by %s, and the run "
                   "stops at %.3g s; %s",
                   time_text(sim).text, dt, bound_names[bound], limit, step_remedy(sim, bound));
-    sim->guard.warned_step = true;
     return ERR_OK;
 }
 
@@ -493,13 +469,12 @@ enum err guards_penetration(struct simulation *sim, struct diag *d)
             time_text(sim).text, (long long)sim->state.steps, (long long)count,
             (long long)particles->id[first], particles->x[first], particles->y[first],
             elementary_hypot(particles->vx[first], particles->vy[first]));
-    if (sim->guard.warned_crossing) return ERR_OK;
-    sim->guard.warned_crossing = true;
-    diag_warn(
-        d,
-        "%s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
-        "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
-        time_text(sim).text, (long long)particles->id[first], particles->x[first],
-        particles->y[first]);
+    if (first_time(&sim->guard.warned_crossing))
+        diag_warn(d,
+                  "%s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
+                  "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may "
+                  "keep it out",
+                  time_text(sim).text, (long long)particles->id[first], particles->x[first],
+                  particles->y[first]);
     return ERR_OK;
 }

@@ -91,7 +91,7 @@ s/^shape = box -0.04.*/&\nshape = box 0.1, 0, 0.14, 0.1\nshape = box -0.04, -0.0
     moved.cfg >fast.cfg
 command 2 ./sphfsi fast.cfg --quiet --out f >/dev/null
 is "$(others)" "start again: the same command with another --out"
-grep -q 'the case gives the fluid up to 9 m/s, but its speed of sound is only 10 m/s' err ||
+grep -q '\[motion m\] .*up to 9 m/s.*sound_speed = 90 or more' err ||
     fail "$(cat err)"
 
 # stop NAME ARGUMENTS...: the options of a run that a signal ends. There is nothing to mend: it
