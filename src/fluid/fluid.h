@@ -251,6 +251,10 @@ SPHFSI_INLINE bool fluid_sees(const struct fluid *fluid, const struct cells *cel
     return lines_between(&fluid->lines, cells, from, x, y) == fluid_line_of(fluid, kind, i);
 }
 
+/* Energy that walls and structures have stored by repelling each section of fluid (L-7b), J/m. */
+void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
+                            const struct cells *cells, double of[SCENE_MAX_SECTIONS]);
+
 /* The fluid's own pressures to p, which no step needs. */
 void fluid_show(const struct fluid *fluid, struct particles *particles);
 

@@ -27,7 +27,10 @@ void begin_rigid(struct simulation *sim, double time, double dt, double kick)
 void advance_rigid(struct simulation *sim, double time, double dt, double kick)
 {
     rigid_advance(&sim->rigid, time, dt, kick);
-    energy_of_rigid(sim);
+    for (int k = 0; k < sim->rigid.n; k++) {
+        const struct rigid_body *const b = &sim->rigid.body[k];
+        energy_of_body(sim, scene_rigid_wall(sim->scene, k), b->work, b->driven, b->passed);
+    }
 }
 
 void advance_beams(struct simulation *sim, double time, double dt, double kick)
@@ -35,11 +38,7 @@ void advance_beams(struct simulation *sim, double time, double dt, double kick)
     beams_advance(&sim->beams, time, dt, kick);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
-        struct energy_entry *const e =
-            &sim->state.energy.entry[energy_entry(KIND_WALL, scene_beam_wall(sim->scene, k))];
-        sim->state.wall_work += b->work;
-        e->supplied += b->work + b->received;
-        e->received += b->received;
+        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, 0);
     }
 }
 

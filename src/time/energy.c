@@ -148,67 +148,6 @@ struct ledger simulation_ledger(struct simulation *sim)
     return row;
 }
 
-/* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope
- * from r to r0, by four points of Gauss. */
-static double repulsion_held(double r, double r0, double h)
-{
-    static const double at[] = {0.069431844202973713, 0.330009478207571868, 0.669990521792428132,
-                                0.930568155797026287};
-    static const double weight[] = {0.173927422568726929, 0.326072577431273071,
-                                    0.326072577431273071, 0.173927422568726929};
-    double sum = 0;
-    for (int g = 0; g < 4; g++) {
-        const double x = r + at[g] * (r0 - r), eta2 = ETA2 * square(h);
-        const double stress = (square(r0) + eta2) / (square(x) + eta2) - 1;
-        sum -= weight[g] * stress * kernel_slope(x, h) * x;
-    }
-    return sum * (r0 - r);
-}
-
-struct repulsion {
-    const struct simulation *sim;
-    enum kind kind; /* of the dummies */
-    double place[2], sum;
-};
-
-/* Adds that of a dummy at the distance r, times its volume, m^2. */
-static void add_repulsion(void *context, int64_t i, double x, double y, double r)
-{
-    struct repulsion *const at = context;
-    const struct fluid *const fluid = &at->sim->fluid;
-    const struct particles *const particles = &at->sim->kind[at->kind];
-    const double over = fluid->volume[at->kind][particles->body[i]];
-    const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
-                      (1 + sqrt(over)) * fluid->k.dp;
-    if (r < r0 && fluid_sees(fluid, &at->sim->cells, at->place, at->kind, i, x, y))
-        at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
-                   repulsion_held(r, r0, fluid->k.h);
-}
-
-void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
-{
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
-    const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double most = sim->effects & FX_THIN ? 1 : REPULSION_REACH; /* solids are finer */
-    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
-    for (int32_t n = 0; n < list->n_active; n++) {
-        const int32_t cell = list->active[n];
-        if (!fluid_near_dummies(&sim->fluid, cell)) continue;
-        for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-            struct repulsion at = {.sim = sim, .place = {particles->x[i], particles->y[i]}};
-            for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-                if (!sim->cells.kind[kind].n_active) continue;
-                at.kind = (enum kind)kind;
-                cells_each_near(&sim->cells, at.kind, &sim->kind[kind], at.place, most * k->dp,
-                                add_repulsion, &at);
-            }
-            of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
-                                      k->model->wall_repulsion * square(k->c0) * at.sum;
-        }
-    }
-}
-
 /* The energy of dummies, divided among the fluids as their compression energy is: a wall at rest
  * belongs to no region. */
 static void add_dummies(const struct simulation *sim, struct energies *fluid)
@@ -232,7 +171,8 @@ static void find_all_energies(struct simulation *sim, struct energies of[ENERGY_
     struct energies *const fluid = &of[energy_entry(KIND_FLUID, 0)];
     find_energies(sim, of);
     if (sim->effects & FX_FLUID) add_dummies(sim, fluid);
-    if (sim->effects & FX_REPULSION) repulsion_energy(sim, repulsion);
+    if (sim->effects & FX_REPULSION)
+        fluid_repulsion_energy(&sim->fluid, sim->kind, &sim->cells, repulsion);
     for (int k = 0; k < sim->scene->n_fluid; k++) fluid[k].repulsion = repulsion[k];
 }
 
@@ -311,50 +251,43 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
     }
 }
 
-void energy_of_rigid(struct simulation *sim)
+void energy_of_body(struct simulation *sim, int wall, double received, double driven, double passed)
 {
-    for (int k = 0; k < sim->rigid.n; k++) {
-        const struct rigid_body *const body = &sim->rigid.body[k];
-        sim->state.wall_work += body->driven;
-        if (!keeps_account(sim)) continue;
-        struct energy_entry *const e = entry_of(sim, KIND_WALL, scene_rigid_wall(sim->scene, k));
-        e->supplied += body->work + body->driven + body->passed;
-        e->received += body->work;
-    }
+    struct energy_entry *const e = entry_of(sim, KIND_WALL, wall);
+    sim->state.wall_work += driven;
+    if (!keeps_account(sim)) return;
+    e->supplied += received + driven + passed;
+    e->received += received;
 }
 
 /* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
  * ledger has the potential energy of the value at t = 0. */
 static double gravity_work(struct simulation *sim)
 {
-    double g[2], px = 0, py = 0;
-    const double *const start = sim->scene->top.gravity;
-    const double dt = sim->state.dt;
-    scene_gravity_at(sim->scene, sim->state.time - 0.5 * dt, g);
-    const double gx = g[0] - start[0], gy = g[1] - start[1];
+    double g[2], work = 0;
+    scene_gravity_at(sim->scene, sim->state.time - 0.5 * sim->state.dt, g);
+    for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - sim->scene->top.gravity[c]);
     const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
                                                                       &sim->kind[KIND_SOLID];
-    for (int64_t i = 0; i < fluid->n; i++) {
-        px += sim->fluid.k.mass * fluid->vx[i];
-        py += sim->fluid.k.mass * fluid->vy[i];
-    }
+    for (int64_t i = 0; i < fluid->n; i++)
+        work +=
+            particle_mass(&sim->fluid.k, fluid, i) * (g[0] * fluid->vx[i] + g[1] * fluid->vy[i]);
     for (int64_t i = 0; i < particles->n; i++) {
-        const double mass = sim->scene->solid[particles->body[i]].gravity * particles->free[i] *
-                            sim->solid.body[particles->body[i]].mass;
-        px += mass * particles->vx[i];
-        py += mass * particles->vy[i];
-        energy_supply(sim, KIND_SOLID, particles->body[i],
-                      dt * mass * (gx * particles->vx[i] + gy * particles->vy[i]));
+        const int body = particles->body[i];
+        const double done = sim->scene->solid[body].gravity * particles->free[i] *
+                            sim->solid.body[body].mass *
+                            (g[0] * particles->vx[i] + g[1] * particles->vy[i]);
+        energy_supply(sim, KIND_SOLID, body, done);
+        work += done;
     }
     for (int k = 0; k < sim->rigid.n; k++) {
-        if (!sim->rigid.body[k].given->gravity) continue;
-        const double *const v = sim->rigid.state[k].v, mass = sim->rigid.body[k].mass[0];
-        px += mass * v[0];
-        py += mass * v[1];
-        energy_supply(sim, KIND_WALL, scene_rigid_wall(sim->scene, k),
-                      dt * mass * (gx * v[0] + gy * v[1]));
+        const double *const v = sim->rigid.state[k].v;
+        const double done = sim->rigid.body[k].given->gravity * sim->rigid.body[k].mass[0] *
+                            (g[0] * v[0] + g[1] * v[1]);
+        energy_supply(sim, KIND_WALL, scene_rigid_wall(sim->scene, k), done);
+        work += done;
     }
-    return dt * (gx * px + gy * py);
+    return work;
 }
 
 /* --- regions: sections that exchange energy with each other and with no others --- */
@@ -493,18 +426,12 @@ static double driven_energy(const struct simulation *sim)
            square(0.1 * sim->fluid.k.c0);
 }
 
-/* Whether a gain is the larger fraction of the available energy. */
-static bool exceeds(const struct energy_gain *g, const struct energy_gain *other)
-{
-    return other->entry < 0 || g->energy * other->available > other->energy * g->available;
-}
-
 /* The term of a region that has gained the largest fraction. */
 static struct energy_gain gain_of_region(struct energy_account *account, int entry,
                                          const struct energies *region, double driven)
 {
     struct energy_entry *const at = &account->entry[entry];
-    struct energy_gain worst = {.entry = -1, .available = 1};
+    struct energy_gain worst = {.entry = -1};
     at->lowest_potential = min2(at->lowest_potential, region->row.potential);
     const double active =
         driven + without_potential(region) + region->row.potential - at->lowest_potential;
@@ -519,12 +446,10 @@ static struct energy_gain gain_of_region(struct energy_account *account, int ent
         gained = now - at->lowest[t];
         account->most[t] = max2(account->most[t], gained);
         gained -= region->tolerance;
-        const struct energy_gain gain = {.entry = entry,
-                                         .term = (enum energy_term)t,
-                                         .energy = gained,
-                                         .available = at->available[t],
-                                         .now = region->row};
-        if (t != TERM_ALL && gained > 0 && exceeds(&gain, &worst)) worst = gain;
+        const double share = at->available[t] > 0 ? gained / at->available[t] : (double)INFINITY;
+        if (t != TERM_ALL && gained > 0 && share > worst.share)
+            worst = (struct energy_gain){entry, (enum energy_term)t, .share = share,
+                                         .energy = gained, .available = at->available[t]};
     }
     worst.all = max2(0, gained / at->available[TERM_ALL]);
     return worst;
@@ -534,7 +459,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
-    struct energy_gain worst = {.entry = -1, .available = 1};
+    struct energy_gain worst = {.entry = -1};
     find_all_energies(sim, of);
     find_terms(sim, of);
     join_neighbours(sim);
@@ -547,7 +472,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         if (region_of(account, k) != k) continue;
         const struct energy_gain gain = gain_of_region(account, k, &sum[k], driven_energy(sim));
-        if (gain.entry >= 0 && exceeds(&gain, &worst)) worst = gain;
+        if (gain.share > worst.share) worst = gain;
     }
     return worst;
 }

@@ -10,9 +10,6 @@
 /* Present energies, momentum and extremes; calls simulation_refresh. */
 struct ledger simulation_ledger(struct simulation *sim);
 
-/* Energy that walls and structures have stored by repelling each fluid section (L-7b), J/m. */
-void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS]);
-
 /* The ledger and the account begin with the present state. */
 void energy_begin(struct simulation *sim);
 
@@ -31,8 +28,10 @@ void energy_of_evaluation(struct simulation *sim, double dt);
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
 void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
 
-/* The work on rigid bodies in a step. */
-void energy_of_rigid(struct simulation *sim);
+/* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,
+ * which the ledger has, too; and by other bodies. */
+void energy_of_body(struct simulation *sim, int wall, double received, double driven,
+                    double passed);
 
 /* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which
  * the ledger has, too. */

@@ -82,11 +82,11 @@ enum { ENERGY_NUMBERS = sizeof(struct energy_account) / sizeof(double) };
 struct energy_gain {
     int entry; /* first section of the region; -1: no region has gained energy */
     enum energy_term term;
-    double all;        /* gain of all terms together over the available energy */
-    double energy;     /* beyond the lowest value of the term */
-    double available;  /* largest available energy since then */
-    struct ledger now; /* the region's share of it */
-    bool found;        /* the guards have yet to read it */
+    double share;     /* of the available energy; 0: no gain */
+    double all;       /* gain of all terms together over the available energy */
+    double energy;    /* beyond the lowest value of the term */
+    double available; /* largest available energy since then */
+    bool found;       /* the guards have yet to read it */
 };
 
 #endif

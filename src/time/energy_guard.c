@@ -26,16 +26,14 @@ static const char *const sources[] = {
 };
 
 /* What may help. The work of dummies does not depend on the step: fluid that is resolved better
- * makes it less. A step that no key of the case sets is named with its value. */
+ * makes it less. */
 enum { REMEDY = 256 };
 static void write_remedy(const struct simulation *sim, enum energy_term term, char text[REMEDY])
 {
     double half;
     const struct scene_numerics *const n = &sim->scene->numerics;
     const char *const key = timestep_shorter(sim, &half);
-    char step[64];
-    const bool given = strcmp(key, "fixed_step") != 0 || n->fixed_step > 0,
-               fluid = term == TERM_FLUID,
+    const bool fluid = term == TERM_FLUID,
                substeps = sim->effects & FX_COUPLING && sim->effects & FX_MULTIRATE &&
                           !(n->fixed_step > 0),
                /* between bodies that meet the layer of fluid may be too thin */
@@ -44,27 +42,25 @@ static void write_remedy(const struct simulation *sim, enum energy_term term, ch
         suction = fluid && !(sim->effects & FX_GRAVITY) && n->suction == SUCTION_OFF;
     bool paper = false; /* its law has no potential, and gains energy at any step */
     for (int k = 0; k < sim->scene->n_solid; k++) paper |= sim->scene->solid[k].law == LAW_PAPER;
-    snprintf(step, sizeof step, given ? "%s" : "numerics.%s = %.3g s", key, half);
-    snprintf(text, REMEDY, "a smaller %s%s%s%s%s%s", fluid ? "dp or " : "", step,
-             gap ? " or a larger gap in [contact]" : "", suction ? " or numerics.suction = on" : "",
+    snprintf(text, REMEDY, "%snumerics.%s = %.3g%s%s%s%s", fluid ? "a smaller dp or " : "", key,
+             half, gap ? " or a larger gap in [contact]" : "",
+             suction ? " or numerics.suction = on" : "",
              substeps ? " or numerics.multirate = off" : "",
-             term == TERM_SOLID && paper ? ", or law = neo_hookean or svk," : "");
+             term == TERM_SOLID && paper ? " or law = neo_hookean or svk" : "");
 }
 
-/* The names of a region's sections, "[solid plate], [fluid left]"; returns their number. */
+/* The names of a region's sections, "[fluid left], [solid plate]"; returns their number. */
 enum { REGION_NAME = 160 };
 static int write_region_name(const struct simulation *sim, int region, char text[REGION_NAME])
 {
-    static const enum kind order[] = {KIND_SOLID, KIND_FLUID, KIND_WALL};
     static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
     size_t used = 0;
     int names = 0;
     text[0] = '\0';
-    for (int n = 0; n < ENERGY_ENTRIES && used < REGION_NAME; n++) {
-        const enum kind kind = order[n / SCENE_MAX_SECTIONS];
-        const int section = n % SCENE_MAX_SECTIONS;
-        if (sim->state.energy.entry[energy_entry(kind, section)].region != region) continue;
-        const struct scene_section_common *const common = section_at(sim->scene, id[kind], section);
+    for (int k = 0; k < ENERGY_ENTRIES && used < REGION_NAME; k++) {
+        if (sim->state.energy.entry[k].region != region) continue;
+        const struct scene_section_common *const common =
+            section_at(sim->scene, id[k / SCENE_MAX_SECTIONS], k % SCENE_MAX_SECTIONS);
         used += (size_t)snprintf(text + used, REGION_NAME - used, "%s[%s %s]", used ? ", " : "",
                                  section_table[common->section].word, common->name);
         names++;
@@ -95,17 +91,11 @@ static void write_gain(const struct simulation *sim, const struct energy_gain *g
     char name[REGION_NAME];
     double at[2] = {0, 0};
     const bool one = write_region_name(sim, g->entry, name) == 1;
-    const struct ledger *const now = &g->now;
-    const double most = max2(max2(now->kinetic, now->internal), max2(now->elastic, now->hourglass));
-    const char *const form = most == now->kinetic    ? "motion"
-                             : most == now->internal ? "compression of the fluid"
-                             : most == now->elastic  ? "strain"
-                                                     : "hourglass modes";
     const int used = snprintf(text, 400,
                               "%s: %s %s gained %.3g J/m of energy that nothing supplied "
-                              "(available: %.3g J/m), in %s. Most of %s energy is in %s",
+                              "(available: %.3g J/m), in %s",
                               time_text(sim).text, name, one ? "has" : "have", g->energy,
-                              g->available, sources[g->term], one ? "its" : "their", form);
+                              g->available, sources[g->term]);
     if (find_fastest(sim, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
@@ -117,9 +107,7 @@ enum err energy_guard(struct simulation *sim, struct diag *d)
     char text[400], remedy[REMEDY];
     if (!sim->gain.found) return ERR_OK;
     sim->gain.found = false;
-    const double share = g.entry < 0       ? 0
-                         : g.available > 0 ? g.energy / g.available
-                                           : (double)INFINITY;
+    const double share = g.share;
     if (share <= GAIN_WARNING) sim->state.gain_since = time;
     if (g.entry < 0) return ERR_OK;
     const bool lasts = time - sim->state.gain_since >= GAIN_LASTS;

@@ -150,7 +150,7 @@ static void test_repulsion_is_counted(void)
         double held[SCENE_MAX_SECTIONS], most = 0;
         while (rig.sim.state.time < 0.035) {
             go_on(rig.sim.state.time + 1e-3);
-            repulsion_energy(&rig.sim, held);
+            fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, held);
             most = fmax(most, held[0]);
         }
         printf("%s: held %.3f, gained %.2e, of the available energy\n", integrators[k],
@@ -175,7 +175,7 @@ static void test_what_repulsion_holds(void)
     double work = 0, before, after, of[SCENE_MAX_SECTIONS];
     const double from = 4e-3, way = 1e-6;
     particles->y[0] = from;
-    repulsion_energy(&rig.sim, of);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, of);
     before = of[0];
     for (; particles->y[0] > -1e-3;) {
         particles->y[0] -= 0.5 * way;
@@ -183,7 +183,7 @@ static void test_what_repulsion_holds(void)
         work += rig.sim.fluid.k.mass * particles->ay[0] * way;
         particles->y[0] -= 0.5 * way;
     }
-    repulsion_energy(&rig.sim, of);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, of);
     after = of[0];
     printf("stored %.6g J/m, work %.6g J/m\n", after - before, work);
     TEST_ASSERT_TRUE(after > 1e-3);
@@ -216,29 +216,13 @@ static void test_what_the_damper_holds(void)
         held += 0.5 * k->mass * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
     const struct ledger row = simulation_ledger(&rig.sim);
     double repulsion[SCENE_MAX_SECTIONS];
-    repulsion_energy(&rig.sim, repulsion);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, repulsion);
     energy_find_gain(&rig.sim);
     const struct energy_account *const a = &rig.sim.state.energy;
     const double all = row.kinetic + row.internal + row.potential + repulsion[0] + held;
     TEST_ASSERT_TRUE(held > 1e-4);
     assert_near(1e-9 * held, all - a->entry[energy_entry(KIND_FLUID, 0)].supplied,
                 a->now[TERM_FLUID], "fluid");
-}
-
-/* The energies beside a gain are those of the ledger. */
-static void test_energies_beside_a_gain(void)
-{
-    begin(beam, "beam.hourglass=50", NULL, NULL);
-    go_on(0.03);
-    rig.sim.state.energy.entry[energy_entry(KIND_SOLID, 0)].lowest[TERM_SOLID] -= 1;
-    const struct ledger now = simulation_ledger(&rig.sim);
-    const struct energy_gain g = energy_find_gain(&rig.sim);
-    TEST_ASSERT_EQUAL_INT(energy_entry(KIND_SOLID, 0), g.entry);
-    TEST_ASSERT_TRUE(now.hourglass > 1e-6 * now.elastic);
-    assert_near(1e-9 * now.kinetic, now.kinetic, g.now.kinetic, "kinetic");
-    assert_near(1e-9 * now.elastic, now.elastic, g.now.elastic, "elastic");
-    assert_near(1e-9 * now.hourglass, now.hourglass, g.now.hourglass, "hourglass");
-    assert_near(0, 0, g.now.internal, "internal");
 }
 
 /* A solid whose bound is forgotten: named within 5 ms and before a tenth of the available energy is
@@ -297,7 +281,6 @@ int main(void)
     RUN_TEST(test_what_repulsion_holds);
     RUN_TEST(test_the_damper_dissipates);
     RUN_TEST(test_what_the_damper_holds);
-    RUN_TEST(test_energies_beside_a_gain);
     RUN_TEST(test_an_unstable_solid_is_named);
     RUN_TEST(test_a_gain_at_the_interface_is_named);
     return UNITY_END();

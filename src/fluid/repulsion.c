@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT
+ * The energy that dummies store by repelling fluid (L-7b). */
+#include "fluid/fluid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "particles/kernel.h"
+
+/* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope
+ * from r to r0, by four points of Gauss. */
+static double repulsion_held(double r, double r0, double h)
+{
+    static const double at[] = {0.069431844202973713, 0.330009478207571868, 0.669990521792428132,
+                                0.930568155797026287};
+    static const double weight[] = {0.173927422568726929, 0.326072577431273071,
+                                    0.326072577431273071, 0.173927422568726929};
+    double sum = 0;
+    for (int g = 0; g < 4; g++) {
+        const double x = r + at[g] * (r0 - r), eta2 = ETA2 * square(h);
+        const double stress = (square(r0) + eta2) / (square(x) + eta2) - 1;
+        sum -= weight[g] * stress * kernel_slope(x, h) * x;
+    }
+    return sum * (r0 - r);
+}
+
+/* A particle of fluid among dummies. */
+struct repelled {
+    const struct fluid *fluid;
+    const struct cells *cells;
+    const struct particles *dummies;
+    enum kind kind; /* of the dummies */
+    double place[2], sum;
+};
+
+/* Adds that of a dummy at the distance r, times its volume, m^2. */
+static void add_repulsion(void *context, int64_t i, double x, double y, double r)
+{
+    struct repelled *const at = context;
+    const struct fluid *const fluid = at->fluid;
+    const struct particles *const particles = at->dummies;
+    const double over = fluid->volume[at->kind][particles->body[i]];
+    const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
+                      (1 + sqrt(over)) * fluid->k.dp;
+    if (r < r0 && fluid_sees(fluid, at->cells, at->place, at->kind, i, x, y))
+        at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
+                   repulsion_held(r, r0, fluid->k.h);
+}
+
+void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
+                            const struct cells *cells, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const particles = &kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct fluid_constants *const k = &fluid->k;
+    const double most = fluid->effects & FX_THIN ? 1 : REPULSION_REACH; /* solids are finer */
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int32_t n = 0; n < list->n_active; n++) {
+        const int32_t cell = list->active[n];
+        if (!fluid_near_dummies(fluid, cell)) continue;
+        for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+            struct repelled at = {fluid, cells, .place = {particles->x[i], particles->y[i]}};
+            for (at.kind = KIND_WALL; at.kind < KIND_COUNT; at.kind++) {
+                at.dummies = &kind[at.kind];
+                if (cells->kind[at.kind].n_active)
+                    cells_each_near(cells, at.kind, at.dummies, at.place, most * k->dp,
+                                    add_repulsion, &at);
+            }
+            of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
+                                      k->model->wall_repulsion * square(k->c0) * at.sum;
+        }
+    }
+}
