@@ -19,18 +19,12 @@ static void say_head(const char *path, const struct image *m, const struct sphfs
 }
 
 /* Smallest and largest of a field, or the value of a scalar. */
-static void say_values(const struct block_info *b, char text[96])
+static void say_values(const struct block *b, char text[96])
 {
     double low = HUGE_VAL, high = -HUGE_VAL;
     int64_t odd = 0;
-    for (int64_t i = 0; i < b->count; i++) {
-        const unsigned char *at = (const unsigned char *)b->data + (size_t)i * b->item_bytes;
-        double value = *at;
-        int64_t whole;
-        int32_t small;
-        if (strcmp(b->type, "double") == 0) memcpy(&value, at, sizeof value);
-        if (strcmp(b->type, "int64") == 0) memcpy(&whole, at, sizeof whole), value = (double)whole;
-        if (strcmp(b->type, "int32") == 0) memcpy(&small, at, sizeof small), value = small;
+    for (int64_t k = 0; k < b->count; k++) {
+        const double value = checkpoint_number(b, k);
         odd += !isfinite(value);
         low = value < low ? value : low;
         high = value > high ? value : high;
@@ -46,13 +40,14 @@ static void say_values(const struct block_info *b, char text[96])
 
 static void say_blocks(const struct image *m, const struct sphfsi_options *o)
 {
-    struct block_info b;
+    static const char *const types[ITEM_COUNT] = {"double", "int64", "int32", "byte"};
+    struct block b;
     session_say(o, "blocks: owner, name, items, type, values");
     for (size_t at = 0; checkpoint_block(m, &at, &b);) {
         char values[96] = "the effective case, below";
         if (strcmp(b.owner, "case") != 0) say_values(&b, values);
-        session_say(o, "  %-6s %-18s %10lld %-6s %s", b.owner, b.name, (long long)b.count, b.type,
-                    values);
+        session_say(o, "  %-6s %-18s %10lld %-6s %s", b.owner, b.name, (long long)b.count,
+                    types[b.item], values);
     }
 }
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * The format of checkpoints: blocks under one checksum, their files, and how they are loaded. */
 #include "output/checkpoint.h"
-#include "output/ranges.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -17,9 +17,8 @@ enum { FORMAT = 10, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 enum { KEEP = 2 }; /* checkpoints in the folder of a run */
 
 /* Owners of blocks: the kinds of particles, then these. */
-enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
+enum { OWNER_RUN = KIND_COUNT, OWNER_CASE };
 
-enum item { ITEM_DOUBLE, ITEM_INT64, ITEM_INT32, ITEM_BYTE, ITEM_COUNT };
 static const size_t item_size[ITEM_COUNT] = {8, 8, 4, 1};
 
 struct file_header {
@@ -77,7 +76,7 @@ static enum item item_of(const char *type)
 /* What a fork, whose case may have other fields and outputs, does with a block. */
 enum in_fork { FORK_LOADS, FORK_LOADS_IF_THERE, FORK_SKIPS };
 
-/* A block of a file in the memory of the program. */
+/* A block of a file in the memory of the program, and the range of its numbers. */
 struct part {
     const char *name;
     unsigned owner;
@@ -85,6 +84,7 @@ struct part {
     void *data;
     size_t count;
     enum in_fork in_fork;
+    double low, high; /* low = -INFINITY: any numbers, and NAN */
 };
 
 enum { MAX_PARTS = 512 };
@@ -94,42 +94,46 @@ struct parts {
     struct part item[MAX_PARTS];
 };
 
-static void add_part(struct parts *list, const char *name, unsigned owner, enum item item,
-                     void *data, size_t count, enum in_fork in_fork)
+static void add_part(struct parts *list, struct part part)
 {
     ASSERT(list->n < MAX_PARTS);
-    list->item[list->n++] = (struct part){name, owner, item, data, count, in_fork};
+    list->item[list->n++] = part;
+}
+
+/* A part of the run itself. */
+static void add_run(struct parts *list, const char *name, enum item item, void *data, size_t count,
+                    double low, double high)
+{
+    if (count > 0)
+        add_part(list, (struct part){name, OWNER_RUN, item, data, count, FORK_LOADS, low, high});
 }
 
 static void list_run(struct parts *list, struct image *m, struct simulation *sim)
 {
     struct state *const state = &sim->state;
     struct open *const open = &sim->open;
-    const unsigned run = OWNER_STATE;
-    const size_t n_open = (size_t)open->n, n_carried = (size_t)sim->carried.n;
-    const size_t zones = (size_t)sim->damping.n, n_rigid = (size_t)sim->rigid.n * RIGID_NUMBERS;
-    add_part(list, "snapshots_missed", run, ITEM_INT64, &m->snapshots_missed, 1, FORK_SKIPS);
-    add_part(list, "snapshot_of_end", run, ITEM_INT64, &m->snapshot_of_end, 1, FORK_SKIPS);
+    const size_t n_open = (size_t)open->n;
+    add_part(list, (struct part){"snapshots_missed", OWNER_RUN, ITEM_INT64, &m->snapshots_missed, 1,
+                                 FORK_SKIPS, 0, COUNTS});
+    add_part(list, (struct part){"snapshot_of_end", OWNER_RUN, ITEM_INT64, &m->snapshot_of_end, 1,
+                                 FORK_SKIPS, 0, 1});
 #define STATE(type, name, low, high, unit, meaning) \
-    add_part(list, #name, run, item_of(#type), &state->name, 1, FORK_LOADS);
+    add_run(list, #name, item_of(#type), &state->name, 1, low, high);
 #include "time/state.def"
 #undef STATE
-    add_part(list, "bound_steps", run, ITEM_INT64, state->bound_steps, BOUND_COUNT, FORK_LOADS);
-    add_part(list, "energy", run, ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS, FORK_LOADS);
-    if (n_open > 0) {
-        add_part(list, "open_sum", run, ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, FORK_LOADS);
-        add_part(list, "open_count", run, ITEM_INT64, open->count, n_open * OPEN_COUNTS,
-                 FORK_LOADS);
-        add_part(list, "open_next_id", run, ITEM_INT64, &open->next_id, 1, FORK_LOADS);
-    }
-    if (zones > 0) add_part(list, "zones", run, ITEM_DOUBLE, sim->damping.taken, zones, FORK_LOADS);
-    if (n_rigid > 0)
-        add_part(list, "rigid", run, ITEM_DOUBLE, sim->rigid.state, n_rigid, FORK_LOADS);
-    if (sim->beams.n > 0)
-        add_part(list, "beams", run, ITEM_DOUBLE, sim->beams.state,
-                 (size_t)sim->beams.n_nodes * BEAM_NUMBERS, FORK_LOADS);
-    if (n_carried > 0)
-        add_part(list, "rows", run, ITEM_DOUBLE, sim->carried.value, n_carried, FORK_SKIPS);
+    add_run(list, "bound_steps", ITEM_INT64, state->bound_steps, BOUND_COUNT, 0, COUNTS);
+    add_run(list, "energy", ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS, -FINITE, FINITE);
+    add_run(list, "open_sum", ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, -INFINITY, FINITE);
+    add_run(list, "open_count", ITEM_INT64, open->count, n_open * OPEN_COUNTS, 0, COUNTS);
+    add_run(list, "open_next_id", ITEM_INT64, &open->next_id, n_open > 0, 0, COUNTS);
+    add_run(list, "zones", ITEM_DOUBLE, sim->damping.taken, (size_t)sim->damping.n, 0, FINITE);
+    add_run(list, "rigid", ITEM_DOUBLE, sim->rigid.state, (size_t)sim->rigid.n * RIGID_NUMBERS,
+            -FINITE, FINITE);
+    add_run(list, "beams", ITEM_DOUBLE, sim->beams.state, (size_t)sim->beams.n_nodes * BEAM_NUMBERS,
+            -FINITE, FINITE);
+    if (sim->carried.n > 0)
+        add_part(list, (struct part){"rows", OWNER_RUN, ITEM_DOUBLE, sim->carried.value,
+                                     (size_t)sim->carried.n, FORK_SKIPS, -INFINITY, FINITE});
 }
 
 /* All state, in the order of the file. */
@@ -140,16 +144,20 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
         [KIND_SOLID] = G_WETTED | G_MEAN_FORCE | G_SPLIT_IMPULSE | G_SLOPE | G_FRICTION | G_MATRIX,
         [KIND_WALL] = G_REFERENCE | G_RATE | G_FORCE, /* those of moving walls */
     };
+    const int sections[KIND_COUNT] = {sim->scene->n_fluid, sim->scene->n_wall, sim->scene->n_solid};
     list->n = 0;
     list_run(list, m, sim);
     for (unsigned k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++) {
             const struct field_info *const info = &field_table[f];
             void *const data = field_array(&sim->kind[k], info);
-            const bool may_lack = info->group & new_in_fork[k];
             if (!data || info->keep != KEEP_STATE) continue;
-            add_part(list, info->name, k, item_of(info->type), data, (size_t)sim->kind[k].n,
-                     may_lack ? FORK_LOADS_IF_THERE : FORK_LOADS);
+            struct part part = {
+                info->name, k,     item_of(info->type), data, (size_t)sim->kind[k].n, FORK_LOADS,
+                -FINITE,    FINITE};
+            if (info->group & new_in_fork[k]) part.in_fork = FORK_LOADS_IF_THERE;
+            if (data == sim->kind[k].body) part.low = 0, part.high = sections[k] - 1;
+            add_part(list, part);
         }
 }
 
@@ -172,9 +180,11 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
 {
     struct parts list;
     list_parts(&list, m, sim);
-    const struct part text = {
-        "case",    OWNER_CASE, ITEM_BYTE, (void *)(uintptr_t)case_text, strlen(case_text) + 1,
-        FORK_SKIPS};
+    const struct part text = {.name = "case",
+                              .owner = OWNER_CASE,
+                              .item = ITEM_BYTE,
+                              .data = (void *)(uintptr_t)case_text,
+                              .count = strlen(case_text) + 1};
     struct file_header head = {
         .format = FORMAT,
         .byte_order = BYTE_ORDER_MARK,
@@ -205,35 +215,39 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
 
 /* --- blocks --- */
 
-struct block {
-    struct block_header head;
-    size_t at, payload; /* offsets in the image */
-};
-
-static size_t payload_bytes(const struct block *b)
+bool checkpoint_block(const struct image *m, size_t *at, struct block *b)
 {
-    return b->head.count * item_size[b->head.item];
-}
-
-static size_t block_end(const struct block *b) { return b->payload + padded(payload_bytes(b)); }
-
-/* Reads the header of the block at offset `at`; false if no whole block begins there. */
-static bool block_at(const struct image *m, size_t at, struct block *b)
-{
+    static const char *const others[] = {"run", "case"};
+    const size_t begin = *at ? *at : sizeof(struct file_header);
     const size_t end = m->size - sizeof(struct file_footer);
-    if (at > end || end - at < sizeof b->head) return false;
-    memcpy(&b->head, m->bytes + at, sizeof b->head);
-    b->at = at;
-    b->payload = at + sizeof b->head;
-    const size_t rest = end - b->payload;
-    return b->head.item < ITEM_COUNT && b->head.count <= rest / item_size[b->head.item] &&
-           padded(payload_bytes(b)) <= rest;
+    struct block_header head;
+    if (begin > end || end - begin < sizeof head) return false;
+    memcpy(&head, m->bytes + begin, sizeof head);
+    const size_t rest = end - begin - sizeof head;
+    if (head.item >= ITEM_COUNT || head.count > rest / item_size[head.item] ||
+        !memchr(head.name, '\0', sizeof head.name))
+        return false;
+    const size_t bytes = head.count * item_size[head.item];
+    if (padded(bytes) > rest) return false;
+    *b = (struct block){
+        .owner = head.owner < KIND_COUNT    ? kind_names[head.owner]
+                 : head.owner <= OWNER_CASE ? others[head.owner - KIND_COUNT]
+                                            : "unknown",
+        .name = (const char *)m->bytes + begin,
+        .owner_number = head.owner,
+        .item = head.item,
+        .count = (int64_t)head.count,
+        .bytes = bytes,
+        .data = m->bytes + begin + sizeof head,
+    };
+    *at = begin + sizeof head + padded(bytes);
+    return true;
 }
 
 static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
 {
-    for (size_t at = sizeof(struct file_header); block_at(m, at, b); at = block_end(b))
-        if (b->head.owner == owner && strcmp(b->head.name, name) == 0) return true;
+    for (size_t at = 0; checkpoint_block(m, &at, b);)
+        if (b->owner_number == owner && strcmp(b->name, name) == 0) return true;
     return false;
 }
 
@@ -349,52 +363,30 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     memcpy(&head, m->bytes, sizeof head);
     if (memcmp(head.magic, magic, sizeof magic) != 0)
         return damaged(d, path, "its first 8 bytes are wrong");
-    /* Before the checksum, since another byte order or format has another one. */
-    if (head.byte_order == __builtin_bswap32(BYTE_ORDER_MARK))
-        return diag_fail(d, ERR_IO,
-                         "%s: has big-endian byte order, but this program reads little-endian; "
-                         "continue the run on a big-endian machine",
-                         path);
+    /* Before the checksum, since another format has another one. */
     if (head.byte_order != BYTE_ORDER_MARK) return damaged(d, path, "its byte-order mark is wrong");
     if (head.format != FORMAT)
         return diag_fail(d, ERR_IO,
                          "%s: has format %u, but this program reads format %d; continue the run "
                          "with version %.*s, which wrote the file (its bytes 88 to 135)",
                          path, head.format, FORMAT, (int)sizeof head.version - 1, head.version);
-    if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header))
-        return damaged(d, path, "its header is damaged");
     if (head.file_size != m->size) return damaged(d, path, "its length is wrong; it was cut short");
-    return ERR_OK;
-}
-
-/* Every block is complete and has a terminated name; no bytes follow the last block. */
-static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
-{
-    struct file_header head;
-    memcpy(&head, m->bytes, sizeof head);
-    size_t at = sizeof head;
-    for (uint32_t k = 0; k < head.blocks; k++) {
-        struct block b;
-        if (!block_at(m, at, &b)) return damaged(d, path, "a block extends beyond its end");
-        if (!memchr(b.head.name, '\0', sizeof b.head.name))
-            return damaged(d, path, "the name of a block has no end");
-        at = block_end(&b);
-    }
-    if (at != m->size - sizeof(struct file_footer))
-        return damaged(d, path, "bytes follow its last block");
     return ERR_OK;
 }
 
 enum err checkpoint_check(const struct image *m, const char *name, struct diag *d)
 {
     struct file_footer foot;
+    struct block b;
+    size_t at = 0;
     TRY(check_header(m, name, d));
     memcpy(&foot, m->bytes + m->size - sizeof foot, sizeof foot);
-    if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0)
-        return damaged(d, name, "its footer is damaged");
-    if (foot.sum != checksum(m->bytes, m->size - sizeof foot))
+    if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0 ||
+        foot.sum != checksum(m->bytes, m->size - sizeof foot))
         return damaged(d, name, "its checksum is wrong");
-    return check_blocks(m, name, d);
+    while (checkpoint_block(m, &at, &b)) continue;
+    if (at != m->size - sizeof foot) return damaged(d, name, "its blocks do not fill it");
+    return ERR_OK;
 }
 
 enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
@@ -446,49 +438,65 @@ struct image_info checkpoint_info(const struct image *m)
     memcpy(info.count, head.count, sizeof info.count);
     memcpy(info.version, head.version, sizeof info.version - 1);
     struct block b;
-    if (find_block(m, "case", OWNER_CASE, &b) && b.head.count > 0 &&
-        m->bytes[b.payload + b.head.count - 1] == '\0')
-        info.case_text = (const char *)m->bytes + b.payload;
+    if (find_block(m, "case", OWNER_CASE, &b) && b.bytes > 0 && b.data[b.bytes - 1] == '\0')
+        info.case_text = (const char *)b.data;
     return info;
 }
 
-bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info)
+double checkpoint_number(const struct block *b, int64_t k)
 {
-    static const char *const others[] = {"run", "case"};
-    static const char *const types[ITEM_COUNT] = {"double", "int64", "int32", "byte"};
-    struct block b;
-    if (*at == 0) *at = sizeof(struct file_header);
-    if (!block_at(m, *at, &b)) return false;
-    const unsigned owner = b.head.owner;
-    *info = (struct block_info){
-        .owner = owner < KIND_COUNT    ? kind_names[owner]
-                 : owner <= OWNER_CASE ? others[owner - KIND_COUNT]
-                                       : "unknown",
-        .name = (const char *)m->bytes + b.at,
-        .type = types[b.head.item],
-        .count = (int64_t)b.head.count,
-        .item_bytes = item_size[b.head.item],
-        .data = m->bytes + b.payload,
-    };
-    *at = block_end(&b);
-    return true;
+    double number;
+    int64_t whole;
+    int32_t small;
+    const unsigned char *const at = b->data + (size_t)k * item_size[b->item];
+    switch (b->item) {
+    case ITEM_DOUBLE: memcpy(&number, at, sizeof number); return number;
+    case ITEM_INT64: memcpy(&whole, at, sizeof whole); return (double)whole;
+    case ITEM_INT32: memcpy(&small, at, sizeof small); return small;
+    default: return *at;
+    }
 }
 
 /* --- apply --- */
 
+/* A checksum does not protect from a file that was made wrong. */
 static enum err load_part(const struct image *m, const struct part *part, struct diag *d)
 {
     struct block b;
     if (!find_block(m, part->name, part->owner, &b))
         return diag_fail(d, ERR_INPUT, "checkpoint: it has no block %s, which this case needs",
                          part->name);
-    if (b.head.item != part->item || b.head.count != part->count)
+    if (b.item != part->item || b.count != (int64_t)part->count)
         return diag_fail(d, ERR_INPUT,
-                         "checkpoint: block %s holds %" PRIu64
-                         " items of type %u, but this case needs %zu of type %u",
-                         part->name, b.head.count, b.head.item, part->count, part->item);
-    if (part->count) memcpy(part->data, m->bytes + b.payload, payload_bytes(&b));
+                         "checkpoint: block %s holds %" PRId64
+                         " items of type %d, but this case needs %zu of type %d",
+                         part->name, b.count, b.item, part->count, part->item);
+    for (int64_t k = 0; k < b.count && isfinite(part->low); k++) {
+        const double number = checkpoint_number(&b, k);
+        if (number >= part->low && number <= part->high) continue;
+        return diag_fail(d, ERR_INPUT,
+                         "checkpoint: %s of %s, item %" PRId64
+                         ", is %g, outside the valid range %g to %g; the file is damaged or not of "
+                         "this case",
+                         part->name, b.owner, k, number, part->low, part->high);
+    }
+    if (b.bytes) memcpy(part->data, b.data, b.bytes);
     return ERR_OK;
+}
+
+/* Numbers with a narrower range, such as what divides the step of a solid. */
+static enum err check_state(const struct simulation *sim, struct diag *d)
+{
+    const struct state *const state = &sim->state;
+    bool valid =
+        !(sim->effects & FX_SOLID) || min2(state->solid_stiffening, state->solid_slowing) >= 1e-9;
+    for (int k = 0; k < ENERGY_ENTRIES; k++)
+        valid &= state->energy.entry[k].region >= -1 && state->energy.entry[k].region <= k &&
+                 state->energy.entry[k].work_change >= 0;
+    return valid ? ERR_OK
+                 : diag_fail(d, ERR_INPUT,
+                             "checkpoint: the account of energy, solid_stiffening or "
+                             "solid_slowing are invalid; the file is damaged");
 }
 
 /* Sets a field that the run of the checkpoint did not have. Reference positions are the present
@@ -529,9 +537,7 @@ enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, str
         else
             TRY(load_part(m, part, d));
     }
-    TRY(range_check("snapshots_missed", (double)m->snapshots_missed, 0, COUNTS, d));
-    TRY(range_check("snapshot_of_end", (double)m->snapshot_of_end, 0, 1, d));
-    return ranges_check(sim, d);
+    return check_state(sim, d);
 }
 
 static enum err check_kind(const struct simulation *sim, enum kind kind, struct diag *d)

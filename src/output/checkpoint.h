@@ -18,6 +18,10 @@ struct image {
 
 enum { CHECKPOINT_VERSION_TEXT = 48 };
 
+/* What counters may hold in it; beyond what any number of a run is. */
+#define COUNTS 0x1p62
+#define FINITE 1e300
+
 /* Contents of the header of a valid image. */
 struct image_info {
     double time;
@@ -55,17 +59,22 @@ enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES],
 
 struct image_info checkpoint_info(const struct image *m);
 
-/* A block of a valid image. */
-struct block_info {
-    const char *owner, *name, *type;
+enum item { ITEM_DOUBLE, ITEM_INT64, ITEM_INT32, ITEM_BYTE, ITEM_COUNT };
+
+/* A block of an image, into which the pointers point. */
+struct block {
+    const char *owner, *name;
+    unsigned owner_number;
+    enum item item;
     int64_t count;
-    size_t item_bytes;
-    const void *data; /* points into the image */
+    size_t bytes;
+    const unsigned char *data;
 };
 
 /* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at.
- * Returns false after the last block. */
-bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info);
+ * Returns false if no whole block begins there. */
+bool checkpoint_block(const struct image *m, size_t *at, struct block *b);
+double checkpoint_number(const struct block *b, int64_t k);
 
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
  * the new case is loaded as at rest. Used by the two functions below. */

@@ -31,8 +31,8 @@ expect 1 "has format 2" "$case" --out "$run" --restart "$dir/patched.ckpt"
 patched 8 '\0\0\0\0'
 expect 1 'has format 0' --inspect "$dir/patched.ckpt"
 patched 8 '\0\0\0\x01\x01\x02\x03\x04'
-expect 1 'big-endian byte order' --inspect "$dir/patched.ckpt"
-expect 1 'big-endian byte order' "$case" --out "$run" --restart "$dir/patched.ckpt"
+expect 1 'byte-order mark is wrong' --inspect "$dir/patched.ckpt"
+expect 1 'byte-order mark is wrong' "$case" --out "$run" --restart "$dir/patched.ckpt"
 expect 1 "the checkpoint has 'dp = 0.01 m'.*'dp = 0.005 m'" "$case" --out "$run" --restart \
     --set dp=5mm
 expect 1 'has changed.*integrator' "$case" --out "$run" --restart --set integrator=verlet
@@ -40,7 +40,7 @@ expect 1 'has changed.*integrator' "$case" --out "$run" --restart --set integrat
 # --- a refused fork leaves nothing, and removes nothing that was there ---
 mkdir "$dir/mine"
 for out in deep/refused/ mine/refused mine; do
-    expect 1 'byte order' "$case" --fork "$dir/patched.ckpt" --out "$dir/$out"
+    expect 1 'byte-order' "$case" --fork "$dir/patched.ckpt" --out "$dir/$out"
 done
 [ ! -e "$dir/deep" ] || fail "a refused fork leaves a folder"
 [ "$(ls -A "$dir/mine")" = '' ] || fail "a refused fork leaves files"

@@ -257,7 +257,7 @@ int fuzz_checkpoint(const uint8_t *data, size_t size)
     enum err e = checkpoint_check(&m, "x.ckpt", &d);
     judge(e, &d);
     if (!e) {
-        struct block_info block;
+        struct block block;
         checkpoint_info(&m);
         for (size_t at = 0; checkpoint_block(&m, &at, &block);)
             if (block.count < 0 || !block.data) abort();
