@@ -135,11 +135,11 @@ static enum err check_periodic(const struct scene *scene, struct diag *d)
 
 /* --- probes --- */
 
-static enum err check_body_probe(struct sampler *sampler, const struct scene_probe *probe)
+/* Of a probe in a solid, or on it. */
+static enum err check_body_probe(struct sampler *sampler, const struct scene_probe *probe, int body)
 {
     const struct scene *scene = sampler->scene;
     const struct scene_points *p = &scene->points[KIND_SOLID];
-    const int body = scene_find_solid(scene, probe->body);
     double nearest = HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == body)
@@ -151,7 +151,7 @@ static enum err check_body_probe(struct sampler *sampler, const struct scene_pro
     return geometry_refuse(sampler, probe->common.line,
                            "[probe %s] point (%g, %g) lies about %.3g m outside of [solid %s]",
                            probe->common.name, probe->point[0], probe->point[1], outside,
-                           probe->body);
+                           scene->solid[body].common.name);
 }
 
 static enum err check_place(struct sampler *sampler, const struct scene_probe *probe,
@@ -176,8 +176,9 @@ static enum err check_probes(struct sampler *sampler)
         const struct scene_probe *probe = &scene->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (target == TARGET_SOLID_POINT && scene_find_beam(scene, probe->body) < 0)
-            TRY(check_body_probe(sampler, probe));
+        const int body =
+            scene_find_solid(scene, target == TARGET_SOLID_POINT ? probe->body : probe->on);
+        if (body >= 0) TRY(check_body_probe(sampler, probe, body));
         if (target == TARGET_FLUID_POINT || line)
             TRY(check_place(sampler, probe, "point", probe->point));
         if (line) TRY(check_place(sampler, probe, "to", probe->to));

@@ -77,11 +77,6 @@ struct sample fluid_sample(const struct simulation *sim, double x, double y)
     return *sum;
 }
 
-double fluid_pressure_at(const struct simulation *sim, double x, double y)
-{
-    return fluid_sample(sim, x, y).pressure;
-}
-
 /* The water's volume fraction of the space outside walls and structures. */
 static double wetness(const struct simulation *sim, double x, double y)
 {
@@ -230,7 +225,7 @@ void fluid_pressure_on(const struct simulation *sim, const double a[2], const do
     double sum = 0;
     for (int k = 0; k < n; k++) {
         const double at = (k + 0.5) / n;
-        sum += fluid_pressure_at(sim, a[0] + at * dx, a[1] + at * dy);
+        sum += fluid_sample(sim, a[0] + at * dx, a[1] + at * dy).pressure;
     }
     out[0] = sum / n;
     out[1] = out[0] * dy;

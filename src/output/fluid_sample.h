@@ -16,9 +16,6 @@ struct sample {
 };
 struct sample fluid_sample(const struct simulation *sim, double x, double y);
 
-/* Fluid pressure at a fixed point, Pa: that of fluid_sample. */
-double fluid_pressure_at(const struct simulation *sim, double x, double y);
-
 /* Height of the free surface above (x, y): the lowest height at which the water ends. y itself if
  * no water is within reach above it. */
 double fluid_level(const struct simulation *sim, double x, double y);

@@ -66,25 +66,6 @@ const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
  * this one is smooth and vanishes at the reach. */
 static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
 
-/* Particles of the body within `reach` of the probe, and the distance of the nearest of all;
- * `particle` may be NULL to count only. */
-static int find_near(const struct particles *particles, int body, const double at[2], double reach,
-                     int32_t *particle, double *nearest)
-{
-    int n = 0;
-    double least = HUGE_VAL;
-    for (int64_t i = 0; i < particles->n; i++) {
-        if (particles->body[i] != body) continue;
-        const double r2 = square(particles->X[i] - at[0]) + square(particles->Y[i] - at[1]);
-        least = min2(least, r2);
-        if (r2 >= square(reach)) continue;
-        if (particle) particle[n] = (int32_t)i;
-        n++;
-    }
-    *nearest = sqrt(least);
-    return n;
-}
-
 /* Place of the k-th particle from the probe in units of the reach, and its weight. */
 static double offset(const struct probe *probe, const struct particles *particles, int k,
                      double reach, double *x, double *y)
@@ -116,28 +97,22 @@ static void find_weights(struct probe *probe, const struct particles *particles,
     }
 }
 
-/* A corner of a body is 0.71 dp from its nearest particle; a point further than h is a mistake. */
-static enum err attach(struct probe *probe, const struct scene_probe *sp,
-                       const struct simulation *sim, struct arena *a, struct diag *d)
+/* To the particles of its body within 2 h; geometry/extent.c refuses points outside of a body. */
+static enum err attach(struct probe *probe, const struct simulation *sim, struct arena *a,
+                       struct diag *d)
 {
-    const int body = probe->body;
-    const struct particles *particles = &sim->kind[KIND_SOLID];
-    const char *const name = sim->scene->solid[body].common.name;
-    const double h = scene_solid_h(sim->scene, body), reach = 2 * h;
-    double distance;
-    probe->n = find_near(particles, body, probe->point, reach, NULL, &distance);
-    char place[LOCATION_TEXT];
-    scene_location(sim->scene, sp->common.line, place);
-    if (!(distance < h))
-        return diag_fail(d, ERR_INPUT,
-                         "%s: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
-                         "[solid %s]; move it to h = %.3g m or less",
-                         place, sp->common.name, probe->point[0], probe->point[1], distance, name,
-                         h);
-    probe->particle = arena_alloc(a, (size_t)probe->n, sizeof *probe->particle, "probe", d);
+    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const double reach = 2 * scene_solid_h(sim->scene, probe->body);
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double x = particles->X[i] - probe->point[0], y = particles->Y[i] - probe->point[1];
+        if (particles->body[i] != probe->body || square(x) + square(y) >= square(reach)) continue;
+        probe->particle =
+            arena_grow(a, probe->particle, (size_t)probe->n, sizeof *probe->particle, "probe", d);
+        if (!probe->particle) return ERR_MEMORY;
+        probe->particle[probe->n++] = (int32_t)i;
+    }
     probe->weight = arena_alloc(a, (size_t)probe->n, sizeof *probe->weight, "probe", d);
-    if (!probe->particle || !probe->weight) return ERR_MEMORY;
-    find_near(particles, body, probe->point, reach, probe->particle, &distance);
+    if (!probe->weight) return ERR_MEMORY;
     find_weights(probe, particles, reach);
     return ERR_OK;
 }
@@ -204,7 +179,7 @@ static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp
         return ERR_OK;
     }
     probe->body = on.body;
-    return attach(probe, sp, sim, a, d);
+    return attach(probe, sim, a, d);
 }
 
 static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
@@ -230,7 +205,7 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
     }
     if (probe->target == TARGET_BODY) return find_bodies(probe, sim->scene, sp->body, a, d);
     if (*sp->on) return attach_to_body(probe, sp, sim, a, d);
-    return probe->target == TARGET_SOLID_POINT ? attach(probe, sp, sim, a, d) : ERR_OK;
+    return probe->target == TARGET_SOLID_POINT ? attach(probe, sim, a, d) : ERR_OK;
 }
 
 /* --- files --- */
@@ -532,7 +507,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
         row[0] = row[1] = row[2] = 0;
         add_forces(probe, solid, probe->body, now.held_x, now.held_y, row);
         break;
-    case PROBE_PRESSURE: *row = fluid_pressure_at(sim, at[0], at[1]); break;
+    case PROBE_PRESSURE: *row = fluid_sample(sim, at[0], at[1]).pressure; break;
     case PROBE_STRESS: stress(probe, sim, row); break;
     case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
     case PROBE_FORCE: force(probe, sim, row); break;

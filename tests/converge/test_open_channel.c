@@ -47,8 +47,9 @@ static struct errors errors_at(int n, const char *set)
             place[row] += 6 * particles->y[i] * (1 - particles->y[i]);
             count[row]++;
         }
-        drop +=
-            (fluid_pressure_at(&rig.sim, 0.4, 0.5) - fluid_pressure_at(&rig.sim, 1.6, 0.5)) / TIMES;
+        drop += (fluid_sample(&rig.sim, 0.4, 0.5).pressure -
+                 fluid_sample(&rig.sim, 1.6, 0.5).pressure) /
+                TIMES;
     }
     struct errors e = {0, fabs(drop / (600 * 1.2) - 1)};
     for (int row = 0; row < n; row++)

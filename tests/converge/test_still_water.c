@@ -104,9 +104,9 @@ static void test_pressure_within_two_percent(void)
             assert_near(0.02 * rho * g * H, rho * g * (H - particles->y[i]),
                         rig_pressure(&rig.sim, i), "pressure");
     for (double y = 0.02; y < 0.17; y += 0.03)
-        assert_near(0.02 * rho * g * H, rho * g * (H - y), fluid_pressure_at(&rig.sim, 0.05, y),
+        assert_near(0.02 * rho * g * H, rho * g * (H - y), fluid_sample(&rig.sim, 0.05, y).pressure,
                     "pressure at a fixed point");
-    TEST_ASSERT_TRUE(fluid_pressure_at(&rig.sim, 0.05, 0.25) == 0);
+    TEST_ASSERT_TRUE(fluid_sample(&rig.sim, 0.05, 0.25).pressure == 0);
 }
 
 /* Let go without pressure the water bounces like a spring and comes to rest: a hundredth of the

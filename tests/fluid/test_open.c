@@ -211,7 +211,7 @@ static void pulse(const char *length, const char *absorb, double p[POINTS])
              length, absorb, NULL);
     rig_run(&rig, 0.32);
     for (int k = 0; k < POINTS; k++)
-        p[k] = fluid_pressure_at(&rig.sim, 0.3 + 2.4 * k / POINTS, 0.05);
+        p[k] = fluid_sample(&rig.sim, 0.3 + 2.4 * k / POINTS, 0.05).pressure;
 }
 
 static double most_difference(const double a[POINTS], const double b[POINTS])
@@ -247,7 +247,7 @@ static void test_a_level(void)
              NULL);
     rig_run(&rig, 1);
     assert_near(0.0125, 0.4, fluid_level(&rig.sim, 0.5, 0.1), "level");
-    assert_near(0.02 * 3924, 3924 * 0.75, fluid_pressure_at(&rig.sim, 0.5, 0.1), "pressure");
+    assert_near(0.02 * 3924, 3924 * 0.75, fluid_sample(&rig.sim, 0.5, 0.1).pressure, "pressure");
 }
 
 /* A channel with a free surface, Froude number 0.5: inflow of given discharge, outflow of given

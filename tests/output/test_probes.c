@@ -159,7 +159,7 @@ static void pressure_is_a_mean_of_the_near_fluid(void)
     for (int64_t i = 0; i < particles->n; i++)
         particles->dens[i] = 1e-3, particles->ax[i] = g[0], particles->ay[i] = g[1];
     assert_near(1e-9, 400.0 * 1000 / 7 * (pow(1.001, 7) - 1),
-                fluid_pressure_at(&rig.sim, 0.001, 0.03), "pressure of equal density");
+                fluid_sample(&rig.sim, 0.001, 0.03).pressure, "pressure of equal density");
 }
 
 static void level_of_still_water(void)
