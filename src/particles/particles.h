@@ -6,17 +6,30 @@
 
 #include "base/base.h"
 
-/* Field groups: the unit of allocation, particles/groups.def. */
-enum group_number {
-#define GROUP(name, meaning) GROUP_##name,
-#include "particles/groups.def"
-#undef GROUP
-    GROUP_COUNT
-};
+/* Field groups, the unit of allocation, and the particles that have them. */
 enum group {
-#define GROUP(name, meaning) G_##name = 1 << GROUP_##name,
-#include "particles/groups.def"
-#undef GROUP
+    G_POINT = 1 << 0,          /* every particle */
+    G_DENSITY = 1 << 1,        /* fluid; walls and structures in contact with fluid */
+    G_RATE = 1 << 2,           /* fluid, moving walls, structures */
+    G_FLUID = 1 << 3,          /* fluid */
+    G_STAGE = 1 << 4,          /* predictor-corrector: fluid and solid */
+    G_STAGE_FLUID = 1 << 5,    /* predictor-corrector: fluid */
+    G_VERLET = 1 << 6,         /* Verlet: fluid */
+    G_LEAPFROG = 1 << 7,       /* leapfrog: fluid */
+    G_REFERENCE = 1 << 8,      /* solid, moving walls */
+    G_SOLID = 1 << 9,          /* solid */
+    G_FRICTION = 1 << 10,      /* solids that rub against each other or walls */
+    G_MATRIX = 1 << 11,        /* solids with implicit steps */
+    G_COUPLED = 1 << 12,       /* structures in contact with fluid */
+    G_MEAN_FORCE = 1 << 13,    /* Verlet, leapfrog: structures in contact with fluid */
+    G_SPLIT_IMPULSE = 1 << 14, /* Verlet: structures in contact with fluid, in sub-steps */
+    G_WETTED = 1 << 15,        /* structures in contact with fluid, in sub-steps */
+    G_FORCE = 1 << 16,         /* structures in contact with fluid, moving walls */
+    G_SHIFT = 1 << 17,         /* fluid with particle shifting */
+    G_DAMPER = 1 << 18,        /* fluid with an acoustic damper */
+    G_MASS = 1 << 19,          /* fluid with particles of different masses */
+    G_OPEN = 1 << 20,          /* fluid that enters or leaves through open boundaries */
+    G_SLOPE = 1 << 21,         /* fluid whose diffusion needs the density gradient */
 };
 
 enum keep { KEEP_STATE, KEEP_DERIVED };
