@@ -81,21 +81,6 @@ double beams_place(struct beams *beams, double since, double dt)
 
 /* --- exchange --- */
 
-/* What a vector at dummy j does to the unknowns of both ends of its part: T-111. */
-static void at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6])
-{
-    const struct line_dummy *const dummy = &line->scene->dummy[j];
-    for (int last = 0; last < 2; last++) {
-        const struct line_end *const end = &line->end[2 * dummy->part + last];
-        const double weight = last ? dummy->along : 1 - dummy->along;
-        const double arm[2] = {dummy->off * end->normal[0] + dummy->beyond * end->normal[1],
-                               dummy->off * end->normal[1] - dummy->beyond * end->normal[0]};
-        to[3 * last] = weight * x;
-        to[3 * last + 1] = weight * y;
-        to[3 * last + 2] = weight * (arm[0] * y - arm[1] * x);
-    }
-}
-
 /* The nodes of the part of dummy j, and its element. */
 static int element_of(const struct beams *beams, int beam, int64_t j)
 {
@@ -111,10 +96,10 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double kick, dou
     const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
     const double by = exchange_time(beams) * impedance(beams) / max2(wet, 1e-300);
     double force[6], normal[6];
-    at_ends(line, j, p->fx[i], p->fy[i], force);
+    line_at_ends(line, j, p->fx[i], p->fy[i], force);
     for (int r = 0; r < 6; r++) beams->step[node[r / 3]].fluid[r % 3] += kick / dt * force[r];
     if (!(wet > 0)) return;
-    at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
+    line_at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++) beams->added[element][r][c] += by * normal[r] * normal[c];
 }
@@ -142,7 +127,7 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
     const int *const node = beams->element[element_of(beams, beam, j)].node;
     const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
     double normal[6], along = 0;
-    at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
+    line_at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
     for (int r = 0; r < 6 && wet > 0; r++) {
         const struct beam_step *const s = &beams->step[node[r / 3]];
         along += normal[r] / wet * (s->d[r % 3] / dt - s->w[r % 3]);

@@ -121,20 +121,16 @@ void line_place(struct thin_line *line, struct particles *walls)
     place_pieces(line);
 }
 
-void line_load(const struct thin_line *line, const double *fx, const double *fy, double (*load)[3])
+void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6])
 {
-    for (int64_t j = 0; j < line->scene->n_dummies; j++) {
-        const struct line_dummy *const dummy = &line->scene->dummy[j];
-        const double f[2] = {fx[line->first + j], fy[line->first + j]};
-        for (int last = 0; last < 2; last++) {
-            const int k = 2 * dummy->part + last;
-            const double weight = last ? dummy->along : 1 - dummy->along;
-            double arm[2];
-            arm_of(dummy, &line->end[k], arm);
-            load[k][0] += weight * f[0];
-            load[k][1] += weight * f[1];
-            load[k][2] += weight * (arm[0] * f[1] - arm[1] * f[0]);
-        }
+    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    for (int last = 0; last < 2; last++) {
+        const double weight = last ? dummy->along : 1 - dummy->along;
+        double arm[2];
+        arm_of(dummy, &line->end[2 * dummy->part + last], arm);
+        to[3 * last] = weight * x;
+        to[3 * last + 1] = weight * y;
+        to[3 * last + 2] = weight * (arm[0] * y - arm[1] * x);
     }
 }
 

@@ -49,9 +49,9 @@ void line_place(struct thin_line *line, struct particles *walls);
 /* The place on the line that its dummy number j lies behind. */
 void line_foot(const struct thin_line *line, int64_t j, double at[2]);
 
-/* Adds the forces on the dummies to the ends by the same functions: force per depth, N/m, and
- * moment about the end, N. load: [2 * parts]. */
-void line_load(const struct thin_line *line, const double *fx, const double *fy, double (*load)[3]);
+/* What a vector at dummy number j does to the ends of its part by the same functions: the vector
+ * and its moment about the end. */
+void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6]);
 
 /* Image m of all lines, which lie `shift` from the lines themselves, m; false: there is none. */
 enum { LINE_IMAGES = 9 };

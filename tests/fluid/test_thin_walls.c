@@ -218,7 +218,7 @@ static void test_places_and_loads(void)
     rig_run(&rig, 0.1);
     line_follow(&rig.sim.fluid.lines.line[0], &motion);
     line_place(&rig.sim.fluid.lines.line[0], walls);
-    double sum[3] = {0}, load[4][3] = {{0}}, handed[3] = {0};
+    double sum[3] = {0}, load[6], handed[3] = {0};
     for (int64_t j = line->first; j < walls->n; j++) {
         const struct motion_point at = motion_of_point(&motion, walls->X[j], walls->Y[j]);
         assert_near(1e-12, at.x[0], walls->x[j], "x");
@@ -232,11 +232,15 @@ static void test_places_and_loads(void)
         sum[2] += walls->x[j] * walls->fy[j] - walls->y[j] * walls->fx[j];
     }
     TEST_ASSERT_EQUAL_INT64(walls->n - line->first, line->scene->n_dummies);
-    line_load(line, walls->fx, walls->fy, load);
-    for (int k = 0; k < 4; k++) {
-        handed[0] += load[k][0];
-        handed[1] += load[k][1];
-        handed[2] += load[k][2] + line->end[k].x[0] * load[k][1] - line->end[k].x[1] * load[k][0];
+    for (int64_t j = 0; j < line->scene->n_dummies; j++) {
+        line_at_ends(line, j, walls->fx[line->first + j], walls->fy[line->first + j], load);
+        for (int last = 0; last < 2; last++) {
+            const double *const f = load + 3 * last,
+                                *const at = line->end[2 * line->scene->dummy[j].part + last].x;
+            handed[0] += f[0];
+            handed[1] += f[1];
+            handed[2] += f[2] + at[0] * f[1] - at[1] * f[0];
+        }
     }
     for (int c = 0; c < 3; c++) assert_near(1e-9, sum[c], handed[c], "load");
     TEST_ASSERT_TRUE(fabs(sum[0]) > 1);
