@@ -12,11 +12,13 @@
 /* What a run carries from step to step, for each node: x, y and angle each. Doubles only: saved as
  * such. */
 struct beam_state {
-    double x[3];        /* displacement, m, and counter-clockwise rotation, rad */
-    double v[3];        /* velocity, m/s and 1/s */
-    double w[3];        /* its mean over the last step, which the fluid uses */
-    double a[3];        /* change of v, in fluid of w, in the last step over its time */
-    double impulse[3];  /* that the fluid has still to receive, N s/m and N s (T-105) */
+    double x[3];       /* displacement, m, and counter-clockwise rotation, rad */
+    double v[3];       /* velocity, m/s and 1/s */
+    double w[3];       /* its mean over the last step, which the fluid uses */
+    double a[3];       /* change of v over the last step; in fluid the mean of T-35c of that of w */
+    double impulse[3]; /* that the fluid has still to receive, N s/m and N s (T-105b) */
+    double pushed[3];  /* mean of the fluid's force (T-36a), N/m and N */
+    double exchange;   /* time T_e in which the fluid receives the impulse (T-35e), s */
     double reaction[3]; /* of a clamp or hinge in the last step, N/m and N */
 };
 enum { BEAM_NUMBERS = sizeof(struct beam_state) / sizeof(double) };
@@ -37,6 +39,7 @@ struct beam_step {
     double force[3];              /* of the elements against the displacement, N/m and N */
     double fluid[3], resisted[3]; /* in fluid: its force, and its resistance (T-105) */
     double d[3];                  /* displacement; twice the tangent of half the rotation */
+    double faster[3];             /* in fluid: its mean velocity less that of the step before */
 };
 
 /* A [beam]: its nodes and elements are `first` to `end` - 1. */
@@ -71,6 +74,8 @@ struct beams {
     double *unknown; /* [rows] */
     int iterations;  /* of Newton's method in the last step */
     double residual; /* over the largest force of a node */
+    double ahead;    /* steps that the fluid is evaluated after the start of a step */
+    bool alternates; /* the fluid has two solutions, which share the forces */
     bool failed;     /* no solution, however short the step */
 };
 
@@ -80,9 +85,14 @@ enum err beams_create(struct beams *beams, struct arena *a, const struct scene *
 /* Without fluid and solids, s: a part of the longest period, and of that of a pendulum. */
 double beams_longest_step(struct beams *beams);
 
-/* A step of dt from a time on (T-104). The rates of the last evaluation act for `kick`, as on the
- * fluid. */
-void beams_advance(struct beams *beams, double time, double dt, double kick);
+/* The lengths of a step, of the one before (0: the first), and of that of the velocities by the
+ * rates of the last evaluation, s. */
+struct beam_times {
+    double dt, last, kick;
+};
+
+/* A step from a time on (T-104). */
+void beams_advance(struct beams *beams, double time, const struct beam_times *times);
 
 /* --- for output --- */
 

@@ -99,7 +99,7 @@ static void add_resistance(struct beams *beams, int m, double dt)
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++) {
             const struct beam_step *const s = &beams->step[node[c / 3]];
-            matrix[r][c] = beams->added[m][r][c] / square(dt);
+            matrix[r][c] = beams->added[m][r][c] / dt;
             beams->step[node[r / 3]].resisted[r % 3] +=
                 matrix[r][c] * (s->d[c % 3] - dt * s->w[c % 3]);
         }
@@ -249,31 +249,33 @@ static void finish(struct beams *beams, double time, double dt)
             beam->work += (s->load[c] - heavy) * s->d[c];
         }
         beam->work += finish_held(beams, k, v, dt);
-        for (int c = 0; c < 3; c++) now->a[c] = (now->v[c] - s->v[c]) / dt;
+        for (int c = 0; c < 3 && !beams->line; c++) now->a[c] = (now->v[c] - s->v[c]) / dt;
     }
 }
 
 /* A step, or two of half its length where it has no solution. */
-static bool step(struct beams *beams, double time, double dt, double kick, int halvings)
+static bool step(struct beams *beams, double time, const struct beam_times *times, int halvings)
 {
+    const double dt = times->dt;
     find_loads(beams, time + 0.5 * dt);
-    if (beams->line) beams_find_fluid(beams, dt, kick);
+    if (beams->line) beams_find_fluid(beams, times);
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
-        if (beams->line) beams_return_impulse(beams, dt, kick);
+        if (beams->line) beams_return_impulse(beams, times);
         return true;
     }
     if (halvings == 0) return false;
-    return step(beams, time, 0.5 * dt, 0.5 * kick, halvings - 1) &&
-           step(beams, time + 0.5 * dt, 0.5 * dt, 0.5 * kick, halvings - 1);
+    const double half = 0.5 * dt, kick = 0.5 * times->kick;
+    return step(beams, time, &(struct beam_times){half, times->last, kick}, halvings - 1) &&
+           step(beams, time + half, &(struct beam_times){half, half, kick}, halvings - 1);
 }
 
-void beams_advance(struct beams *beams, double time, double dt, double kick)
+void beams_advance(struct beams *beams, double time, const struct beam_times *times)
 {
     beams->iterations = 0;
     for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
-    beams->failed |= !step(beams, time, dt, kick, HALVINGS);
+    beams->failed |= !step(beams, time, times, HALVINGS);
 }
 
 /* --- the longest period --- */

@@ -22,8 +22,7 @@ void move_walls(struct simulation *sim, double time)
             line_follow(line, &sim->wall_motion.body[k].placed);
             line_place(line, &sim->kind[KIND_WALL]);
         }
-    if (sim->beams.line)
-        sim->wall_motion.way += beams_place(&sim->beams, time - sim->state.time, sim->state.dt);
+    if (sim->beams.line) sim->wall_motion.way += beams_place(&sim->beams, time - sim->state.time);
 }
 
 void find_external(struct simulation *sim, enum kind kind, double time)
