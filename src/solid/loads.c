@@ -46,7 +46,7 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
         const bool inside =
             particles->body[i] == body &&
             outlines_find(&o, particles->X[i] + nudge, particles->Y[i] + 0.618 * nudge) >= 0;
-        if (inside) v->loaded[v->n_loaded++] = (int32_t)i;
+        if (inside) v->loaded[v->n_loaded++].particle = (int32_t)i;
     }
     load->end = v->n_loaded;
     char place[LOCATION_TEXT];
@@ -68,7 +68,8 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
     struct box2 row = box2_empty();
     for (int64_t k = load->first; k < load->end; k++) {
         double at[2];
-        lattice_place(l, particles->X[v->loaded[k]], particles->Y[v->loaded[k]], at);
+        const int32_t i = v->loaded[k].particle;
+        lattice_place(l, particles->X[i], particles->Y[i], at);
         box2_include(&row, at[0], at[1]);
     }
     return l->spacing[row.high[1] - row.low[1] > row.high[0] - row.low[0]];
@@ -82,9 +83,10 @@ static void set_forces(struct loads *v, const struct load_region *load,
     const struct scene_load *const from = &v->scene->load[load->section];
     const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
     for (int64_t k = load->first; k < load->end; k++) {
-        const int32_t i = v->loaded[k];
-        v->fx[k] = load->share * expr_at_time(value->e[0], particles->X[i], particles->Y[i], time);
-        v->fy[k] = load->share * expr_at_time(value->e[1], particles->X[i], particles->Y[i], time);
+        struct loaded *const at = &v->loaded[k];
+        for (int c = 0; c < 2; c++)
+            at->f[c] = load->share * expr_at_time(value->e[c], particles->X[at->particle],
+                                                  particles->Y[at->particle], time);
     }
 }
 
@@ -112,14 +114,10 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
         v->load[v->n_loads].section = k;
         TRY(find_loaded(v, &v->load[v->n_loads++], particles, temp, d));
     }
-    const size_t n = (size_t)v->n_loaded;
-    const int32_t *const found = v->loaded;
-    v->loaded = arena_alloc(a, n, sizeof *v->loaded, "loads", d);
-    v->fx = arena_alloc(a, n, sizeof *v->fx, "loads", d);
-    v->fy = arena_alloc(a, n, sizeof *v->fy, "loads", d);
-    v->factor = arena_alloc(a, (size_t)v->n_loads, sizeof *v->factor, "loads", d);
-    if (!v->loaded || !v->fx || !v->fy || !v->factor) return ERR_MEMORY;
-    for (size_t k = 0; k < n; k++) v->loaded[k] = found[k];
+    const struct loaded *const found = v->loaded;
+    v->loaded = arena_alloc(a, (size_t)v->n_loaded, sizeof *v->loaded, "loads", d);
+    if (!v->loaded) return ERR_MEMORY;
+    for (int64_t k = 0; k < v->n_loaded; k++) v->loaded[k] = found[k];
     for (int k = 0; k < v->n_loads; k++) begin_load(v, &v->load[k], particles);
     return ERR_OK;
 }
@@ -167,15 +165,16 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
                   double time)
 {
     for (int n = 0; n < v->n_loads; n++) {
-        const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
-        const double factor = v->factor[n] = history ? expr_at(history, max2(time, 0), 0) : 1;
-        if (v->load[n].varies) set_forces(v, &v->load[n], particles, max2(time, 0));
-        for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
-            const int32_t i = v->loaded[k];
+        struct load_region *const load = &v->load[n];
+        const struct expr *const history = v->scene->load[load->section].history.e[0];
+        load->factor = history ? expr_at(history, max2(time, 0), 0) : 1;
+        if (load->varies) set_forces(v, load, particles, max2(time, 0));
+        for (int64_t k = load->first; k < load->end; k++) {
+            const int32_t i = v->loaded[k].particle;
             const double per_mass =
-                factor * particles->free[i] / solid->body[particles->body[i]].mass;
-            particles->sx[i] += v->fx[k] * per_mass;
-            particles->sy[i] += v->fy[k] * per_mass;
+                load->factor * particles->free[i] / solid->body[particles->body[i]].mass;
+            particles->sx[i] += v->loaded[k].f[0] * per_mass;
+            particles->sy[i] += v->loaded[k].f[1] * per_mass;
         }
     }
     if (v->released) return;
@@ -199,10 +198,11 @@ double loads_work(const struct loads *v, const struct particles *particles, cons
     double work = 0;
     for (int n = 0; n < v->n_loads; n++)
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
-            const int32_t i = v->loaded[k];
-            const double done = v->factor[n] * particles->free[i] * dt *
-                                (v->fx[k] * (vx[i] + 0.5 * dt * particles->sx[i]) +
-                                 v->fy[k] * (vy[i] + 0.5 * dt * particles->sy[i]));
+            const int32_t i = v->loaded[k].particle;
+            const double *const f = v->loaded[k].f;
+            const double done = v->load[n].factor * particles->free[i] * dt *
+                                (f[0] * (vx[i] + 0.5 * dt * particles->sx[i]) +
+                                 f[1] * (vy[i] + 0.5 * dt * particles->sy[i]));
             work += done;
             on[particles->body[i]] += done;
         }

@@ -10,8 +10,14 @@
 struct load_region {
     int section;
     int64_t first, end;
-    double share; /* of a particle in the force; or the length of surface that it represents, m */
-    bool varies;  /* with time, beyond `history` */
+    double share;  /* of a particle in the force; or the length of surface that it represents, m */
+    double factor; /* of time, now */
+    bool varies;   /* with time, beyond `history` */
+};
+
+struct loaded {
+    int32_t particle;
+    double f[2]; /* before the factor of time, N/m */
 };
 
 struct loads {
@@ -19,9 +25,7 @@ struct loads {
     int n_loads;
     struct load_region *load;
     int64_t n_loaded;
-    int32_t *loaded;
-    double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
-    double *factor;  /* [n_loads] now */
+    struct loaded *loaded;
     /* Particles of clamps that move; their `free` is 1, so that they record the force on them. */
     int64_t n_held;
     int32_t *held;

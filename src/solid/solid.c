@@ -117,7 +117,6 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->body[k] = body_of(scene, k);
         solid->variational |= solid->body[k].variational;
         solid->kelvin_voigt |= solid->body[k].damping_time > 0;
-        solid->mass_damped |= solid->body[k].mass_damping > 0;
         solid->paper_step = min2(solid->paper_step,
                                  0.6 * solid->body[k].h / solid->body[k].sound_speed); /* Eq. 29 */
         solid->dp = min2(solid->dp, solid->body[k].dp);
@@ -174,55 +173,36 @@ static void stress_sweeps(const struct pack_range *own, bool displaced)
 #pragma omp barrier
 }
 
-/* The particles of the next packs that are of one body. */
-struct body_range {
-    const struct solid_body *body;
-    int64_t first, end;
-};
-
-static struct body_range next_body_range(const struct solid *solid, int64_t *pack, int64_t last)
-{
-    const struct solid_pack *const from = &solid->pack[*pack], *to = from;
-    while (++*pack < last && solid->pack[*pack].body == from->body) to = &solid->pack[*pack];
-    return (struct body_range){&solid->body[from->body], from->i, to->i + to->lanes};
-}
-
-/* Forces other than those of neighbours; clamped particles do not move. */
+/* Forces other than those of neighbours, for the packs of a body at a time; clamped particles do
+ * not move. */
 static void add_own_forces(const struct solid *solid, struct particles *particles, int64_t first,
                            int64_t last)
 {
     double *const sx = particles->sx, *const sy = particles->sy, *const free = particles->free;
     const double *const *const external = solid->external;
-    for (int64_t k = first; k < last;) {
-        const struct body_range range = next_body_range(solid, &k, last);
-        const double per_mass = 1 / range.body->mass;
-        const double gx = range.body->gravity[0], gy = range.body->gravity[1];
-        for (int64_t i = range.first; i < range.end && solid->coupled; i++) {
+    for (int64_t k = first, next; k < last; k = next) {
+        const struct solid_body *const body = &solid->body[solid->pack[k].body];
+        for (next = k + 1; next < last && solid->pack[next].body == solid->pack[k].body;) next++;
+        const int64_t from = solid->pack[k].i,
+                      end = solid->pack[next - 1].i + solid->pack[next - 1].lanes;
+        const double per_mass = 1 / body->mass, gx = body->gravity[0], gy = body->gravity[1];
+        for (int64_t i = from; i < end && solid->coupled; i++) {
             sx[i] += particles->fx[i] * per_mass;
             sy[i] += particles->fy[i] * per_mass;
         }
-        for (int64_t i = range.first; i < range.end && external[0]; i++) {
+        for (int64_t i = from; i < end && external[0]; i++) {
             sx[i] += external[0][i];
             sy[i] += external[1][i];
         }
 #pragma omp simd
-        for (int64_t i = range.first; i < range.end; i++) {
+        for (int64_t i = from; i < end; i++) {
             sx[i] = (sx[i] + gx) * free[i];
             sy[i] = (sy[i] + gy) * free[i];
         }
-    }
-}
-
-/* T-77: acceleration by mass-proportional damping. */
-static void add_mass_damping(const struct solid *solid, struct particles *particles, int64_t first,
-                             int64_t last)
-{
-    for (int64_t k = first; k < last;) {
-        const struct body_range range = next_body_range(solid, &k, last);
-        const double beta = range.body->mass_damping;
-        for (int64_t i = range.first; i < range.end; i++) {
-            particles->sx[i] += particles->free[i] * (-beta * particles->vx[i]);
-            particles->sy[i] += particles->free[i] * (-beta * particles->vy[i]);
+        const double beta = body->mass_damping; /* T-77 */
+        for (int64_t i = from; FX_MASS_DAMPING != 0 && beta > 0 && i < end; i++) {
+            sx[i] += free[i] * (-beta * particles->vx[i]);
+            sy[i] += free[i] * (-beta * particles->vy[i]);
         }
     }
 }
@@ -231,7 +211,6 @@ static void force_sweeps(const struct pack_range *own)
 {
     sweep(own, own->s->sweeps->forces);
     sweep(own, add_own_forces);
-    if (FX_MASS_DAMPING != 0 && own->s->mass_damped) sweep(own, add_mass_damping);
 #pragma omp barrier
 }
 

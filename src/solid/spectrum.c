@@ -180,39 +180,29 @@ static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdoubl
     return larger(material_pk1(b, along).xx - P.xx, material_pk1(b, across).yy - P.yy) / delta;
 }
 
-/* Principal stretches of LANES particles from i on. `beyond`: which of the first n are stretched or
- * compressed by some 5 %; returns whether one is. */
-static bool stretches(const struct particles *particles, int64_t i, int n, vdouble *first,
-                      vdouble *second, bool beyond[LANES])
-{
-    const struct vtensor2 F = deformation(
-        (struct vtensor2){vload_double(&particles->Uxx[i]), vload_double(&particles->Uxy[i]),
-                          vload_double(&particles->Uyx[i]), vload_double(&particles->Uyy[i])});
-    const vdouble det = vtensor2_det(F);
-    const vdouble trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
-    bool any = false;
-    for (int l = 0; l < n; l++)
-        any |= beyond[l] = !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
-    if (!any) return false;
-    const vdouble sum = vsqrt_double(larger(trace + 2.0 * det, vset_double(0)));
-    const vdouble difference = vsqrt_double(larger(trace - 2.0 * det, vset_double(0)));
-    *first = 0.5 * (sum + difference);
-    *second = 0.5 * (sum - difference);
-    return true;
-}
-
-/* The largest of the axial stiffnesses in a pack. Each particle counts by itself: who shares its
- * vector depends on the machine. */
+/* The largest of the axial stiffnesses in a pack, of particles that are stretched or compressed by
+ * some 5 %. Each counts by itself: who shares its vector depends on the machine. */
 static double stiffest(const struct solid *solid, const struct particles *particles,
                        const struct solid_pack *pack)
 {
     double top = 0;
     for (int from = 0; from < pack->lanes; from += LANES) {
+        const int64_t i = pack->i + from;
         const int n = pack->lanes - from < LANES ? pack->lanes - from : LANES;
-        vdouble first, second;
-        bool beyond[LANES];
-        if (!stretches(particles, pack->i + from, n, &first, &second, beyond)) continue;
-        const vdouble now = axial_stiffness(&solid->body[pack->body], first, second);
+        const struct vtensor2 F = deformation(
+            (struct vtensor2){vload_double(&particles->Uxx[i]), vload_double(&particles->Uxy[i]),
+                              vload_double(&particles->Uyx[i]), vload_double(&particles->Uyy[i])});
+        const vdouble det = vtensor2_det(F);
+        const vdouble trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
+        bool beyond[LANES], any = false;
+        for (int l = 0; l < n; l++)
+            any |= beyond[l] = !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
+        if (!any) continue;
+        /* The sum and the difference of the principal stretches. */
+        const vdouble sum = vsqrt_double(larger(trace + 2.0 * det, vset_double(0)));
+        const vdouble difference = vsqrt_double(larger(trace - 2.0 * det, vset_double(0)));
+        const vdouble now = axial_stiffness(&solid->body[pack->body], 0.5 * (sum + difference),
+                                            0.5 * (sum - difference));
         for (int l = 0; l < n; l++)
             if (beyond[l]) top = max2(top, now[l]);
     }

@@ -122,7 +122,6 @@ struct solid {
     bool coupled;       /* meets fluid */
     bool variational;   /* some body has its hourglass force from an energy */
     bool kelvin_voigt;  /* some body has a damping_time */
-    bool mass_damped;   /* some body has a mass_damping */
     double omega_max;   /* largest frequency of the linearised operator, 1/s */
     double damping_max; /* largest rate of its viscous part, 1/s */
     double stable_step; /* the largest stable step that follows from both, s */

@@ -92,19 +92,6 @@ static void start_solid(struct simulation *sim)
     }
 }
 
-/* What makes the steps of fluid and solid so different, and its remedy. */
-static const char *remedy_of_substeps(const struct simulation *sim)
-{
-    const double free = solid_step_of(square(sim->solid.omega_max), 0);
-    bool damped = false;
-    for (int k = 0; k < sim->scene->n_solid; k++) damped |= sim->scene->solid[k].damping_time > 0;
-    const double sound = sim->scene->numerics.cfl * sim->fluid.k.h / sim->fluid.k.c0;
-    if (sim->scene->numerics.fixed_step > sound) return "reduce fixed_step, or leave it out";
-    if (damped && sim->solid.stable_step < 0.5 * free)
-        return "reduce the damping_time of the [solid]";
-    return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
-}
-
 /* Whether an implicit step costs less than the sub-steps of a fluid step (T-94). */
 static bool implicit_pays(const struct simulation *sim)
 {
@@ -129,8 +116,9 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
         return diag_fail(
             d, ERR_INPUT,
             "the solid's stable step of %.3g s needs %.3g sub-steps per fluid step, more than the "
-            "limit of %d; %s",
-            sim->dt_solid, ratio, SUBSTEPS_MOST, remedy_of_substeps(sim));
+            "limit of %d. Reduce young or damping_time of the [solid], or fixed_step, or raise the "
+            "density of the [solid] or the sound_speed of the [fluid]",
+            sim->dt_solid, ratio, SUBSTEPS_MOST);
     const int wish = sim->scene->numerics.multirate;
     const bool binds = sim->dt_solid < timestep_fluid_limit(sim);
     if (implicit || wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds))

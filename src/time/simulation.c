@@ -76,27 +76,17 @@ static void count_work(struct simulation *sim)
     if (sim->effects & FX_COUPLING) add_exchange(sim);
 }
 
-static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
-{
-    TRY(lone_step(sim, t_limit, d));
-    count_work(sim);
-    if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
-    find_speed(sim);
-    if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
-    /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
-    energy_test_due(sim);
-    TRY(guards_check(sim, d));
-    if (sim->effects & FX_SOLID) timestep_recheck_solid(sim);
-    return ERR_OK;
-}
-
-static enum err step_with_fluid(struct simulation *sim, double t_limit, struct diag *d)
+static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
 {
     const double speed2_before = sim->extremes.speed2;
     double clock = wall_clock();
-    timestep_watch_contact(sim, sim->state.time, 1);
-    phase_add(sim, PHASE_solid, clock);
-    sim->integrator->step(sim, t_limit);
+    if (sim->effects & FX_FLUID) {
+        timestep_watch_contact(sim, sim->state.time, 1);
+        phase_add(sim, PHASE_solid, clock);
+        sim->integrator->step(sim, t_limit);
+    } else {
+        TRY(lone_step(sim, t_limit, d));
+    }
     clock = wall_clock();
     /* Done here so that the state does not depend on output between two steps. */
     if (sim->effects & FX_SHIFTING) {
@@ -105,12 +95,14 @@ static enum err step_with_fluid(struct simulation *sim, double t_limit, struct d
     }
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
-    const enum err e = guards_check(sim, d);
     find_speed(sim);
     count_work(sim);
-    if (!e && guards_strain_due(sim)) timestep_recheck_solid(sim);
+    /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
+    if (!(sim->effects & FX_FLUID)) energy_test_due(sim);
+    TRY(guards_check(sim, d));
+    if (guards_strain_due(sim)) timestep_recheck_solid(sim);
     clock = phase_add(sim, PHASE_update, clock);
-    if (e) return e;
+    if (!(sim->effects & FX_FLUID)) return ERR_OK;
     use_skin_left(sim, speed2_before);
     /* Sorted here so that the cells are valid for output between two steps. */
     if (sorting_due(sim)) TRY(sort_particles(sim, d));
@@ -125,12 +117,8 @@ static enum err take_step(struct simulation *sim, double t_limit, struct diag *d
 {
     sim->solid.time = sim->state.time;
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    if (sim->effects & FX_FLUID) {
-        TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
-        TRY(step_with_fluid(sim, t_limit, d));
-    } else {
-        TRY(step_without_fluid(sim, t_limit, d));
-    }
+    if (sim->effects & FX_FLUID) TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
+    TRY(advance(sim, t_limit, d));
     return observe(sim, sim->state.time, d);
 }
 

@@ -88,8 +88,8 @@ static void test_walls_forget_the_fluid(void)
 }
 
 /* A step of the solid that would go thousands of times into the fluid's is refused, not counted in
- * an int. The remedy names what causes it. */
-static void refuses_ratio(const char *young, const char *more, const char *remedy)
+ * an int. The remedy names what may cause it. */
+static void refuses_ratio(const char *young, const char *more)
 {
     char text[600];
     snprintf(text, sizeof text,
@@ -107,16 +107,17 @@ static void refuses_ratio(const char *young, const char *more, const char *remed
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text,
                                         "sub-steps per fluid step, more than the limit of 10000"),
                                  d.text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, remedy), d.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(d.text, ". Reduce young or damping_time of the [solid], or fixed_step"), d.text);
     scene_free(&scene);
 }
 
 static void test_absurd_ratio_of_steps_is_refused(void)
 {
 #define EXPLICIT "[numerics]\nsolid_steps = explicit\n"
-    refuses_ratio("1e15 Pa", EXPLICIT, "; reduce young of the [solid]");
-    refuses_ratio("1 MPa", EXPLICIT "fixed_step = 10\n", "; reduce fixed_step");
-    refuses_ratio("1 MPa", "damping_time = 10\n" EXPLICIT, "; reduce the damping_time");
+    refuses_ratio("1e15 Pa", EXPLICIT);
+    refuses_ratio("1 MPa", EXPLICIT "fixed_step = 10\n");
+    refuses_ratio("1 MPa", "damping_time = 10\n" EXPLICIT);
 #undef EXPLICIT
 }
 

@@ -134,7 +134,7 @@ static void test_traction_on_fitted_cells(void)
         RIG_OPEN_SOLID(text, NULL);
         double force = 0;
         for (int64_t n = 0; n < rig.sim.solid.loads->n_loaded; n++)
-            force += rig.sim.solid.loads->fy[n];
+            force += rig.sim.solid.loads->loaded[n].f[1];
         assert_near(1e-9, 100 * length[k], force, sides[k]);
     }
 }
