@@ -14,7 +14,7 @@
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/results/open_verification.md
 #   make verify-rigid    heave, water entry, waves and their damping: docs/results/rigid_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/results/manufactured.md
-#   make exact-fsi       a wave through the interface of bar and fluid: docs/results/exact_fsi.md
+#   make exact-fsi       bodies and fluid against exact solutions: docs/results/exact_fsi.md
 #   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
 #   make performance     the bench, longest steps and the gate: docs/performance.md
 #   make glance          the charts of the README from the results of the reports
