@@ -155,14 +155,18 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
     const struct vector_constants k = constants_of_sweep(fluid);
     const effect_set fx =
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
+    const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
+    if (fx & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t n = 0; n < fluid->n_near_fluid[kind]; n++) {
-        const int32_t cell = fluid->near_fluid[kind][n];
-        if (fx & FX_THIN)
-            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx, true);
-        else if (fx & (effect_set)SURFACE_EFFECTS)
-            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx, false);
-        else /* pressure alone */
-            force_on_cell(fluid, particles, kind, cells, cell, all, &k, fx & FX_IMPEDANCE, false);
-    }
+        for (int32_t m = 0; m < n; m++)
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx, true);
+    else if (fx & (effect_set)SURFACE_EFFECTS)
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+        for (int32_t m = 0; m < n; m++)
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx, false);
+    else /* pressure alone */
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+        for (int32_t m = 0; m < n; m++)
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx & FX_IMPEDANCE,
+                          false);
 }

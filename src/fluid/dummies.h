@@ -115,7 +115,8 @@ SPHFSI_INLINE void pack_four(const struct dummies *d, const double in[CLUSTER], 
 
 /* Positions, and the box around them. */
 SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particles *particles,
-                                 const struct cells *cells, int32_t cell, const struct dummies *d)
+                                 const struct cells *cells, int32_t cell, const struct dummies *d,
+                                 const struct cell_sides *sides)
 {
     const double inv_h = 1 / fluid->k.h;
     for (int r = 0; r < d->count; r++) {
@@ -128,21 +129,21 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
         d->packed[PACKED_Y * CLUSTER + r] = (real)(y * inv_h);
     }
     cluster_close(d->packed, fluid->packed[d->kind].n, d->count);
-    for (int r = 0; r < d->count && fluid->effects & FX_THIN; r++)
+    for (int r = 0; r < d->count && sides->piece; r++)
         d->packed[PACKED_LINE * CLUSTER + r] = (real)fluid_line_of(fluid, d->kind, d->at[r]);
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
 /* What fx_one_sided and fx_repulsion need of the dummies. */
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
-                                       const struct dummies *d)
+                                       const struct dummies *d, const struct cell_sides *sides)
 {
     const double lift = fluid->k.rho0 * fluid->k.h;
     double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
     for (int r = 0; r < d->count; r++) near2[r] = fluid->near2[d->kind][particles->body[d->at[r]]];
-    for (int r = 0; r < d->count && fluid->effects & FX_THIN; r++)
+    for (int r = 0; r < d->count && sides->piece; r++)
         if (fluid_line_of(fluid, d->kind, d->at[r]))
             near2[r] = square(fluid->k.dp / fluid->k.h) + ETA2;
     if (fluid->effects & FX_ONE_SIDED) {
@@ -184,7 +185,7 @@ SPHFSI_INLINE void dummies_surface(const struct fluid *fluid, const struct parti
                                    const struct dummies *d, const struct neighbours *neighbours,
                                    const struct cell_sides *sides)
 {
-    pack_surface_fields(fluid, particles, d);
+    pack_surface_fields(fluid, particles, d, sides);
     if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, d, neighbours, sides);
 }
 
@@ -261,7 +262,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
         const bool moves = dummies_move(fluid, kind, particles, d.at, d.count);
-        if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d);
+        if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fluid->effects & SURFACE_EFFECTS)
@@ -290,10 +291,13 @@ static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIN
                            const struct cells *cells, enum kind kind)
 {
     struct particles *const particles = &kinds[kind];
+    const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
+    if (fluid->effects & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t k = 0; k < fluid->n_near_fluid[kind]; k++)
-        if (fluid->effects & FX_THIN)
-            dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k], true);
-        else
-            dummies_of_cell(fluid, particles, kind, cells, fluid->near_fluid[kind][k], false);
+        for (int32_t k = 0; k < n; k++)
+            dummies_of_cell(fluid, particles, kind, cells, cell[k], true);
+    else
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+        for (int32_t k = 0; k < n; k++)
+            dummies_of_cell(fluid, particles, kind, cells, cell[k], false);
 }
