@@ -14,7 +14,7 @@ on earlier frees. Bytes are those of the run's arena.
   test_absence.py --each    each effect by itself, a program for each: make absence, which writes
                             docs/results/absence.md
   test_absence.py --each NAME ...
-                            these effects only; writes nothing"""
+                            these effects only: their rows of the report"""
 import json
 import os
 import re
@@ -184,9 +184,7 @@ def report(whole, effects, costs, far, version):
         f"{100 * ALLOWED_EACH:.2f} %.", "",
         row("effect", SCENES), row("---", ["---:"] * len(SCENES))]
     for effect in effects:
-        lines.append(row(effect, [
-            "on" if (effect, s) not in costs else
-            "{:+.3f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]))
+        lines.append(row(effect, cells_of(effect, costs)))
     near, both, _ = far
     lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes "
                   f"{both:.0f} "
@@ -195,9 +193,43 @@ def report(whole, effects, costs, far, version):
     REPORT.write_text("\n".join(lines))
 
 
-def each(effects, whole, far, version, write):
+def cells_of(effect, costs):
+    return ["on" if (effect, s) not in costs else
+            "{:+.3f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]
+
+
+def reported():
+    """The costs in the report."""
+    costs = {}
+    for effect, cells in re.findall(r"^\| ([A-Z_]+) \| (.*) \|$", REPORT.read_text(), re.M):
+        for scene, cell in zip(SCENES, cells.split(" | ")):
+            numbers = re.fullmatch(r"([+-]\S+) % / ([+-]\S+) %", cell)
+            if numbers:
+                costs[effect, scene] = [float(n) / 100 for n in numbers.groups()]
+    return costs
+
+
+def replace_rows(effects, measured, costs, version):
+    """The rows of the effects `measured`; the other rows stay, with their programs."""
+    lines = REPORT.read_text().splitlines()
+    for k, line in enumerate(lines):
+        name = re.match(r"\| ([A-Z_]+) \|", line)
+        if name and name[1] in measured:
+            lines[k] = row(name[1], cells_of(name[1], costs))
+        elif line.startswith("**Does an effect"):
+            lines[k] = summary(effects, reported() | costs)
+        elif line.startswith("`make absence`"):
+            text, programs = line.split("Program: ")
+            parts = [p for p in programs.rstrip(".").split("; ")
+                     if p.split(": ")[0] not in measured]
+            parts[1:1] = [f"{effect}: {version}" for effect in measured]
+            lines[k] = text + "Program: " + "; ".join(parts) + "."
+    REPORT.write_text("\n".join(lines) + "\n")
+
+
+def each(effects, measured, whole, far, version):
     costs, failures = {}, 0
-    for effect in effects:
+    for effect in measured:
         scenes = [name for name in SCENES if effect not in whole[name][3]]
         if not scenes:
             print(f"FAILED every scene here has {effect}")
@@ -207,8 +239,10 @@ def each(effects, whole, far, version, write):
         for scene in scenes:
             costs[effect, scene], good = compare([effect], program, scene, whole, ALLOWED_EACH)
             failures += not good
-    if write:
+    if measured == effects:
         report(whole, effects, costs, far, version)
+    else:
+        replace_rows(effects, measured, costs, version)
     return failures
 
 
@@ -243,7 +277,7 @@ def main():
     version = subprocess.run([reference, "--version"], capture_output=True, text=True,
                              check=True).stdout.strip()
     named = sys.argv[2:]
-    return (each(named or effects, whole, far, version, not named) if long
+    return (each(effects, named or effects, whole, far, version) if long
             else together(effects, whole)) + (not far[2]) > 0
 
 
