@@ -192,10 +192,9 @@ static void text_of_seconds(double seconds, char text[32])
         snprintf(text, 32, "%.3g h", seconds / 3600);
 }
 
-/* Measured over forecast time: 0.90 to 1.39 in 23 runs on a loaded machine, 13 of them
- * violent dam breaks, impacts and jets; 18 below 1.2. In the shipped gate and sluice a step gets
- * dearer as the water spreads. */
-static const double least_of_forecast = 0.9, most_of_forecast = 1.4;
+/* CPU time over forecast time on one thread of a loaded machine: 0.92 to 1.22 in 18 runs of the
+ * shipped cases and templates, 17 of them in this band. */
+static const double least_of_forecast = 0.9, most_of_forecast = 1.2;
 
 static void say_cost(const struct simulation *sim, const struct unit_costs *c,
                      const struct sphfsi_options *o)

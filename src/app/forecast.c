@@ -4,17 +4,22 @@
 #include "implicit/implicit.h"
 #include "output/probes.h"
 #include "output/series.h"
-#include "time/timestep.h"
+#include "output/snapshot.h"
+#include "time/advance.h"
 #include "time/energy.h"
+#include "time/timestep.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-enum { FIRST_STEPS = 20, ROWS_MEASURED = 5 };
+enum { FIRST_STEPS = 20, EVALUATIONS_MEASURED = 5 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured
- * steps; of one repeat. Repeats are short, so that other work on the machine does not disturb all
- * of them. */
-static const double first_seconds = 0.1, measured_seconds = 0.2, repeat_seconds = 0.005;
+ * steps; of steps with rows of a file; of one repeat. Repeats are short, so that other work on the
+ * machine does not disturb all of them. */
+static const double first_seconds = 0.1, measured_seconds = 0.2, row_seconds = 0.05,
+                    repeat_seconds = 0.005;
 
 /* --- measurement --- */
 
@@ -23,8 +28,10 @@ static const double first_seconds = 0.1, measured_seconds = 0.2, repeat_seconds 
  * sorts, so sorting counts with its mean, limited to 5 % of a step. */
 struct trial {
     double step, phase[PHASE_COUNT], sort_mean;
-    int64_t steps, substeps, evaluations;
-    int64_t n_start; /* fluid particles */
+    int64_t steps, substeps, evaluations, calls;
+    int64_t n_start;             /* fluid particles */
+    const struct probes *probes; /* whose rows are read before each call; NULL: none */
+    int file;                    /* of these; -1: the ledger */
 };
 
 /* Whether half of the fluid of the start is still there: what falls out of the domain costs
@@ -34,6 +41,15 @@ static bool has_fluid_of_start(const struct simulation *sim, int64_t n_start)
     return 2 * sim->kind[KIND_FLUID].n >= n_start;
 }
 
+static void read_row(const struct trial *trial, struct simulation *sim)
+{
+    double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
+    if (trial->probes && trial->file < 0)
+        simulation_ledger(sim);
+    else if (trial->probes)
+        probes_sample(trial->probes, sim, trial->file, false, row, rate);
+}
+
 static enum err take_steps(struct trial *trial, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time, begin = thread_clock();
@@ -41,7 +57,9 @@ static enum err take_steps(struct trial *trial, struct simulation *sim, struct d
     double phase[PHASE_COUNT], now;
     memcpy(phase, sim->phase_seconds, sizeof phase);
     do {
+        read_row(trial, sim);
         TRY(simulation_step(sim, (double)INFINITY, d));
+        trial->calls++;
         now = thread_clock();
     } while (sim->state.time < end && now - begin < repeat_seconds &&
              has_fluid_of_start(sim, trial->n_start));
@@ -80,10 +98,25 @@ static void set_costs(struct unit_costs *c, struct trial *trial, const struct si
     if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;
 }
 
-static enum err measure_steps(struct unit_costs *c, struct simulation *sim, struct diag *d)
+/* Repeats for some seconds. A guard that stops the run in them is not reported: the run will do
+ * it. */
+static enum err repeat_steps(struct trial *trial, struct simulation *sim, double seconds,
+                             struct diag *d)
+{
+    const double begin = thread_clock();
+    struct diag ignored = {.code = ERR_OK};
+    enum err e;
+    do {
+        e = take_steps(trial, sim, &ignored);
+    } while (!e && sim->state.time < sim->scene->top.end_time && thread_clock() - begin < seconds &&
+             has_fluid_of_start(sim, trial->n_start));
+    return e && e != ERR_GUARD ? diag_fail(d, e, "%s", ignored.text) : ERR_OK;
+}
+
+static enum err measure_steps(struct unit_costs *c, struct trial *trial, struct simulation *sim,
+                              struct diag *d)
 {
     const double end = sim->scene->top.end_time;
-    struct trial trial = {.n_start = sim->kind[KIND_FLUID].n};
     /* The first steps include the first touch of memory and the first sort, and find the bounds of
      * the time step. A guard that stops the run in them is reported. */
     const double start = thread_clock();
@@ -91,16 +124,9 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
     } while (++first <= FIRST_STEPS && sim->state.time < end &&
-             has_fluid_of_start(sim, trial.n_start) && thread_clock() - start < first_seconds);
-    const double begin = thread_clock();
-    /* A guard that stops the run later is not: the run will report it. */
-    struct diag ignored = {.code = ERR_OK};
-    enum err e = ERR_OK;
-    while (!e && sim->state.time < end && thread_clock() - begin < measured_seconds &&
-           has_fluid_of_start(sim, trial.n_start))
-        e = take_steps(&trial, sim, &ignored);
-    if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", ignored.text);
-    if (trial.steps > 0) set_costs(c, &trial, sim);
+             has_fluid_of_start(sim, trial->n_start) && thread_clock() - start < first_seconds);
+    TRY(repeat_steps(trial, sim, measured_seconds, d));
+    if (trial->steps > 0) set_costs(c, trial, sim);
     return ERR_OK;
 }
 
@@ -119,36 +145,88 @@ static double expected_step(const struct simulation *sim)
     return single_rate ? min2(dt, sim->dt_solid) : dt;
 }
 
-/* The time of all rows of the run by what reading a state takes now, the least of several. A row
- * lies between two states, and a state serves all rows beside it. The first reading may evaluate
- * the rates anew, which is counted with the steps. */
-static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struct diag *d)
+/* The time of all rows of the run: by how much steps take longer that begin with a reading of the
+ * state. They use what the reading has evaluated. A row lies between two states, and a state serves
+ * all rows beside it. */
+static enum err measure_rows(struct unit_costs *c, const struct trial *plain,
+                             struct simulation *sim, struct diag *d)
 {
-    const double end = sim->scene->top.end_time;
+    const double end = sim->scene->top.end_time, dt = expected_step(sim);
     struct probes probes;
     TRY(probes_create(&probes, sim, &sim->arena, d));
     for (int file = -1; file < probes.n_files; file++) {
-        double least = HUGE_VAL, row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
-        for (int k = 0; k < ROWS_MEASURED; k++) {
-            const double begin = thread_clock();
-            if (file < 0)
-                simulation_ledger(sim);
-            else
-                probes_sample(&probes, sim, file, false, row, rate);
-            least = min2(least, thread_clock() - begin);
-        }
+        struct trial trial = {.n_start = plain->n_start, .probes = &probes, .file = file};
+        TRY(repeat_steps(&trial, sim, row_seconds, d));
+        if (!trial.steps) continue;
+        const double longer = max2(0, trial.step - plain->step), /* a step */
+            per_row = longer * (double)trial.steps / (double)trial.calls;
         const double interval =
             file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
-        c->rows += max2(0, least) * min2(2 * end / interval, end / expected_step(sim));
+        c->rows += per_row * min2(2 * end / interval, end / dt);
     }
     return ERR_OK;
 }
 
+/* The time of all snapshots by that of the second one in a temporary folder: from then on each is
+ * written to two files. Where there is no such folder they count nothing. */
+static void measure_snapshots(struct unit_costs *c, struct simulation *sim)
+{
+    char folder[] = "/tmp/sphfsi-XXXXXX";
+    struct snapshots file;
+    struct diag ignored = {.code = ERR_OK};
+    if (!mkdtemp(folder)) return;
+    if (!snapshots_create(&file, folder, sim->scene, SPHFSI_VERSION, &ignored) &&
+        !snapshots_write(&file, sim, &ignored)) {
+        const double begin = thread_clock(), interval = sim->scene->output.snapshot_interval;
+        if (!snapshots_write(&file, sim, &ignored))
+            c->snapshots =
+                (thread_clock() - begin) * (1 + floor(sim->scene->top.end_time / interval));
+        unlink(file.path);
+        snapshots_close(&file);
+    }
+    rmdir(folder);
+}
+
+/* Each particle somewhere in its own square of dp: the R2 sequence (Roberts 2018) has no order that
+ * a lattice has. */
+static enum err disorder(struct simulation *sim, struct diag *d)
+{
+    struct particles *const particles = &sim->kind[KIND_FLUID];
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double u = 0.7548776662466927 * (double)i, v = 0.5698402909980532 * (double)i;
+        particles->x[i] += sim->fluid.k.dp * (u - floor(u) - 0.5);
+        particles->y[i] += sim->fluid.k.dp * (v - floor(v) - 0.5);
+    }
+    return sort_particles(sim, d);
+}
+
+/* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
+ * within reach. Adds what an evaluation takes longer then. Leaves the particles so. */
+static void measure_disorder(struct unit_costs *c, struct simulation *sim)
+{
+    const double n_fluid = (double)sim->kind[KIND_FLUID].n;
+    double least[2] = {HUGE_VAL, HUGE_VAL}, phases[PHASE_COUNT] = {0};
+    struct diag ignored = {.code = ERR_OK};
+    for (int k = 0; k < 2 && !(k && disorder(sim, &ignored)); k++)
+        for (int m = 0; m < EVALUATIONS_MEASURED; m++) {
+            const double begin = thread_clock();
+            fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, phases);
+            least[k] = min2(least[k], thread_clock() - begin);
+        }
+    if (least[1] < HUGE_VAL) c->fluid += max2(0, least[1] - least[0]) / n_fluid;
+}
+
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
+    struct trial trial = {.n_start = sim->kind[KIND_FLUID].n};
     *c = (struct unit_costs){0};
-    TRY(measure_steps(c, sim, d));
-    return measure_rows(c, sim, d);
+    TRY(measure_steps(c, &trial, sim, d));
+    const struct fluid_extremes extremes = sim->fluid.extremes; /* for the step that is expected */
+    TRY(measure_rows(c, &trial, sim, d));
+    measure_snapshots(c, sim);
+    if (sim->kind[KIND_FLUID].n) measure_disorder(c, sim);
+    sim->fluid.extremes = extremes;
+    return ERR_OK;
 }
 
 /* --- the run --- */
@@ -181,7 +259,8 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     const bool substeps = sim->effects & FX_MULTIRATE && !implicit_is_next(&sim->solid);
     if (n_solid > 0) f.substeps = f.steps * (substeps ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
-    f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows;
+    f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows +
+                c->snapshots;
     f.memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
     f.disk = disk_bytes(sim);
     return f;

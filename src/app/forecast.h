@@ -13,6 +13,7 @@ struct unit_costs {
     double evaluations;                 /* of the fluid per step */
     double phase_fraction[PHASE_COUNT]; /* of the time of a step */
     double rows;                        /* of probes and ledger over the whole run */
+    double snapshots;                   /* all of the run */
 };
 
 struct forecast {
@@ -24,8 +25,8 @@ struct forecast {
     double memory, disk; /* bytes; disk: at most, while it runs */
 };
 
-/* Measures the scene's first steps for 0.3 s, and takes the least of several repeats. Advances the
- * simulation by these steps. */
+/* Measures the scene's first steps for 0.3 s, then its outputs and disordered fluid, and takes the
+ * least of several repeats. Leaves the simulation in a state of no meaning. */
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 

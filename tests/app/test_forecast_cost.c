@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run from given costs of a step, bytes of its files; and how costs are measured. The
  * linker puts these in between:
- * --wrap: thread_clock simulation_step */
+ * --wrap: thread_clock simulation_step simulation_ledger probes_sample */
 #include "app/forecast.h"
+#include "output/probes.h"
+#include "time/energy.h"
 
 #include "rig.h"
 #include "tiny.h"
@@ -19,7 +21,7 @@ void setUp(void)
 
 void tearDown(void) { rig_close(&rig); }
 
-/* Steps of all particles; rows of probes and ledger, which need no evaluations of their own. */
+/* Steps of all particles; rows of probes and ledger; snapshots. */
 static void test_seconds(void)
 {
     struct unit_costs with = costs;
@@ -29,7 +31,8 @@ static void test_seconds(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * own.seconds,
                               own.evaluations * 100 * 1e-6 + own.substeps * 45 * 1e-7, own.seconds);
     with.rows = 3;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3 + own.seconds, forecast_run(&with, &rig.sim).seconds);
+    with.snapshots = 4;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 7 + own.seconds, forecast_run(&with, &rig.sim).seconds);
 }
 
 /* Five snapshots of 140 bytes a particle twice, two checkpoints of all arrays, and rows of 18 bytes
@@ -64,6 +67,25 @@ enum err __wrap_simulation_step(struct simulation *sim, double limit, struct dia
     return __real_simulation_step(sim, limit, d);
 }
 
+struct ledger __real_simulation_ledger(struct simulation *sim);
+struct ledger __wrap_simulation_ledger(struct simulation *sim);
+struct ledger __wrap_simulation_ledger(struct simulation *sim)
+{
+    now += clock_step;
+    return __real_simulation_ledger(sim);
+}
+
+void __real_probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
+                          double *row, double *rate);
+void __wrap_probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
+                          double *row, double *rate);
+void __wrap_probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
+                          double *row, double *rate)
+{
+    now += clock_step;
+    __real_probes_sample(probes, sim, file, means, row, rate);
+}
+
 /* By a clock of 1 ms a reading each state takes 1 ms: two for each of 20 rows of the ledger; for
  * the 200 of the probes, more than there are steps, one a step. */
 static void test_rows_are_measured(void)
@@ -75,6 +97,7 @@ static void test_rows_are_measured(void)
     const double steps_of_run = 0.02 / forecast_run(&c, &rig.sim).dt;
     TEST_ASSERT_TRUE(steps_of_run < 200);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 40e-3 + 1e-3 * steps_of_run, c.rows);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5e-3, c.snapshots); /* five, of 1 ms each */
 }
 
 /* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then
