@@ -30,6 +30,7 @@ NEEDS = ("`body` (solid), `point`", "`point`, optional `on`", "`point`, optional
          "`body` (solid)", "`body` (solids or walls), optional `point` of the moment", "",
          "`point`, `to`")  # of a quantity, by its target
 KINDS = {"default with solids": " with only solids", "default with fluid": " with only fluid",
+         "default with an inflow, no gravity": " with an inflow and no gravity",
          "default with fluid and solids": " with fluid and solids"}
 
 
@@ -46,8 +47,10 @@ def default(section, key):
     kinds = [kind for kind in KINDS if kind in key]
     if not kinds:
         return paper
-    absent = {"fluid": "default with solids", "solid": "default with fluid"}.get(section)
-    value = {kind: key.get(kind, key.get("default")) for kind in KINDS if kind != absent}
+    stream = "default with an inflow, no gravity"
+    absent = {"fluid": ["default with solids"], "solid": ["default with fluid", stream]}
+    absent = absent.get(section, []) + [stream] * (key.get(stream) == key.get("default with fluid"))
+    value = {kind: key.get(kind, key.get("default")) for kind in KINDS if kind not in absent}
     equal = len(set(value.values())) == 1
     return (f"`{key[kinds[0]]}`" if equal else
             ", ".join(f"`{value[kind]}`{KINDS[kind]}" for kind in value)

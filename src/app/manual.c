@@ -146,7 +146,8 @@ static void meaning_of(const struct param *param, char *text, size_t size)
 }
 
 /* What the default scheme sets a key to in a kind of scene; false: it leaves the default. */
-static const char *const kind_words[] = {"with solids", "with fluid", "with fluid and solids"};
+static const char *const kind_words[] = {"with solids", "with fluid", "with an inflow, no gravity",
+                                         "with fluid and solids"};
 static bool scheme_value(const struct param *param, int kind, char *text, size_t size)
 {
     double value;
@@ -166,7 +167,7 @@ static void say_key(const struct param *param, const struct sphfsi_options *o)
     param_type_text(param, type, sizeof type);
     default_of(param, fallback, sizeof fallback);
     meaning_of(param, meaning, sizeof meaning);
-    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++)
+    for (int k = 0; k < SCENE_KINDS; k++)
         if (scheme_value(param, k, value, sizeof value))
             snprintf(meaning + strlen(meaning), sizeof meaning - strlen(meaning), "; %s: %s",
                      kind_words[k], value);
@@ -224,7 +225,7 @@ static void write_default(struct json *j, const struct param *param)
         json_integer(j, "needed", 1);
     else if (text[0])
         json_text(j, "default", text);
-    for (int k = SCENE_SOLID; k <= SCENE_COUPLED; k++) {
+    for (int k = 0; k < SCENE_KINDS; k++) {
         snprintf(name, sizeof name, "default %s", kind_words[k]);
         if (scheme_value(param, k, text, sizeof text)) json_text(j, name, text);
     }

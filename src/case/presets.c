@@ -6,18 +6,34 @@
 
 enum { ANY = -1 };
 
-static enum scene_kind kind_of_scene(const struct scene *scene)
+/* Whether the case gives a gravity, before it is read. */
+static bool gives_gravity(const struct reader *r)
 {
-    return scene->n_fluid && scene->n_solid ? SCENE_COUPLED
-           : scene->n_fluid                 ? SCENE_FLUID
-                                            : SCENE_SOLID;
+    const struct entry *const e = case_entry(r, 0, "gravity");
+    return case_entry(r, 0, "gravity_file") || (e && e->value[strspn(e->value, "0., ")]);
 }
+
+static enum scene_kind kind_of_scene(const struct reader *r)
+{
+    const struct scene *const scene = r->scene;
+    if (!scene->n_fluid) return SCENE_SOLID;
+    if (scene->n_solid) return SCENE_COUPLED;
+    return scene->n_inflow && !gives_gravity(r) ? SCENE_STREAM : SCENE_FLUID;
+}
+
+enum {
+    SOLID = 1u << SCENE_SOLID,
+    FLUID = 1u << SCENE_FLUID,
+    STREAM = 1u << SCENE_STREAM,
+    COUPLED = 1u << SCENE_COUPLED,
+    WET = FLUID | STREAM | COUPLED
+};
 
 /* A value that replaces a default. A key that the case gives itself wins; where both set a key,
  * `accuracy` does. */
 static const struct preset {
     bool of_scheme; /* chosen by `scheme`, not by `accuracy` */
-    int kind;       /* enum scene_kind; SCENE_EITHER: with fluid */
+    unsigned kinds; /* of scenes: bits by enum scene_kind */
     int choice;
     int integrator; /* that the case uses; ANY: whichever */
     enum section_id section;
@@ -26,30 +42,31 @@ static const struct preset {
 } presets[] = {
     /* scheme: `paper` has no rows. What each row gains and costs:
      * docs/notes/2026-11-23-fluid-scheme.md. */
-    {true, SCENE_FLUID, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 2},
-    {true, SCENE_COUPLED, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 1.5},
-    {true, SCENE_COUPLED, SCHEME_STANDARD, ANY, SECTION_numerics, "solid_h_over_dp", 1.35},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "density_diffusion", 0.1},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "diffusion_form", DIFFUSION_ANTUONO},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "diffusion_limiter", LIMITER_STRAIN},
-    {true, SCENE_FLUID, SCHEME_STANDARD, ANY, SECTION_fluid, "acoustic_damper", 4},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "particle_mass", MASS_HYDROSTATIC},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "wall_repulsion", 0.3},
-    {true, SCENE_EITHER, SCHEME_STANDARD, ANY, SECTION_fluid, "wall_damping", 1},
-    {true, SCENE_SOLID, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
-    {true, SCENE_COUPLED, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
+    {true, FLUID, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 2},
+    {true, STREAM, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 1.35},
+    {true, COUPLED, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 1.5},
+    {true, COUPLED, SCHEME_STANDARD, ANY, SECTION_numerics, "solid_h_over_dp", 1.35},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "density_diffusion", 0.1},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "diffusion_form", DIFFUSION_ANTUONO},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "diffusion_limiter", LIMITER_STRAIN},
+    {true, FLUID | STREAM, SCHEME_STANDARD, ANY, SECTION_fluid, "acoustic_damper", 4},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "particle_mass", MASS_HYDROSTATIC},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "wall_repulsion", 0.3},
+    {true, WET, SCHEME_STANDARD, ANY, SECTION_fluid, "wall_damping", 1},
+    {true, SOLID, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
+    {true, COUPLED, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
     /* accuracy: `standard` has no rows. With fluid no setting of the study was reliably more
      * accurate: there `fine` means a smaller dp. What each row buys: src/app/data/evidence.csv,
      * measured by the study of tools/report/accuracy.toml, where [preset] names the points that
      * stand for these rows. */
-    {false, SCENE_FLUID, ACCURACY_DRAFT, INTEGRATOR_LEAPFROG, SECTION_numerics, "cfl", 0.5},
-    {false, SCENE_COUPLED, ACCURACY_DRAFT, ANY, SECTION_numerics, "sound_factor", 5},
-    {false, SCENE_SOLID, ACCURACY_FINE, ANY, SECTION_numerics, "h_over_dp", 1.8},
+    {false, FLUID | STREAM, ACCURACY_DRAFT, INTEGRATOR_LEAPFROG, SECTION_numerics, "cfl", 0.5},
+    {false, COUPLED, ACCURACY_DRAFT, ANY, SECTION_numerics, "sound_factor", 5},
+    {false, SOLID, ACCURACY_FINE, ANY, SECTION_numerics, "h_over_dp", 1.8},
 };
 
 static bool preset_is_for(const struct preset *row, enum scene_kind kind)
 {
-    return row->kind == SCENE_EITHER ? kind != SCENE_SOLID : row->kind == (int)kind;
+    return row->kinds & 1u << kind;
 }
 
 bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
@@ -68,7 +85,7 @@ bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id secti
 bool scene_scheme_sets(const struct scene *scene, enum section_id section, const char *key,
                        double *value)
 {
-    return scheme_sets((enum scheme)scene->top.scheme, kind_of_scene(scene), section, key, value);
+    return scheme_sets((enum scheme)scene->top.scheme, scene->kind, section, key, value);
 }
 
 /* The value of a choice at the top of the file, before it is read; the reader reports an invalid
@@ -91,9 +108,10 @@ void case_apply_presets(struct reader *r)
 {
     const int accuracy = top_choice(r, "accuracy"), integrator = top_choice(r, "integrator"),
               scheme = top_choice(r, "scheme");
+    r->scene->kind = kind_of_scene(r);
     for (size_t k = 0; k < COUNT_OF(presets); k++) {
         const struct preset *const row = &presets[k];
-        if (!preset_is_for(row, kind_of_scene(r->scene)) ||
+        if (!preset_is_for(row, r->scene->kind) ||
             row->choice != (row->of_scheme ? scheme : accuracy) ||
             (row->integrator != ANY && row->integrator != integrator))
             continue;

@@ -83,7 +83,8 @@ struct scene_section_common {
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
 enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
-enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED, SCENE_EITHER }; /* as presets need it */
+/* As presets need it. SCENE_STREAM: fluid enters through an [inflow], without gravity. */
+enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_STREAM, SCENE_COUPLED, SCENE_KINDS };
 enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
@@ -229,6 +230,7 @@ struct scene {
 #define SECTION(section, named) SCENE_MEMBER_##named(section)
 #define END
 #include "case/params.def"
+    enum scene_kind kind;
     struct scene_contact contact_default; /* for bodies without a section of their own */
     int n_constants;
     struct scene_constant *constant;

@@ -515,7 +515,7 @@ static void warn_of_streamlines(struct check *check)
         if (scene->wall[k].slip == SLIP_NONE) name = scene->wall[k].common.name;
     for (int k = 0; k < scene->n_solid && !name; k++)
         if (scene->solid[k].slip == SLIP_NONE) kind = "solid", name = scene->solid[k].common.name;
-    if (!name || scene->n_inflow == 0 || has_surface(check)) return;
+    if (!name || !scene->full) return;
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting == 0)
             warn_at(check->diag, scene, scene->fluid[k].common.line,

@@ -160,7 +160,9 @@ static void test_default_cfl(void)
 
 #define WATER "[fluid w]\nshape = box 0, 30 mm, 10 mm, 40 mm\nsound_speed = 20\n"
 
-/* What case/presets.c sets, beside fluid alone and beside a solid. */
+#define INFLOW "[inflow in]\nfrom = 0, 40 mm\nto = 0, 30 mm\nspeed = 1\n"
+
+/* What case/presets.c sets: for fluid alone, without gravity in a stream, and beside a solid. */
 static void test_scheme(void)
 {
     parse(TOP WATER, 0, NULL);
@@ -172,6 +174,13 @@ static void test_scheme(void)
     TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 4);
     TEST_ASSERT_EQUAL_INT(MASS_HYDROSTATIC, scene.fluid[0].particle_mass);
     TEST_ASSERT_TRUE(scene.fluid[0].wall_repulsion == 0.3);
+    parse("gravity = 0, -9.81\n" TOP WATER INFLOW, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 2);
+    parse(TOP WATER INFLOW, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
+    TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 4);
+    parse("gravity = 0, 0.0\n" TOP WATER INFLOW, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
     parse(TOP WATER BLOCK, 0, NULL);
     TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.5);
     TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 0);

@@ -210,9 +210,10 @@ def last_cost(report, name):
     return seconds if isinstance(seconds, (int, float)) else sum(seconds)
 
 
-def run_scenes(doc, names, run_scene, path, report):
+def run_scenes(doc, names, run_scene, path, report, slow=()):
     """The command line of such a report. run_scene(name) gives the figures of a scene for JSON;
-    those of all scenes are kept beside the report at `path`, so that --only runs some anew.
+    those of all scenes are kept beside the report at `path`, so that --only runs some anew, and
+    nothing else runs the slow ones.
     report(known) gives the values of its text, which lies beside the tool under the name of
     `path`."""
     parser = options(doc)
@@ -225,7 +226,8 @@ def run_scenes(doc, names, run_scene, path, report):
     results = path.with_suffix(".json")
     if QUICK:
         names = [min(names, key=lambda name: last_cost(path.name, name))]
-    for name in (name for name in names if args.only in name):
+    for name in (name for name in names
+                 if args.only in name and (args.only or name not in slow)):
         found = {"version": program_version(), **run_scene(name)}
         store(results, {**load(results, {}), name: found})
     known = load(results, {})
@@ -245,7 +247,7 @@ def figures_report(known):
                              [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
 
 
-def run_figures(doc, scenes, path):
+def run_figures(doc, scenes, path, slow=()):
     """run_scenes for scenes whose measure gives rows of figures: `scenes` has for each name a case,
     the settings of each of its runs, and measure(runs), which gives (words, value, limit)."""
     def run_scene(name):
@@ -259,4 +261,4 @@ def run_figures(doc, scenes, path):
         for what, value, _ in figures:
             print(name, what, number(value), flush=True)
         return {"figures": figures, "seconds": seconds}
-    run_scenes(doc, scenes, run_scene, path, figures_report)
+    run_scenes(doc, scenes, run_scene, path, figures_report, slow)

@@ -7,6 +7,8 @@ periodically, a jet on a plate, a cylinder in a stream.
 examples:
   tools/report/verify_open.py               writes docs/results/open_verification.md
   tools/report/verify_open.py --only weir   runs these scenes again, keeps the figures of the others
+  tools/report/verify_open.py --only "Re = 100, 20"   one of the long runs of the cylinder, with 20
+                                            or 40 spacings across: half an hour to five hours
 
 The scenes are cases/verify/open_*.cfg and cylinder.cfg. The figures are kept in
 docs/results/open_verification.json."""
@@ -117,14 +119,44 @@ def measure_jet(runs):
              math.degrees(math.atan2(v[:, 1].sum(), abs(v[:, 0]).sum())), 2)]
 
 
-def measure_cylinder(runs):
-    """The last fifth of the run, in rho U^2 D/2."""
-    p = runs[0].table()
-    late = p["time_s"] > 0.8 * runs[0].end_time
-    drag, lift = (p[f"cylinder_f{axis}_N_per_m"][late] / 500 for axis in "xy")
-    return [("drag coefficient, mean", float(drag.mean()), None),
-            ("its standard deviation", float(drag.std()), None),
-            ("lift coefficient, standard deviation", float(lift.std()), None)]
+def first_harmonic(t, signal):
+    """Frequency and amplitude of the strongest oscillation, for D = 1 m and U = 1 m/s."""
+    def amplitude(f):
+        waves = np.stack([np.cos(2 * np.pi * f * t), np.sin(2 * np.pi * f * t), np.ones_like(t)],
+                         axis=1)
+        return float(np.hypot(*np.linalg.lstsq(waves, signal, rcond=None)[0][:2]))
+    frequency = max(np.arange(0.1, 0.3, 0.0005), key=amplitude)
+    return float(frequency), amplitude(frequency)
+
+
+def measure_cylinder(known, judged):
+    """The last two fifths of the run, in rho U^2 D/2; `known` by others: drag, lift, Strouhal
+    number, of which some are judged."""
+    def measure(runs):
+        p = runs[0].table()
+        late = p["time_s"] > 0.6 * runs[0].end_time
+        drag, lift = (p[f"cylinder_f{axis}_N_per_m"][late] / 500 for axis in "xy")
+        rows = [("drag coefficient, mean", float(drag.mean()), None),
+                ("its standard deviation", float(drag.std()), None)]
+        if runs[0].constants["Re"] < 50:
+            return [*rows, ("lift coefficient, standard deviation", float(lift.std()), None)]
+        frequency, swing = first_harmonic(p["time_s"][late], lift)
+        rows += [("lift coefficient, first harmonic", swing, None),
+                 ("Strouhal number", frequency, None)]
+        found, limits = (float(drag.mean()), swing, frequency), (4, 10, 2)
+        return rows + [(f"{words}, % too large", 100 * (value / wanted - 1),
+                        limit if judged else None)
+                       for words, value, wanted, limit in
+                       zip(("drag", "lift", "frequency"), found, known, limits)]
+    return measure
+
+
+def cylinder(reynolds, across):
+    """Others' values at this distance of the planes: cases/verify/cylinder.cfg."""
+    known = {100: (1.43, 0.35, 0.173)}.get(reynolds, ())
+    end = 40 if reynolds < 50 else 80
+    return "cylinder", [[f"Re={reynolds}", f"across={across}", f"end={end}*D/U"]], \
+        measure_cylinder(known, across >= 20)
 
 
 def vortex(ratio):
@@ -140,9 +172,11 @@ SCENES = {"vortex, 30 spacings over the channel": vortex(30), "vortex, 60 spacin
           "reversal, 40 spacings across": ("open_reversal", [["ratio=40"]], measure_reversal),
           "jet, 10 spacings across": ("open_jet", [["across=10"]], measure_jet),
           "jet, 20 spacings across": ("open_jet", [["across=20"]], measure_jet),
-          "cylinder, Re = 20, 10 spacings across": ("cylinder", [["Re=20", "end=40*D/U"]],
-                                                    measure_cylinder)}
+          **{f"cylinder, Re = {reynolds}, {across} spacings across": cylinder(reynolds, across)
+             for reynolds in (20, 100, 200) for across in (10, 20, 40)}}
+
+SLOW = [name for name in SCENES if name.startswith("cylinder") and ", 10 " not in name]
 
 
 if __name__ == "__main__":
-    run_tool(lambda: run_figures(__doc__, SCENES, REPORT))
+    run_tool(lambda: run_figures(__doc__, SCENES, REPORT, slow=SLOW))
