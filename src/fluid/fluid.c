@@ -92,7 +92,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
         fluid->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
     for (int t = 0; t < fluid->threads && fluid->effects & FX_THIN; t++) {
         fluid->neighbour_scratch[t].pieces =
-            arena_alloc(a, (size_t)(fluid->lines.n_pieces * LINE_IMAGES), 5 * sizeof(double),
+            arena_alloc(a, (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), 5 * sizeof(double),
                         "thin walls", d);
         if (!fluid->neighbour_scratch[t].pieces) return ERR_MEMORY;
     }

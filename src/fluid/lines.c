@@ -166,9 +166,9 @@ int lines_between(const struct lines *lines, const struct cells *cells, const do
     for (int k = 0; k < lines->n; k++) {
         const struct thin_line *const line = &lines->line[k];
         bool odd = false;
-        for (int image = 0; image < LINE_IMAGES; image++) {
+        for (int image = 0; image < CELLS_IMAGES; image++) {
             double shift[2];
-            if (!line_image(cells, image, shift)) continue;
+            if (!cells_image(cells, image, shift)) continue;
             for (int m = 0; m < line->n_pieces; m++) {
                 const double *const start = line->piece[m].from, *const end = line->piece[m].to;
                 const double one[2] = {start[0] + shift[0] - from[0],

@@ -53,18 +53,6 @@ void line_foot(const struct thin_line *line, int64_t j, double at[2]);
  * and its moment about the end. */
 void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6]);
 
-/* Image m of all lines, which lie `shift` from the lines themselves, m; false: there is none. */
-enum { LINE_IMAGES = 9 };
-SPHFSI_INLINE bool line_image(const struct cells *cells, int m, double shift[2])
-{
-    const int times[2] = {m % 3 - 1, m / 3 - 1};
-    for (int c = 0; c < 2; c++) {
-        if (times[c] && !cells->periodic[c]) return false;
-        shift[c] = times[c] * cells->side[c] * (c ? cells->ny : cells->nx);
-    }
-    return true;
-}
-
 /* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
  * 0: none. (x, y) is the second place less the first, `from`. */
 int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],

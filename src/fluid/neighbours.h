@@ -100,9 +100,9 @@ static int near_pieces(const struct fluid *fluid, const struct cells *cells, int
     for (int k = 0; k < fluid->lines.n; k++) {
         const struct thin_line *const line = &fluid->lines.line[k];
         const int before = n;
-        for (int m = 0; m < LINE_IMAGES; m++) {
+        for (int m = 0; m < CELLS_IMAGES; m++) {
             double shift[2], low[2], high[2];
-            if (!line_image(cells, m, shift)) continue;
+            if (!cells_image(cells, m, shift)) continue;
             for (int c = 0; c < 2; c++) {
                 shift[c] -= centre[c];
                 low[c] = -0.5 * cells->side[c] - reach - shift[c];

@@ -10,19 +10,12 @@
 
 /* --- thickness and area --- */
 
-/* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates. */
-static double rows_between(const struct region *region, int c, double low, double high)
-{
-    const double origin = region->lattice.origin[c], spacing = region->lattice.spacing[c];
-    return ceil((high - origin) / spacing - 0.5 - 1e-6) -
-           ceil((low - origin) / spacing - 0.5 - 1e-6);
-}
-
 double geometry_rows_across(const struct region *region)
 {
     double across = HUGE_VAL;
     for (int c = 0; c < 2; c++)
-        across = min2(across, rows_between(region, c, region->box.low[c], region->box.high[c]));
+        across = min2(across, (double)(geometry_index(region, c, region->box.high[c]) -
+                                       geometry_index(region, c, region->box.low[c])));
     for (int k = 0; k < region->list->n; k++)
         if (region->list->item[k].kind == SHAPE_POLYLINE)
             across = min2(across, round(fabs(region->list->item[k].size) / region->lattice.dp));

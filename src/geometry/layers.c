@@ -3,14 +3,34 @@
  * segments beside edges, cut at convex corners by those of the next edge, and arcs around concave
  * corners. Along a layer the points are evenly spaced, as near to dp as a whole number of them
  * allows. */
-#include "geometry/layers.h"
+#include "geometry/sampling.h"
+
 #include "base/elementary.h"
+#include "base/point_grid.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Two points of a wall nearer than this many dp count as one. */
 static const double coincident = 0.65;
+
+/* Faces from which layers are measured. A polyline has its own, on the drawn side, and layers
+ * through all of its thickness. All other shapes have one common set, and layers as deep as the
+ * kernel's reach. */
+struct face_set {
+    struct point_grid grid; /* the exposed parts of the faces */
+    double spacing, depth;  /* of layers; down to which they go, m */
+    int first, end;         /* pieces */
+};
+
+struct layers {
+    struct sampler *g;
+    const struct region *region;
+    double dp;
+    int n_sets;
+    struct face_set *set;
+    struct point_grid points; /* of the region: of its lattice, of its layers */
+};
 
 /* --- choice of pieces --- */
 
@@ -31,7 +51,7 @@ static bool along_lattice(const struct shape *shape, const struct region *region
     return true;
 }
 
-enum err layers_find(struct sampler *sampler, struct region *region)
+enum err geometry_choose_layered(struct sampler *sampler, struct region *region)
 {
     region->layered = geometry_alloc(sampler, (size_t)region->add.n, sizeof *region->layered);
     if (!region->layered) return ERR_MEMORY;
@@ -297,7 +317,7 @@ static enum err each_loop(struct layers *l, struct face_set *set, visitor *visit
     return ERR_OK;
 }
 
-enum err layers_create(struct layers *l, struct sampler *sampler, const struct region *region)
+static enum err find_faces(struct layers *l, struct sampler *sampler, const struct region *region)
 {
     const double dp = region->lattice.dp;
     *l = (struct layers){.g = sampler, .region = region, .dp = dp, .points = {.side = dp}};
@@ -320,13 +340,6 @@ enum err layers_create(struct layers *l, struct sampler *sampler, const struct r
     return ERR_OK;
 }
 
-enum err layers_take(struct layers *l, double x, double y)
-{
-    TRY(point_grid_add(&l->points, x, y, &l->g->temp, l->g->diag));
-    l->first = l->points.n;
-    return ERR_OK;
-}
-
 static enum err trace_all(struct layers *l, struct face_set *set, const struct loop *o)
 {
     for (double layer = 0.5; layer * set->spacing < set->depth; layer++) {
@@ -337,15 +350,28 @@ static enum err trace_all(struct layers *l, struct face_set *set, const struct l
     return ERR_OK;
 }
 
-enum err layers_trace(struct layers *l)
+/* A place on the lattice behind the last layer. */
+static bool is_behind(const struct layers *l, double x, double y)
 {
-    for (int k = 0; k < l->n_sets; k++) TRY(each_loop(l, &l->set[k], trace_all));
-    return ERR_OK;
+    bool behind = true;
+    for (int k = 0; k < l->n_sets; k++)
+        behind &= !point_grid_any(&l->set[k].grid, x, y, l->set[k].depth);
+    return behind;
 }
 
-enum err layers_fill(struct layers *l, double x, double y)
+enum err geometry_lay_layers(struct sampler *sampler, const struct region *region, int64_t from,
+                             const struct samples *layered, struct samples *to)
 {
-    for (int k = 0; k < l->n_sets; k++)
-        if (point_grid_any(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
-    return offer(l, x, y);
+    struct layers l;
+    TRY(find_faces(&l, sampler, region));
+    for (int64_t k = from; k < to->n; k++)
+        TRY(point_grid_add(&l.points, to->x[k], to->y[k], &sampler->temp, sampler->diag));
+    const int64_t first = l.points.n;
+    for (int k = 0; k < l.n_sets; k++) TRY(each_loop(&l, &l.set[k], trace_all));
+    for (int64_t k = 0; k < layered->n; k++)
+        if (is_behind(&l, layered->x[k], layered->y[k]))
+            TRY(offer(&l, layered->x[k], layered->y[k]));
+    for (int64_t k = first; k < l.points.n; k++)
+        TRY(geometry_sample(sampler, region, l.points.x[k], l.points.y[k], to));
+    return ERR_OK;
 }

@@ -37,13 +37,6 @@ struct cut_cells {
 
 /* --- cells --- */
 
-static void cells_of(const struct region *region, double x, double y, double at[2])
-{
-    const struct scene_lattice *const l = &region->lattice;
-    at[0] = (x - l->origin[0]) / l->spacing[0];
-    at[1] = (y - l->origin[1]) / l->spacing[1];
-}
-
 /* Adds the cell of a point of an edge with this normal, unless the shape is on both of its
  * sides. */
 static enum err visit(struct cut_cells *c, struct sampler *sampler, const double at[2],
@@ -53,9 +46,9 @@ static enum err visit(struct cut_cells *c, struct sampler *sampler, const double
     if ((geometry_piece_at(c->region, at[0] + step * normal[0], at[1] + step * normal[1]) < 0) ==
         (geometry_piece_at(c->region, at[0] - step * normal[0], at[1] - step * normal[1]) < 0))
         return ERR_OK;
-    double cell[2];
-    cells_of(c->region, at[0], at[1], cell);
-    const double i = floor(cell[0]) + 0.5, j = floor(cell[1]) + 0.5;
+    const struct scene_lattice *const l = &c->region->lattice;
+    const double i = floor((at[0] - l->origin[0]) / l->spacing[0]) + 0.5,
+                 j = floor((at[1] - l->origin[1]) / l->spacing[1]) + 0.5;
     return point_grid_any(&c->grid, i, j, 0.5)
                ? ERR_OK
                : point_grid_add(&c->grid, i, j, &sampler->temp, sampler->diag);
@@ -161,10 +154,9 @@ static enum err refill(struct packing *packing, const struct cut_cells *c, struc
     const struct scene_points *const from = &packing->g->scene->points[KIND_FLUID];
     const struct scene_lattice *const l = &c->region->lattice;
     for (int64_t k = 0; k < from->n; k++) {
-        double at[2], cell[2];
+        double cell[2];
         if (from->body[k] != c->region->body) continue;
-        lattice_place(l, from->x[k], from->y[k], at);
-        cells_of(c->region, at[0], at[1], cell);
+        cell_of_place(l, from->x[k], from->y[k], cell);
         if (point_grid_any(&c->grid, cell[0], cell[1], 0.1)) continue;
         to->x[to->n] = from->x[k];
         to->y[to->n] = from->y[k];
@@ -178,8 +170,7 @@ static enum err refill(struct packing *packing, const struct cut_cells *c, struc
         if (excess < 0.5) continue;
         excess--;
         double at[2];
-        place_of_lattice(l, l->origin[0] + c->middle[k][0] * l->spacing[0],
-                         l->origin[1] + c->middle[k][1] * l->spacing[1], at);
+        place_of_cell(l, c->middle[k], at);
         to->x[to->n] = at[0];
         to->y[to->n] = at[1];
         to->body[to->n++] = c->region->body;
@@ -195,11 +186,9 @@ static enum err visit_lines(struct packing *packing)
     const double near = (0.5 - beside_line) * scene->top.dp;
     for (int64_t k = 0; k < p->n && scene->n_line; k++) {
         const double at[2] = {p->x[k], p->y[k]};
-        double place[2], cell[2];
+        double cell[2];
         if (geometry_line_distance(scene, at) >= near) continue;
-        lattice_place(&scene->lattice, at[0], at[1], place);
-        for (int c = 0; c < 2; c++)
-            cell[c] = (place[c] - scene->lattice.origin[c]) / scene->lattice.spacing[c];
+        cell_of_place(&scene->lattice, at[0], at[1], cell);
         TRY(point_grid_add(&packing->cells, cell[0], cell[1], &packing->g->temp, packing->g->diag));
     }
     return ERR_OK;
@@ -210,9 +199,7 @@ static bool beside(const struct packing *packing, double x, double y, double rea
 {
     const struct scene *const scene = packing->g->scene;
     double at[2];
-    lattice_place(&scene->lattice, x, y, at);
-    for (int c = 0; c < 2; c++)
-        at[c] = (at[c] - scene->lattice.origin[c]) / scene->lattice.spacing[c];
+    cell_of_place(&scene->lattice, x, y, at);
     return point_grid_any(&packing->cells, at[0], at[1], reach * scene->h / scene->top.dp);
 }
 
@@ -221,10 +208,8 @@ enum cover { COVER_NONE, COVER_FLUID, COVER_BODY };
 
 static enum cover cover_of(const struct sampler *sampler, const double cell[2], double at[2])
 {
-    const struct scene_lattice *const l = &sampler->scene->lattice;
     enum cover found = COVER_NONE;
-    place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
-                     l->origin[1] + cell[1] * l->spacing[1], at);
+    place_of_cell(&sampler->scene->lattice, cell, at);
     for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
         if (geometry_covers(&sampler->regions[r], at[0], at[1]))
             found = sampler->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;

@@ -2,8 +2,8 @@
  * Sampling of shapes: particles are the centres of the cells of a square lattice. A centre within
  * 1e-6 dp of an edge counts as above and to the right of it, for any rounding error. So shapes with
  * a common edge neither miss nor double a particle. */
-#include "geometry/layers.h"
 #include "geometry/load.h"
+#include "geometry/sampling.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 /* Approximate bytes of a particle, to refuse absurd cases: fields, neighbour lists and copies. */
 static const double bytes_per_particle = 300;
-static const double max_cells = 1e9; /* of the shapes' boxes together, or away from the origin */
+static const double max_cells = 1e9; /* of the boxes around shapes, or away from the origin */
 
 /* --- regions --- */
 
@@ -25,36 +25,27 @@ static double piece_area(const struct outline *o)
 static enum err check_size(struct sampler *sampler)
 {
     const double dp = sampler->scene->top.dp;
-    double total = 0, cells = 0;
+    double particles = 0, cells = 0;
     for (int k = 0; k < sampler->n_regions; k++) {
-        const struct region *region = &sampler->regions[k];
-        const double own = region->lattice.dp;
+        const struct region *const region = &sampler->regions[k];
+        const double own = region->lattice.dp, *const origin = region->lattice.origin,
+                     *const low = region->box.low, *const high = region->box.high;
         for (int j = 0; j < region->add.n; j++)
-            total += piece_area(&region->add.item[j]) / square(own);
-        double wide[2];
-        for (int c = 0; c < 2; c++) {
-            const double low = fabs(region->box.low[c] - region->lattice.origin[c]) / own;
-            const double high = fabs(region->box.high[c] - region->lattice.origin[c]) / own;
-            wide[c] = (region->box.high[c] - region->box.low[c]) / own + 3;
-            if (low > max_cells || high > max_cells) cells = HUGE_VAL;
-        }
-        cells += wide[0] * wide[1];
+            particles += piece_area(&region->add.item[j]) / square(own);
+        cells += ((high[0] - low[0]) / own + 3) * ((high[1] - low[1]) / own + 3);
+        for (int c = 0; c < 2; c++)
+            cells = max2(cells, max2(fabs(low[c] - origin[c]), fabs(high[c] - origin[c])) / own);
     }
     const double pages = (double)sysconf(_SC_PHYS_PAGES), page = (double)sysconf(_SC_PAGESIZE);
     const double memory = pages > 0 && page > 0 ? pages * page : 1e18;
-    const double bytes = total * bytes_per_particle;
-    if (total > 1e9 || bytes > memory)
-        return diag_add(
-            sampler->diag, ERR_INPUT,
-            "%s: dp = %g m gives about %.3g particles, which need %.3g GB. This machine has %.3g "
-            "GB, and the limit is 1e9 particles; use a larger dp or smaller shapes",
-            sampler->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
-    if (cells > max_cells)
-        return diag_add(sampler->diag, ERR_INPUT,
-                        "%s: the shapes span more than %g cells of dp = %g m; use a larger dp or "
-                        "smaller shapes",
-                        sampler->scene->path, max_cells, dp);
-    return ERR_OK;
+    const double bytes = particles * bytes_per_particle;
+    if (particles <= max_cells && bytes <= memory && cells <= max_cells) return ERR_OK;
+    return diag_add(sampler->diag, ERR_INPUT,
+                    "%s: dp = %g m gives about %.3g particles, which need %.3g GB, in shapes that "
+                    "span %.3g cells. This machine has %.3g GB, and the limit of both numbers is "
+                    "%g; use a larger dp or smaller shapes",
+                    sampler->scene->path, dp, particles, 1e-9 * bytes, cells, 1e-9 * memory,
+                    max_cells);
 }
 
 static void add_region(struct sampler *sampler, enum kind kind, int body,
@@ -116,96 +107,59 @@ static enum err turn_regions(struct sampler *sampler)
         if (region->add.n == 0) /* thin lines only: one point, and nothing is there */
             for (int c = 0; c < 2; c++)
                 region->box.low[c] = region->box.high[c] = region->lattice.origin[c];
-        TRY(layers_find(sampler, region));
+        TRY(geometry_choose_layered(sampler, region));
     }
     return ERR_OK;
 }
 
 /* --- rows --- */
 
-/* The first lattice index with its centre at or beyond x. */
-static int64_t index_from(const struct region *region, int c, double x)
+/* Adds a place of the lattice that is in a piece, to `layered` if all its pieces are; counts it for
+ * each shape. */
+static enum err visit_place(struct sampler *sampler, const struct region *region,
+                            const int64_t at[2], int64_t *per_shape, struct samples *to,
+                            struct samples *layered)
 {
     const struct scene_lattice *const l = &region->lattice;
-    return (int64_t)ceil((x - l->origin[c]) / l->spacing[c] - 0.5 - NUDGE_X);
-}
-
-static double centre(const struct region *region, int c, int64_t index)
-{
-    return region->lattice.origin[c] + ((double)index + 0.5) * region->lattice.spacing[c];
-}
-
-/* Whether a point is in a piece, of those on the lattice or of all; counts those of each shape. */
-static bool is_inside(const struct region *region, double x, double y, bool all, int64_t *per_shape)
-{
-    bool inside = false;
+    const double x = l->origin[0] + ((double)at[0] + 0.5) * l->spacing[0],
+                 y = l->origin[1] + ((double)at[1] + 0.5) * l->spacing[1],
+                 u = x + NUDGE_X * l->spacing[0], v = y + NUDGE_Y * l->spacing[1];
+    bool inside = false, on_lattice = false;
     for (int k = 0; k < region->add.n; k++) {
-        if (!outline_contains(&region->add.item[k], x, y)) continue;
+        if (!outline_contains(&region->add.item[k], u, v)) continue;
         per_shape[region->add.shape[k]]++;
-        inside |= all || !region->layered[k];
+        inside = true;
+        on_lattice |= !region->layered[k];
     }
-    return inside && outlines_find(&region->minus, x, y) < 0;
+    if (!inside || outlines_find(&region->minus, u, v) >= 0) return ERR_OK;
+    return geometry_sample(sampler, region, x, y, on_lattice ? to : layered);
 }
 
-/* Adds a point given in the axes of its lattice. */
-static enum err sample_point(struct sampler *sampler, const struct region *region, double x,
-                             double y, struct samples *to)
-{
-    struct arena *const a = &sampler->temp;
-    const size_t n = (size_t)to->n;
-    double at[2];
-    to->x = arena_grow(a, to->x, n, sizeof *to->x, "sampling", sampler->diag);
-    to->y = arena_grow(a, to->y, n, sizeof *to->y, "sampling", sampler->diag);
-    to->region = arena_grow(a, to->region, n, sizeof *to->region, "sampling", sampler->diag);
-    to->clamped = arena_grow(a, to->clamped, n, 1, "sampling", sampler->diag);
-    if (!to->x || !to->y || !to->region || !to->clamped) return ERR_MEMORY;
-    place_of_lattice(&region->lattice, x, y, at);
-    to->x[n] = at[0];
-    to->y[n] = at[1];
-    to->region[n] = (int32_t)(region - sampler->regions);
-    to->n++;
-    return ERR_OK;
-}
-
-/* Visits the points of a region's lattice row by row, or column by column if it is upright: adds
- * those inside, or offers all as points `behind` the layers. */
-static enum err lay_lattice(struct sampler *sampler, const struct region *region, bool behind,
-                            struct layers *layers, int64_t *per_shape, struct samples *to)
-{
-    int64_t first[2], end[2];
-    for (int c = 0; c < 2; c++) {
-        first[c] = index_from(region, c, region->box.low[c]) - 1;
-        end[c] = index_from(region, c, region->box.high[c]) + 1;
-    }
-    const int outer = region->kind == KIND_SOLID && end[1] - first[1] > end[0] - first[0] ? 0 : 1;
-    int64_t at[2];
-    for (at[outer] = first[outer]; at[outer] < end[outer]; at[outer]++)
-        for (at[!outer] = first[!outer]; at[!outer] < end[!outer]; at[!outer]++) {
-            const double x = centre(region, 0, at[0]), y = centre(region, 1, at[1]);
-            if (!is_inside(region, x + NUDGE_X * region->lattice.spacing[0],
-                           y + NUDGE_Y * region->lattice.spacing[1], behind, per_shape))
-                continue;
-            if (!behind) TRY(sample_point(sampler, region, x, y, to));
-            if (region->has_layers) TRY((behind ? layers_fill : layers_take)(layers, x, y));
-        }
-    return ERR_OK;
-}
-
-/* The lattice in the pieces along it, then the layers, then the lattice behind them. */
+/* The points of a region row by row, or column by column if it is an upright body. */
 static enum err lay_points(struct sampler *sampler, struct region *region, int64_t *per_shape,
                            struct samples *to)
 {
-    struct layers l;
-    const int64_t before = to->n;
-    if (region->has_layers) TRY(layers_create(&l, sampler, region));
-    TRY(lay_lattice(sampler, region, false, &l, per_shape, to));
-    if (region->has_layers) {
-        TRY(layers_trace(&l));
-        TRY(lay_lattice(sampler, region, true, &l, per_shape, to));
-        for (int64_t k = l.first; k < l.points.n; k++)
-            TRY(sample_point(sampler, region, l.points.x[k], l.points.y[k], to));
+    const struct scene_lattice *const l = &region->lattice;
+    struct samples layered = {0};
+    const int64_t from = to->n;
+    int64_t at[2], first[2], end[2];
+    for (int c = 0; c < 2; c++) {
+        first[c] = geometry_index(region, c, region->box.low[c]) - 1;
+        end[c] = geometry_index(region, c, region->box.high[c]) + 1;
     }
-    region->n = to->n - before;
+    const bool upright = region->kind == KIND_SOLID && end[1] - first[1] > end[0] - first[0];
+    const int outer = upright ? 0 : 1, inner = 1 - outer;
+    for (at[outer] = first[outer]; at[outer] < end[outer]; at[outer]++)
+        for (at[inner] = first[inner]; at[inner] < end[inner]; at[inner]++)
+            TRY(visit_place(sampler, region, at, per_shape, to, &layered));
+    if (region->has_layers) TRY(geometry_lay_layers(sampler, region, from, &layered, to));
+    for (int64_t k = from; k < to->n; k++) {
+        double place[2];
+        place_of_lattice(l, to->x[k], to->y[k], place);
+        to->x[k] = place[0];
+        to->y[k] = place[1];
+    }
+    region->n = to->n - from;
     return ERR_OK;
 }
 

@@ -30,7 +30,7 @@ struct region {
     int64_t n, n_clamped;   /* points inside, and those that a clamp holds */
     int64_t n_hinged;       /* of the latter those in a hinge */
     struct outlines clamps; /* of a solid */
-    bool *layered;          /* [add.n]: whether a piece is sampled in layers (geometry/layers.h) */
+    bool *layered;          /* [add.n]: whether a piece is sampled in layers (geometry/layers.c) */
     bool has_layers;
 };
 
@@ -65,6 +65,25 @@ SPHFSI_INLINE void geometry_place(const struct region *region, double x, double 
     at[1] += NUDGE_Y * region->lattice.spacing[1];
 }
 
+/* The first index of a row or column of the lattice with its centre at or beyond x. */
+SPHFSI_INLINE int64_t geometry_index(const struct region *region, int c, double x)
+{
+    const struct scene_lattice *const l = &region->lattice;
+    return (int64_t)ceil((x - l->origin[c]) / l->spacing[c] - 0.5 - NUDGE_X);
+}
+
+/* The place of a position in cells of a lattice; and the inverse. */
+SPHFSI_INLINE void cell_of_place(const struct scene_lattice *l, double x, double y, double cell[2])
+{
+    lattice_place(l, x, y, cell);
+    for (int c = 0; c < 2; c++) cell[c] = (cell[c] - l->origin[c]) / l->spacing[c];
+}
+SPHFSI_INLINE void place_of_cell(const struct scene_lattice *l, const double cell[2], double at[2])
+{
+    place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
+                     l->origin[1] + cell[1] * l->spacing[1], at);
+}
+
 /* All points, region after region. */
 struct samples {
     int64_t n;
@@ -72,6 +91,32 @@ struct samples {
     int32_t *region;
     uint8_t *clamped;
 };
+
+/* Walls whose faces are not along the lattice (geometry/layers.c): sets region->layered for the
+ * pieces that need layers. */
+enum err geometry_choose_layered(struct sampler *sampler, struct region *region) SPHFSI_CHECKED;
+/* Adds their layers, then of the lattice's points `layered` in them those behind the layers, all in
+ * the axes of the lattice; the points of other pieces, from index `from` on, are there. */
+enum err geometry_lay_layers(struct sampler *sampler, const struct region *region, int64_t from,
+                             const struct samples *layered, struct samples *to) SPHFSI_CHECKED;
+
+/* Adds a point. */
+SPHFSI_INLINE enum err geometry_sample(struct sampler *sampler, const struct region *region,
+                                       double x, double y, struct samples *to)
+{
+    struct arena *const a = &sampler->temp;
+    const size_t n = (size_t)to->n;
+    to->x = arena_grow(a, to->x, n, sizeof *to->x, "sampling", sampler->diag);
+    to->y = arena_grow(a, to->y, n, sizeof *to->y, "sampling", sampler->diag);
+    to->region = arena_grow(a, to->region, n, sizeof *to->region, "sampling", sampler->diag);
+    to->clamped = arena_grow(a, to->clamped, n, 1, "sampling", sampler->diag);
+    if (!to->x || !to->y || !to->region || !to->clamped) return ERR_MEMORY;
+    to->x[n] = x;
+    to->y[n] = y;
+    to->region[n] = (int32_t)(region - sampler->regions);
+    to->n++;
+    return ERR_OK;
+}
 
 /* Zeroed memory that lasts until the scene is sampled; NULL: there is none. */
 SPHFSI_INLINE void *geometry_alloc(struct sampler *sampler, size_t n, size_t size)

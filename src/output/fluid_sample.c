@@ -161,59 +161,26 @@ double fluid_front(const struct simulation *sim, int direction)
     return sign * ((isfinite(foremost) ? foremost : any) + 0.5 * sim->scene->top.dp);
 }
 
-/* A line, and how many of a particle's images on each side of the nearest one it may meet. */
-struct flux_line {
-    double length, along[2], period[2];
-    int images[2];
-};
-
-static struct flux_line flux_line(const struct simulation *sim, const double a[2],
-                                  const double b[2])
-{
-    struct flux_line line = {.length = elementary_hypot(b[0] - a[0], b[1] - a[1])};
-    for (int c = 0; c < 2; c++) {
-        line.along[c] = (b[c] - a[c]) / line.length;
-        line.period[c] = sim->scene->domain_upper[c] - sim->scene->domain_lower[c];
-        if (scene_periodic(sim->scene, c))
-            line.images[c] = 1 + (int)ceil(fabs(b[c] - a[c]) / line.period[c]);
-    }
-    return line;
-}
-
-/* The bell's sum over a particle's images at the place (x, y) from the line's first end. */
-static double images_at_line(const struct flux_line *line, double reach, double x, double y)
-{
-    const double tx = line->along[0], ty = line->along[1];
-    double sum = 0;
-    for (int i = -line->images[0]; i <= line->images[0]; i++)
-        for (int j = -line->images[1]; j <= line->images[1]; j++) {
-            const double X = x + i * line->period[0], Y = y + j * line->period[1];
-            const double along = X * tx + Y * ty, across = X * ty - Y * tx;
-            if (along < 0 || along > line->length || fabs(across) >= reach) continue;
-            sum += 0.5 / reach * (1 + elementary_cos(PI * across / reach));
-        }
-    return sum;
-}
-
+/* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side is the
+ * least for which its sum over a lattice is exact. A wider strip would miss what flows into an
+ * opening round its edge. */
 double fluid_flux(const struct simulation *sim, const double a[2], const double b[2])
 {
     const struct particles *const particles = &sim->kind[KIND_FLUID];
-    const struct flux_line line = flux_line(sim, a, b);
-    const double tx = line.along[0], ty = line.along[1];
-    /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side
-     * is the least for which its sum over a lattice is exact. A wider strip would miss what
-     * flows into an opening round its edge. */
-    const double dp = sim->scene->top.dp, reach = dp;
-    double sum = 0;
-    for (int64_t i = 0; i < particles->n; i++) {
-        const double x = cells_minimum_image(&sim->cells, 0, particles->x[i] - a[0]);
-        const double y = cells_minimum_image(&sim->cells, 1, particles->y[i] - a[1]);
-        const double bell = images_at_line(&line, reach, x, y);
-        if (bell == 0) continue;
-        const double m = relative_mass(particles, i);
-        sum += bell * m * square(dp) / (1 + particles->dens[i]) *
-               (particles->vx[i] * ty - particles->vy[i] * tx);
-    }
+    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]), reach = sim->scene->top.dp,
+                 tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
+    double sum = 0, shift[2];
+    for (int64_t i = 0; i < particles->n; i++)
+        for (int image = 0; image < CELLS_IMAGES; image++) {
+            if (!cells_image(&sim->cells, image, shift)) continue;
+            const double x = particles->x[i] - a[0] + shift[0],
+                         y = particles->y[i] - a[1] + shift[1];
+            const double along = x * tx + y * ty, across = x * ty - y * tx;
+            if (along < 0 || along > length || fabs(across) >= reach) continue;
+            const double bell = 0.5 / reach * (1 + elementary_cos(PI * across / reach));
+            sum += bell * relative_mass(particles, i) * square(reach) / (1 + particles->dens[i]) *
+                   (particles->vx[i] * ty - particles->vy[i] * tx);
+        }
     return sum;
 }
 

@@ -140,6 +140,18 @@ SPHFSI_INLINE double cells_minimum_image(const struct cells *cells, int axis, do
     return difference - period * __builtin_floor(difference / period + 0.5);
 }
 
+/* The shift of periodic image m, m; false: there is none. */
+enum { CELLS_IMAGES = 9 };
+SPHFSI_INLINE bool cells_image(const struct cells *cells, int m, double shift[2])
+{
+    const int times[2] = {m % 3 - 1, m / 3 - 1};
+    for (int c = 0; c < 2; c++) {
+        if (times[c] && !cells->periodic[c]) return false;
+        shift[c] = times[c] * cells->side[c] * (c ? cells->ny : cells->nx);
+    }
+    return true;
+}
+
 /* Centre of a cell. */
 SPHFSI_INLINE double cell_centre_x(const struct cells *cells, int32_t cell)
 {
