@@ -377,32 +377,24 @@ const struct scene_section_common *contact_section(const struct contact *contact
 
 /* --- start --- */
 
-/* How much a layer between two surfaces yields that is as stiff as half a spacing of each body, in
- * series, and how much in shear; a wall is rigid. Of two equal bodies each is compressed by half of
- * the overlap. */
-static void layer_yields(const struct contact *contact, int a, int b, double *yields,
-                         double *shears)
-{
-    const struct solid_body *const body = contact->solid->body;
-    *yields = body[a].dp / body[a].young;
-    *shears = body[a].dp / body[a].mu;
-    if (b >= contact->n_solids) return;
-    *yields += body[b].dp / body[b].young;
-    *shears += body[b].dp / body[b].mu;
-}
-
-/* A pressure p leaves an overlap of spacing p/(stiffness E + p), E of the layer (T-61). */
+/* A pressure p leaves an overlap of spacing p/(stiffness E + p) (T-61). E is that of a layer as
+ * stiff as half a spacing of each body, in series; a wall is rigid. Of two equal bodies each is
+ * compressed by half of the overlap. */
 static void set_law(struct contact *contact, const struct scene_contact *from, int a, int b)
 {
     const double spacing = 0.5 * (contact_dp(contact, a) + contact_dp(contact, b));
     /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
     const bool own = contact->group[a] == contact->group[b];
     const double reach = spacing + (own ? from->gap : scene_contact_gap(contact->scene, from));
-    double yields, shears;
-    layer_yields(contact, a, b, &yields, &shears);
+    double yields = 0, shears = 0, per_mass = 0;
+    for (int k = 0; k < 2; k++) {
+        const struct solid_body *const body = &contact->solid->body[k ? b : a];
+        if ((k ? b : a) >= contact->n_solids) continue;
+        yields += body->dp / body->young;
+        shears += body->dp / body->mu;
+        per_mass += 1 / body->mass;
+    }
     const double stiffness = from->stiffness * (2 * spacing / yields);
-    const struct solid_body *const body = contact->solid->body;
-    const double per_mass = 1 / body[a].mass + (b < contact->n_solids ? 1 / body[b].mass : 0);
     *contact_law_of(contact, a, b) = *contact_law_of(contact, b, a) = (struct contact_law){
         .on = true,
         .spacing = spacing,

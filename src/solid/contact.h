@@ -20,6 +20,14 @@ struct contact_law {
     double friction; /* Coulomb's coefficient */
 };
 
+/* What a surface presses a point of a solid with. */
+struct normal_load {
+    int32_t group, edge; /* the nearest edge of that surface */
+    double distance, force[2];
+};
+/* More surfaces than these at one point have no friction. */
+enum { MAX_LOADS = 4 };
+
 /* A particle at a surface. */
 struct contact_point {
     int32_t index;           /* among the particles of its kind */
@@ -37,7 +45,8 @@ struct contact_point {
     int16_t near_hinge;      /* the hinge, from 1, within whose kernel it begins; 0: none */
     double row, row_damping; /* sums of the bound of the step, T-62a */
     double wall_row, wall_damping; /* what friction with walls adds to them */
-    int32_t first_load;            /* of the list of forces on a solid's point; -1: none */
+    int n_loads;                   /* on a solid's point, for friction */
+    struct normal_load load[MAX_LOADS];
 };
 
 /* A piece of a surface: the line between two neighbouring points. A particle without a neighbour is
@@ -51,8 +60,7 @@ struct contact_edge {
 struct contact_pair {
     int32_t point, edge;
     double force[3][2], distance;
-    bool touches, near;   /* within this step */
-    int32_t next_load[3]; /* the load that follows each force in the list of its point */
+    bool touches, near; /* within this step */
 };
 
 /* The largest overlap of a step. */

@@ -5,66 +5,46 @@
 
 #include <math.h>
 
-/* What a surface presses a point of a solid with. */
-struct normal_load {
-    int32_t group, edge; /* the nearest edge of that surface */
-    double distance, force[2];
-};
-
-/* More surfaces than these at one point have no friction. */
-enum { MAX_LOADS = 4 };
-
 /* --- what presses a point --- */
 
-/* A load is force `part` of a pair, numbered 3 pair + part. */
-static void add_load(struct contact *contact, int32_t point, int64_t pair, int part)
-{
-    contact->pair[pair].next_load[part] = contact->point[point].first_load;
-    contact->point[point].first_load = (int32_t)(3 * pair + part);
-}
-
-/* A wall is rigid and its points have no state: what they press is on the solid's points. */
-static void list_loads(struct contact *contact)
-{
-    for (int64_t k = 0; k < contact->n_solid_points; k++) contact->point[k].first_load = -1;
-    for (int64_t k = 0; k < contact->n_pairs; k++) {
-        const struct contact_pair *const pair = &contact->pair[k];
-        if (!pair->touches) continue;
-        if (pair->point < contact->n_solid_points) {
-            add_load(contact, pair->point, k, 0);
-        } else {
-            add_load(contact, contact->edge[pair->edge].a, k, 1);
-            add_load(contact, contact->edge[pair->edge].b, k, 2);
-        }
-    }
-}
-
-/* Notes an edge among the surfaces `on` a point; the surface's number, or MAX_LOADS. */
-static int load_of_surface(const struct contact *contact, int32_t edge, double distance,
-                           struct normal_load on[MAX_LOADS], int *n)
+/* The load of an edge's surface among the n on a point, with the nearest edge; NULL: too many. */
+static struct normal_load *load_of_surface(const struct contact *contact, int32_t edge,
+                                           double distance, struct normal_load load[MAX_LOADS],
+                                           int *n)
 {
     const int32_t group = contact->point[contact->edge[edge].a].group;
     int k = 0;
-    while (k < *n && on[k].group != group) k++;
-    if (k == MAX_LOADS) return k;
-    if (k == *n) on[(*n)++] = (struct normal_load){group, edge, distance, {0}};
-    if (distance < on[k].distance) on[k].edge = edge, on[k].distance = distance;
-    return k;
+    while (k < *n && load[k].group != group) k++;
+    if (k == MAX_LOADS) return NULL;
+    if (k == *n) load[(*n)++] = (struct normal_load){group, edge, distance, {0}};
+    if (distance < load[k].distance) load[k].edge = edge, load[k].distance = distance;
+    return &load[k];
 }
 
-static int loads_on(const struct contact *contact, int32_t point, struct normal_load on[MAX_LOADS])
+static void add_load(const struct contact *contact, int32_t point, int32_t edge, double distance,
+                     const double force[2])
 {
-    int n = 0;
-    for (int32_t next, load = contact->point[point].first_load; load >= 0; load = next) {
-        const struct contact_pair *const pair = &contact->pair[load / 3];
-        const int part = load % 3;
-        const int32_t edge = part ? contact->point[pair->point].edge : pair->edge;
-        const int k =
-            load_of_surface(contact, edge, part ? (double)INFINITY : pair->distance, on, &n);
-        next = pair->next_load[part];
-        for (int c = 0; c < 2 && k < MAX_LOADS; c++) on[k].force[c] += pair->force[part][c];
+    struct contact_point *const p = &contact->point[point];
+    struct normal_load *const load = load_of_surface(contact, edge, distance, p->load, &p->n_loads);
+    for (int c = 0; c < 2 && load; c++) load->force[c] += force[c];
+}
+
+/* A wall is rigid and its points have no state: what they press is on the solid's points. */
+static void collect_loads(struct contact *contact)
+{
+    for (int64_t k = 0; k < contact->n_solid_points; k++) contact->point[k].n_loads = 0;
+    for (int64_t k = contact->n_pairs - 1; k >= 0; k--) {
+        const struct contact_pair *const pair = &contact->pair[k];
+        if (!pair->touches) continue;
+        if (pair->point < contact->n_solid_points) {
+            add_load(contact, pair->point, pair->edge, pair->distance, pair->force[0]);
+            continue;
+        }
+        const int32_t edge = contact->point[pair->point].edge;
+        const struct contact_edge *const e = &contact->edge[pair->edge];
+        add_load(contact, e->b, edge, (double)INFINITY, pair->force[2]);
+        add_load(contact, e->a, edge, (double)INFINITY, pair->force[1]);
     }
-    return n;
 }
 
 /* --- places that move with an edge --- */
@@ -182,12 +162,11 @@ static void add_friction(struct contact *contact, struct particles *particles, i
 
 void contact_friction_forces(struct contact *contact, struct particles *particles)
 {
-    list_loads(contact);
+    collect_loads(contact);
     for (int32_t point = 0; point < contact->n_solid_points; point++) {
-        struct normal_load on[MAX_LOADS];
-        const int n = loads_on(contact, point, on);
-        for (int k = 0; k < n; k++) {
-            const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
+        const struct contact_point *const p = &contact->point[point];
+        for (int k = 0; k < p->n_loads; k++) {
+            const struct friction_spring h = spring_at(contact, particles, point, &p->load[k]);
             if (h.normal_force > 0) add_friction(contact, particles, point, &h);
         }
     }
@@ -196,12 +175,11 @@ void contact_friction_forces(struct contact *contact, struct particles *particle
 double contact_friction_energy(struct contact *contact, const struct particles *particles)
 {
     double sum = 0;
-    list_loads(contact);
+    collect_loads(contact);
     for (int32_t point = 0; point < contact->n_solid_points; point++) {
-        struct normal_load on[MAX_LOADS];
-        const int n = loads_on(contact, point, on);
-        for (int k = 0; k < n; k++) {
-            const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
+        const struct contact_point *const p = &contact->point[point];
+        for (int k = 0; k < p->n_loads; k++) {
+            const struct friction_spring h = spring_at(contact, particles, point, &p->load[k]);
             if (h.force > 0)
                 sum += 0.5 * square(min2(h.force, h.friction * h.normal_force)) / h.stiffness;
         }
@@ -212,15 +190,16 @@ double contact_friction_energy(struct contact *contact, const struct particles *
 /* --- after a step --- */
 
 /* A point keeps to the surface that it holds to until it leaves it; then it takes the nearest.
- * -1: none. */
-static int load_with_spring(const struct contact *contact, const struct particles *particles,
-                            int32_t point, const struct normal_load *on, int n)
+ * NULL: none. */
+static const struct normal_load *load_with_spring(const struct contact *contact,
+                                                  const struct particles *particles, int32_t point)
 {
-    int best = -1;
-    for (int k = 0; k < n; k++) {
-        if (!(spring_at(contact, particles, point, &on[k]).normal_force > 0)) continue;
-        if (spring_edge(contact, particles, point, on[k].group) >= 0) return k;
-        if (best < 0 || on[k].distance < on[best].distance) best = k;
+    const struct contact_point *const p = &contact->point[point];
+    const struct normal_load *best = NULL;
+    for (const struct normal_load *on = p->load; on < p->load + p->n_loads; on++) {
+        if (!(spring_at(contact, particles, point, on).normal_force > 0)) continue;
+        if (spring_edge(contact, particles, point, on->group) >= 0) return on;
+        if (!best || on->distance < best->distance) best = on;
     }
     return best;
 }
@@ -229,21 +208,19 @@ void contact_slide(struct contact *contact, struct particles *particles)
 {
     if (!contact->friction) return;
     for (int32_t point = 0; point < contact->n_solid_points; point++) {
-        struct normal_load on[MAX_LOADS];
-        const int n = loads_on(contact, point, on),
-                  k = load_with_spring(contact, particles, point, on, n);
+        const struct normal_load *const on = load_with_spring(contact, particles, point);
         const int32_t i = contact->point[point].index;
-        if (k < 0) {
+        if (!on) {
             particles->stick_edge[i] = 0;
             continue;
         }
-        const struct friction_spring h = spring_at(contact, particles, point, &on[k]);
+        const struct friction_spring h = spring_at(contact, particles, point, on);
         const double most = h.friction * h.normal_force, less = h.force > most ? most / h.force : 1;
         const double *const x = contact->point[point].x;
         double place[2];
-        place_on(contact, on[k].edge, (const double[]){x[0] - less * h.u[0], x[1] - less * h.u[1]},
+        place_on(contact, on->edge, (const double[]){x[0] - less * h.u[0], x[1] - less * h.u[1]},
                  place);
-        particles->stick_edge[i] = on[k].edge + 1;
+        particles->stick_edge[i] = on->edge + 1;
         particles->stick_along[i] = place[0];
         particles->stick_across[i] = place[1];
     }

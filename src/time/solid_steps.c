@@ -12,20 +12,6 @@
 /* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = CHECK_INTERVAL };
 
-/* Bounds of a solid without fluid; returns the smallest, s. */
-static double find_bounds(struct simulation *sim)
-{
-    const double fixed = sim->scene->numerics.fixed_step;
-    for (int k = 0; k < BOUND_COUNT; k++) sim->dt_bound[k] = (double)INFINITY;
-    if (fixed > 0) return sim->dt_bound[BOUND_fixed] = fixed;
-    sim->dt_bound[BOUND_solid] = sim->dt_lone_solid;
-    if (sim->solid.implicit && sim->solid.contact) /* as beside fluid */
-        sim->dt_bound[BOUND_contact] = sim->contact.approach;
-    else if (!sim->solid.implicit && sim->dt_solid < sim->dt_lone_solid)
-        sim->dt_bound[BOUND_contact] = sim->dt_solid;
-    return min2(sim->dt_lone_solid, sim->dt_bound[BOUND_contact]);
-}
-
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
     const struct integrator *const by = sim->integrator;
@@ -126,7 +112,7 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     const double start = wall_clock(), before = phases_so_far(sim), begin = st->time;
     const bool implicit = sim->solid.implicit != NULL;
     const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
-    const double bound = find_bounds(sim);
+    const double bound = timestep_bound(sim);
     const bool external = sim->external[KIND_SOLID].at != NULL;
     const bool single = external || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
     const int batch = single ? 1 : SOLID_BATCH;

@@ -43,7 +43,8 @@ static double bound_value(const struct simulation *sim, enum bound k,
         return sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
     case BOUND_contact: /* with sub-steps only what passes within the step */
         if (!sim->solid.contact) return never;
-        return sim->effects & FX_MULTIRATE ? sim->contact.approach : sim->dt_solid;
+        return sim->effects & FX_MULTIRATE || sim->solid.implicit ? sim->contact.approach
+                                                                  : sim->dt_solid;
     case BOUND_added_mass: return coupling_added_mass_step(&sim->coupling, &lightest);
     case BOUND_zone: {
         double rate = 0;
@@ -75,7 +76,9 @@ static const effect_set bound_effects[BOUND_COUNT] = {
 static double bound_at(const struct simulation *sim, int k, const struct fluid_extremes *now)
 {
     const bool fixed = sim->scene->numerics.fixed_step > 0;
-    const bool owned = bound_effects[k] == 0 || sim->effects & bound_effects[k];
+    bool owned = bound_effects[k] == 0 || sim->effects & bound_effects[k];
+    if (!(sim->effects & FX_FLUID)) /* dt_solid is that of rigid bodies and beams, too */
+        owned = k == BOUND_solid || k == BOUND_contact || k == BOUND_fixed;
     return owned && (!fixed || k == BOUND_fixed) ? bound_value(sim, (enum bound)k, now)
                                                  : (double)INFINITY;
 }
@@ -134,13 +137,15 @@ const char *timestep_shorter(const struct simulation *sim, double *half)
     return "fixed_step";
 }
 
+double timestep_bound(struct simulation *sim)
+{
+    for (int k = 0; k < BOUND_COUNT; k++) sim->dt_bound[k] = bound_at(sim, k, &sim->fluid.extremes);
+    return sim->dt_bound[timestep_binding(sim)];
+}
+
 double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
 {
-    double dt = (double)INFINITY;
-    for (int k = 0; k < BOUND_COUNT; k++) {
-        sim->dt_bound[k] = bound_at(sim, k, &sim->fluid.extremes);
-        dt = min2(dt, sim->dt_bound[k]);
-    }
+    const double dt = timestep_bound(sim);
     /* A step that rounding of the times leaves before the limit is none. */
     const double left = t_limit - sim->state.time, steps = ceil(left / dt * (1 - 1e-9));
     *hits = steps <= 1;

@@ -16,9 +16,12 @@ enum bound timestep_binding(const struct simulation *sim);
  * with half of the last step, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *sim, double *half);
 
-/* Chooses the next step from the fluid's last evaluation and the solid's bound. It ends at t_limit
- * at the latest; the last two steps before that are equal. Fills s->dt_bound; sets `*hits` if the
- * step ends at t_limit. */
+/* Finds all bounds of the next step, s->dt_bound, from the fluid's last evaluation and the solid's
+ * bound; returns the smallest, s. */
+double timestep_bound(struct simulation *sim);
+
+/* Chooses the next step by its bounds. It ends at t_limit at the latest; the last two steps before
+ * that are equal. Sets `*hits` if the step ends at t_limit. */
 double timestep_choose(struct simulation *sim, double t_limit, bool *hits);
 
 /* Largest allowed number of the solid's sub-steps in one step of the fluid. */
