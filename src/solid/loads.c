@@ -49,13 +49,10 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
         if (inside) v->loaded[v->n_loaded++].particle = (int32_t)i;
     }
     load->end = v->n_loaded;
-    char place[LOCATION_TEXT];
-    scene_location(v->scene, from->common.line, place);
     if (load->end == load->first)
-        return diag_fail(
-            d, ERR_INPUT,
-            "%s: [load %s] contains no particle of [solid %s]; move or enlarge its `shape`", place,
-            from->common.name, from->body);
+        return fail_at(d, v->scene, from->common.line,
+                       "[load %s] contains no particle of [solid %s]; move or enlarge its `shape`",
+                       from->common.name, from->body);
     return ERR_OK;
 }
 

@@ -101,3 +101,23 @@ void find_speed(struct simulation *sim)
         sim->sorting.speed2 =
             max2(sim->sorting.speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
 }
+
+void step_of_one_stage(struct simulation *sim, double t_limit)
+{
+    const struct integrator *const by = sim->integrator;
+    evaluate_start(sim);
+    double clock = wall_clock();
+    bool hits;
+    const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
+    const double kick = 0.5 * (sim->state.dt + dt);
+    energy_of_step(sim, dt);
+    by->update(sim, dt);
+    clock = phase_add(sim, PHASE_update, clock);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, by->alternates ? dt : kick);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
+    clock = phase_add(sim, PHASE_solid, clock);
+    timestep_book(sim, dt, t_limit, hits);
+    phase_add(sim, PHASE_update, clock);
+}

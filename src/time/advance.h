@@ -51,6 +51,9 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick);
 /* The step of beams from a time on. */
 void advance_beams(struct simulation *sim, double time, double dt, double kick);
 
+/* A step with one evaluation at its start, in which the integrator updates the fluid. */
+void step_of_one_stage(struct simulation *sim, double t_limit);
+
 /* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
  * any kind. */
 void update_extremes(struct simulation *sim);

@@ -6,8 +6,6 @@
 #include <string.h>
 
 #include "time/advance.h"
-#include "time/timestep.h"
-#include "time/energy.h"
 
 /* T-32b: mean rate over the coming step dt from the present rates, those dt_old earlier, and those
  * dt_older before these. Equal steps: the 23/12, -16/12, 5/12 of Adams and Bashforth. */
@@ -44,11 +42,12 @@ static void update_leapfrog_rows(struct particles *particles, const void *by, in
     }
 }
 
-static void update_fluid(struct simulation *sim, double dt, double dt_old, double dt_older)
+static void update_leapfrog(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->kind[KIND_FLUID];
+    const double dt_old = sim->state.dt;
     const struct leapfrog_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
-                                      step_ratio(dt_old, dt_older)};
+                                      step_ratio(dt_old, sim->state.dt_old)};
     if (!(dt_old > 0)) { /* the first step has no earlier rates */
         memcpy(particles->ddens_old, particles->ddens,
                (size_t)particles->n * sizeof *particles->ddens);
@@ -63,28 +62,9 @@ static void update_fluid(struct simulation *sim, double dt, double dt_old, doubl
     particles->ddens = oldest;
 }
 
-static void leapfrog_step(struct simulation *sim, double t_limit)
-{
-    struct state *const st = &sim->state;
-    evaluate_start(sim);
-    double clock = wall_clock();
-    bool hits;
-    const double dt = timestep_choose(sim, t_limit, &hits), dt_old = st->dt;
-    energy_of_step(sim, dt);
-    update_fluid(sim, dt, dt_old, st->dt_old);
-    clock = phase_add(sim, PHASE_update, clock);
-    const double time = st->time, kick = 0.5 * (dt_old + dt);
-    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, kick);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
-    clock = phase_add(sim, PHASE_solid, clock);
-    timestep_book(sim, dt, t_limit, hits);
-    phase_add(sim, PHASE_update, clock);
-}
-
 const struct integrator integrator_leapfrog = {
-    .step = leapfrog_step,
+    .step = step_of_one_stage,
+    .update = update_leapfrog,
     .largest_cfl = 0.6,
     .density_decay = 6.0 / 11, /* of Adams and Bashforth's third-order rule */
     .velocity_decay = 1,       /* its velocity is used half a step late */

@@ -81,6 +81,8 @@ struct external {
 struct integrator {
     /* One step of fluid, walls and structures, which ends no later than t_limit. */
     void (*step)(struct simulation *sim, double t_limit);
+    /* The fluid's part of a step with one evaluation (step_of_one_stage); NULL: others. */
+    void (*update)(struct simulation *sim, double dt);
     /* One step of a solid without fluid; NULL: by solid_advance. */
     void (*solid_step)(struct simulation *sim, double dt);
     double largest_cfl; /* up to it the fluid is stable */

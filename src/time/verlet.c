@@ -2,8 +2,6 @@
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
 #include "time/advance.h"
-#include "time/timestep.h"
-#include "time/energy.h"
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
@@ -32,29 +30,16 @@ static void update_verlet_rows(struct particles *particles, const void *by, int6
     }
 }
 
-static void verlet_step(struct simulation *sim, double t_limit)
+static void update_verlet(struct simulation *sim, double dt)
 {
-    evaluate_start(sim);
-    double clock = wall_clock();
-    bool hits;
-    const double dt = timestep_choose(sim, t_limit, &hits);
     const bool euler = sim->state.verlet_count == 0;
     sim->state.verlet_count = (sim->state.verlet_count + 1) % sim->scene->numerics.verlet_reset;
-    energy_of_step(sim, dt);
     advance_fluid(sim, update_verlet_rows, &(struct verlet_sizes){dt, sim->state.dt, euler});
-    clock = phase_add(sim, PHASE_update, clock);
-    const double time = sim->state.time, kick = 0.5 * (sim->state.dt + dt);
-    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, dt);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
-    clock = phase_add(sim, PHASE_solid, clock);
-    timestep_book(sim, dt, t_limit, hits);
-    phase_add(sim, PHASE_update, clock);
 }
 
 const struct integrator integrator_verlet = {
-    .step = verlet_step,
+    .step = step_of_one_stage,
+    .update = update_verlet,
     .largest_cfl = 0.2,
     .density_decay = 2,
     .velocity_decay = 2,
