@@ -38,7 +38,6 @@ struct entry {
     int line;        /* 0 if it came from --set */
     const char *set; /* the --set argument, or NULL */
     const char *key, *value;
-    const char *replaces; /* the file's value that --set replaces, or NULL */
 };
 
 struct case_section {

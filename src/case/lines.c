@@ -67,9 +67,6 @@ static enum err unknown_section(struct reader *r, int line, const char *word)
     for (int id = SECTION_top + 1; id <= SECTION_constants; id++) {
         const char *const name = section_table[id].word;
         const size_t used = strlen(known);
-        if (has_usual_name(name, word))
-            return bad_line(r, line, "unknown section [%.60s]; did you mean [%s%s]?", word, name,
-                            section_table[id].named ? " NAME" : "");
         nearest_offer(&near, word, name);
         if (id < SECTION_constants)
             snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
@@ -124,24 +121,14 @@ static enum err read_entry(struct reader *r, int line, char *text)
 {
     char *equals = strchr(text, '=');
     const char *const comment = strchr(text, '#');
-    if (!equals || (comment && comment < equals)) {
-        char first[SCENE_NAME];
-        snprintf(first, sizeof first, "%.*s", (int)strcspn(text, " \t:"), text);
-        return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`%s", text,
-                        strncmp(text, "//", 2) == 0  ? "; a comment begins with #"
-                        : find_section_id(first) > 0 ? "; write the section in brackets"
-                        : text[strlen(first)] == ':' ? "; write = for :"
-                                                     : "");
-    }
+    if (!equals || (comment && comment < equals))
+        return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`", text);
     *equals = '\0';
     const char *const key = trim(text);
-    if (!is_identifier(key) || strlen(key) >= SCENE_NAME) {
-        const char *const strange = strange_character(key);
-        if (strange) return bad_line(r, line, "`%.40s` has %s", key, strange);
+    if (!is_identifier(key) || strlen(key) >= SCENE_NAME)
         return bad_line(r, line,
                         "`%.40s` is not a valid key: a key has up to %d letters, digits and _", key,
                         SCENE_NAME - 1);
-    }
     const char *why;
     const char *const value = cut_value(equals + 1, &why);
     if (why) return bad_line(r, line, "`%s` %s", key, why);
@@ -215,7 +202,6 @@ static const char *name_of(const struct case_section *s)
 static enum err unknown_in_set(struct reader *r, const char *prefix, int id)
 {
     const struct entry *const e = r->entry;
-    char hint[PARAM_HINT];
     struct nearest near = {0};
     for (int k = 0; k < r->n_sections && !*prefix; k++)
         if (takes_key(r, k, e->key))
@@ -225,7 +211,7 @@ static enum err unknown_in_set(struct reader *r, const char *prefix, int id)
         if (r->sections[r->entries[k].section].id == SECTION_constants &&
             (!*prefix || id == SECTION_constants))
             nearest_offer(&near, e->key, r->entries[k].key);
-    param_hint((enum section_id)id, e->key, &near, hint);
+    const char *const hint = param_hint((enum section_id)id, e->key, &near);
     return bad_entry(r, "unknown %s `%.60s`%s", *prefix || *hint ? "key" : "key or constant",
                      e->key, hint);
 }
@@ -265,8 +251,6 @@ static enum err find_target(struct reader *r, const char *prefix, int *target)
 static void put_entry(struct reader *r, struct entry e)
 {
     int kept = 0;
-    const struct entry *const old = case_entry(r, e.section, e.key);
-    if (old) e.replaces = old->set ? old->replaces : old->value;
     for (int k = 0; k < r->n_entries; k++)
         if (r->entries[k].section != e.section || strcmp(r->entries[k].key, e.key) != 0)
             r->entries[kept++] = r->entries[k];

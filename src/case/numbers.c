@@ -84,17 +84,6 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
     return good;
 }
 
-/* A unit followed by digits, as in kg/m3: then as it is written, m^3. */
-static bool unit_with_power(const char *name, char unit[EXPR_NAME])
-{
-    const size_t length = strcspn(name, "0123456789");
-    snprintf(unit, EXPR_NAME, "%.*s", (int)length, name);
-    if (!name[length] || name[length + strspn(name + length, "0123456789")] || !unit_known(unit))
-        return false;
-    snprintf(unit, EXPR_NAME, "%.*s^%.*s", (int)length, name, 8, name + length);
-    return true;
-}
-
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY])
 {
     struct reader *const r = context;
@@ -111,11 +100,8 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     }
     r->cause_named |= r->incomplete; /* it may be defined in an invalid line */
     struct nearest near = {0};
-    char unit[EXPR_NAME];
     for (int k = 0; k < r->n_constants; k++) nearest_offer(&near, name, r->constants[k].entry->key);
-    if (unit_with_power(name, unit))
-        snprintf(why, EXPR_WHY, "unknown name `%s`; did you mean the unit `%s`?", name, unit);
-    else if (strcmp(name, "t") == 0)
+    if (strcmp(name, "t") == 0)
         snprintf(why, EXPR_WHY,
                  "unknown name `t`: the time is known only in keys that take an expression in t "
                  "(of a [motion]: `velocity`, `x`, `y`, `turn`)");
@@ -125,35 +111,11 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     return false;
 }
 
-/* For the end of a message about quantities that do not fit: a --set that leaves out the unit which
- * a constant has in the file; or "". */
-static const char *unit_left_out(struct reader *r, char text[300])
-{
-    const struct expr_names names = {r, case_name, EXPR_FIXED};
-    for (int k = 0; k < r->n_constants; k++) {
-        struct constant *const c = &r->constants[k];
-        const struct entry *const e = c->entry;
-        struct quantity before;
-        char why[EXPR_WHY];
-        if (!e->replaces || !evaluate_constant(r, c, why) || c->q.dim.kind != DIM_PLAIN ||
-            !expr_value(slice_of(e->replaces), &names, &before, why) ||
-            before.dim.kind != DIM_KNOWN)
-            continue;
-        snprintf(text, 300, "; --set %.60s has no unit, but the case has `%.60s = %.60s`: give one",
-                 e->set, e->key, e->replaces);
-        return text;
-    }
-    return "";
-}
-
 /* A consequence of a problem already reported is not reported again. */
 enum err case_bad_expression(struct reader *r, const char *why)
 {
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
-    char unit[300];
-    const bool slashes = strstr(r->entry->value, "//") && !strstr(why, "comment");
-    return bad_value(r, "%s%s%s", why, unit_left_out(r, unit),
-                     slashes ? "; `//` begins no comment here, # does" : "");
+    return bad_value(r, "%s", why);
 }
 
 enum err case_all_constants(struct reader *r)
@@ -184,11 +146,11 @@ enum err case_all_constants(struct reader *r)
 enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit)
 {
     const struct dim expected = unit_dim(unit);
-    char have[DIM_TEXT], want[DIM_TEXT], left_out[300];
+    char have[DIM_TEXT], want[DIM_TEXT];
     if (dim_fits(dim, unit)) return ERR_OK;
     dim_text(dim, have);
     dim_text(&expected, want);
-    return bad_value(r, "%s where %s is expected%s", have, want, unit_left_out(r, left_out));
+    return bad_value(r, "%s where %s is expected", have, want);
 }
 
 enum err case_number(struct reader *r, struct slice text, const char *unit, double *value)

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #define WHERE_0(section) offsetof(struct scene, section), 0
 #define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
@@ -191,88 +190,17 @@ const char *nearest_hint(struct nearest *near)
     return near->hint;
 }
 
-/* Whether a list of words has a word, or several in a row, in any case of its letters. */
-static bool lists(const char *words, const char *separators, const char *word)
+const char *param_hint(enum section_id section, const char *word, struct nearest *near)
 {
-    const size_t length = strlen(word);
-    for (; *words; words += strcspn(words, separators), words += strspn(words, separators))
-        if (strncasecmp(words, word, length) == 0 &&
-            (!words[length] || strchr(separators, words[length])))
-            return true;
-    return false;
-}
-
-bool has_usual_name(const char *key, const char *word)
-{
-    static const struct {
-        const char *key, *names;
-    } usual[] = {
-        {"young", "e modulus youngs_modulus young_modulus elastic_modulus"},
-        {"poisson", "nu poisson_ratio"},
-        {"density", "rho rho0"},
-        {"sound_speed", "c0 speed_of_sound"},
-        {"dp", "spacing particle_spacing dx resolution"},
-        {"fixed_step", "dt time_step timestep"},
-        {"end_time", "duration t_end tmax"},
-        {"gravity", "g"},
-        {"artificial_viscosity", "alpha"},
-        {"density_diffusion", "delta"},
-        {"laminar_viscosity", "mu"},
-        {"snapshot_interval", "snapshots"},
-        {"clamp", "fixed fix"},
-        {"law", "material model"},
-        {"surface", "water_level height"},
-        {"shape", "geometry region"},
-        {"motion", "movement"},
-        {"point", "position location"},
-        {"kind", "type"},
-        {"quantity", "variable"},
-        {"cfl", "courant"},
-        /* sections */
-        {"fluid", "water liquid"},
-        {"solid", "body structure"},
-        {"beam", "plate shell rod frame"},
-        {"wall", "boundary tank rigid"},
-        {"load", "force"},
-        {"probe", "gauge sensor"},
-        {"constants", "parameters variables"},
-        {"numerics", "solver"},
-        {"inflow", "inlet"},
-        {"outflow", "outlet"},
-    };
-    for (size_t k = 0; k < COUNT_OF(usual); k++)
-        if (strcmp(usual[k].key, key) == 0) return lists(usual[k].names, " ", word);
-    return false;
-}
-
-const char *param_hint(enum section_id section, const char *word, struct nearest *near,
-                       char hint[PARAM_HINT])
-{
-    const struct param *named = NULL, *elsewhere = NULL;
-    size_t used = 0;
-    for (int k = 0; k < PARAM_COUNT && used + SCENE_NAME < PARAM_HINT; k++) {
-        const struct param *const param = &param_table[k];
-        const bool usual = has_usual_name(param->key, word);
-        if (usual && !named) named = param;
-        if (strcmp(param->key, word) == 0 && !elsewhere) elsewhere = param;
-        if (param->section != section) continue;
-        nearest_offer(near, word, param->key);
-        if (usual || lists(param->key, "_", word))
-            used += (size_t)snprintf(hint + used, PARAM_HINT - used, "%s`%s`",
-                                     used ? " or " : "; did you mean ", param->key);
+    const struct param *other = NULL;
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        if (param_table[k].section == section) nearest_offer(near, word, param_table[k].key);
+        if (!other && strcmp(param_table[k].key, word) == 0) other = &param_table[k];
     }
-    const struct param *const other = named ? named : elsewhere;
-    const bool top = other && other->section == SECTION_top;
-    if (used)
-        strcat(hint, "?");
-    else if (!other)
-        snprintf(hint, PARAM_HINT, "%s", nearest_hint(near));
-    else if (named)
-        snprintf(hint, PARAM_HINT, "; did you mean `%s` %s%s%s?", other->key,
-                 top ? "at the top" : "in [", top ? "" : section_table[other->section].word,
-                 top ? "" : "]");
-    else
-        snprintf(hint, PARAM_HINT, "; it belongs %s%s%s", top ? "at the top of the file" : "in [",
-                 top ? "" : section_table[other->section].word, top ? "" : "]");
-    return hint;
+    if (!other) return nearest_hint(near);
+    const bool top = other->section == SECTION_top;
+    snprintf(near->hint, sizeof near->hint, "; it belongs %s%s%s",
+             top ? "at the top of the file" : "in [", top ? "" : section_table[other->section].word,
+             top ? "" : "]");
+    return near->hint;
 }

@@ -128,14 +128,8 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
 /* "; did you mean `name`?" or "". */
 const char *nearest_hint(struct nearest *near);
 
-/* Whether other programs or textbooks call a key or a section by this word. */
-bool has_usual_name(const char *key, const char *word);
-
-/* Writes what an unknown key of a section may mean, for the end of a message; returns `hint`, which
- * may be "". Candidates: keys that contain the word, as artificial_viscosity contains viscosity;
- * usual names; keys of other sections; the nearest key, or one that `near` brings. */
-enum { PARAM_HINT = 300 };
-const char *param_hint(enum section_id section, const char *word, struct nearest *near,
-                       char hint[PARAM_HINT]);
+/* What an unknown key of a section may mean, for the end of a message; it may be "": the section
+ * that has it, or the nearest key of its own, or of those that `near` brings. */
+const char *param_hint(enum section_id section, const char *word, struct nearest *near);
 
 #endif

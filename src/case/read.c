@@ -93,13 +93,13 @@ static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
 
 static enum err unknown_key(struct reader *r, int id)
 {
-    char hint[PARAM_HINT], title[TITLE_TEXT];
+    char title[TITLE_TEXT];
     struct nearest near = {0};
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
     r->incomplete = true;
     return bad_entry(r, "unknown key `%s` %s%s", r->entry->key,
                      id == SECTION_top ? "at the top of the file" : title,
-                     param_hint((enum section_id)id, r->entry->key, &near, hint));
+                     param_hint((enum section_id)id, r->entry->key, &near));
 }
 
 static enum err read_section(struct reader *r, int section)

@@ -171,12 +171,8 @@ static bool parse_number(struct compiler *c, struct dim *dim)
     c->why[0] = '\0';
     if ((next == '%' || isalpha(next) || next == '_') && !unit_read(&c->rest, &q, c->why)) {
         const struct slice word = slice_identifier(c->rest);
-        const char *const near = unit_nearest(word);
         const int shown = (int)(word.length < 40 ? word.length : 40);
         if (c->why[0]) return false;
-        if (near)
-            return fail(c, "`%.*s` after %s is not a unit; did you mean `%s`?", shown, word.at,
-                        digits, near);
         return fail(c,
                     "`%.*s` after %s is not a unit (units: m km cm mm um, s min ms us, kg g, N, "
                     "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
@@ -253,17 +249,17 @@ static bool unexpected(struct compiler *c, int ch, const char *expected)
 {
     const char *const at = c->rest.at;
     const int before = at > c->start ? (unsigned char)at[-1] : 0;
-    char rest[5] = "";
-    memcpy(rest, at, c->rest.length < 4 ? c->rest.length : 4);
-    const char *const strange = strange_character(rest);
-    if (ch >= 0x80 && strange) return fail(c, "%s is expected, not %s", expected, strange);
-    if (ch == ',' && isdigit(before) && isdigit((unsigned char)rest[1])) /* as in 0,005 */
+    const int after = c->rest.length > 1 ? (unsigned char)at[1] : 0;
+    if (ch == ',' && isdigit(before) && isdigit(after)) /* as in 0,005 */
         return fail(c, "`,` where %s is expected; a decimal number is written with a point: 0.005",
                     expected);
     if (ch == '/' && before == '/')
         return fail(c, "`//` where %s is expected; a comment begins with #", expected);
     if (isprint(ch)) return fail(c, "`%c` where %s is expected", ch, expected);
-    return fail(c, "a character outside ASCII (byte %d) where %s is expected", ch, expected);
+    return fail(c,
+                "a character outside ASCII, such as a no-break space, a typographic minus or a "
+                "micro sign, where %s is expected",
+                expected);
 }
 
 static bool parse_primary(struct compiler *c, struct dim *dim)

@@ -111,8 +111,6 @@ const char *expr_reserved(const char *name);
  * a wrong one, then `why` is written. */
 bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
 bool unit_known(const char *name);
-/* The unit with the same letters but different capitals, or NULL. */
-const char *unit_nearest(struct slice name);
 /* Dimension of a unit of case/params.def. */
 struct dim unit_dim(const char *unit);
 
@@ -138,8 +136,5 @@ struct slice slice_identifier(struct slice s);
 size_t number_length(struct slice s);
 /* Hint for a message on the count of numbers if a comma stands between digits; otherwise "". */
 const char *comma_hint(const char *value);
-/* The first character that resembles an ASCII one, with its replacement: "a no-break space; write a
- * blank". NULL: there is none. */
-const char *strange_character(const char *text);
 
 #endif

@@ -71,30 +71,3 @@ const char *comma_hint(const char *value)
                    "0.005";
     return "";
 }
-
-const char *strange_character(const char *text)
-{
-    static const struct {
-        const char *bytes, *what;
-    } strange[] = {
-        {"\xE2\x88\x92", "a Unicode minus; write -"},
-        {"\xE2\x80\x93", "a dash; write -"},
-        {"\xE2\x80\x94", "a dash; write -"},
-        {"\xC2\xA0", "a no-break space; write an ordinary space"},
-        {"\xE2\x80\xAF", "a narrow no-break space; write an ordinary space"},
-        {"\xE2\x80\x89", "a thin space; write an ordinary space"},
-        {"\xC3\x97", "a multiplication sign; write *"},
-        {"\xC2\xB7", "a multiplication dot; write *"},
-        {"\xE2\x8B\x85", "a multiplication dot; write *"},
-        {"\xC2\xB2", "a superscript 2; write ^2"},
-        {"\xC2\xB3", "a superscript 3; write ^3"},
-        {"\xC2\xB5", "a micro sign; write u, as in um"},
-        {"\xCE\xBC", "a Greek mu; write u, as in um"},
-        {"\xC2\xB0", "a degree sign; write deg"},
-    };
-    for (; *text; text++)
-        for (size_t k = 0; k < COUNT_OF(strange); k++)
-            if (strncmp(text, strange[k].bytes, strlen(strange[k].bytes)) == 0)
-                return strange[k].what;
-    return NULL;
-}

@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 /* A unit is up/down SI units. Two whole numbers, so that 140 mm is the same double as 0.14. */
 static const struct unit {
@@ -51,24 +50,16 @@ static const struct {
     {{1, -2, -2}, "a force per volume (N/m^3)"},
 };
 
-/* `same`: strncmp or strncasecmp. */
-static const struct unit *find_unit(struct slice name,
-                                    int (*same)(const char *a, const char *b, size_t length))
+static const struct unit *find_unit(struct slice name)
 {
     for (size_t k = 0; k < COUNT_OF(units); k++)
         if (strlen(units[k].symbol) == name.length &&
-            same(units[k].symbol, name.at, name.length) == 0)
+            memcmp(units[k].symbol, name.at, name.length) == 0)
             return &units[k];
     return NULL;
 }
 
-const char *unit_nearest(struct slice name)
-{
-    const struct unit *const unit = find_unit(name, strncasecmp);
-    return unit ? unit->symbol : NULL;
-}
-
-bool unit_known(const char *name) { return find_unit(slice_of(name), strncmp) != NULL; }
+bool unit_known(const char *name) { return find_unit(slice_of(name)) != NULL; }
 
 /* The number behind ^, or 1 if there is no ^. */
 static bool read_power(struct slice *text, double *power, char why[EXPR_WHY])
@@ -111,7 +102,7 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
         *text = slice_after(rest, 1);
         return true;
     }
-    const struct unit *u = find_unit(slice_identifier(rest), strncmp);
+    const struct unit *u = find_unit(slice_identifier(rest));
     const bool found = u != NULL;
     for (double power, sign = 1; u;) {
         rest = slice_after(rest, strlen(u->symbol));
@@ -122,7 +113,7 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
         if (!rest.length || (*rest.at != '/' && *rest.at != '*')) break;
         sign = *rest.at == '/' ? -1 : 1;
         rest = slice_trimmed(slice_after(rest, 1));
-        u = find_unit(slice_identifier(rest), strncmp);
+        u = find_unit(slice_identifier(rest));
         /* Not g, which alone usually means the gravitational acceleration (no other unit symbol
          * may name a constant), nor the function min. */
         const struct slice next = slice_trimmed(slice_after(rest, u ? strlen(u->symbol) : 0));

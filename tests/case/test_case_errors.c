@@ -28,11 +28,7 @@ static const struct {
      "bad.cfg:1: `title` has text after the closing quote; a comment begins with #"},
     {"2dp = 1\n", NULL,
      "bad.cfg:1: `2dp` is not a valid key: a key has up to 63 letters, digits and _"},
-    {TOP "[water]\n", NULL, "bad.cfg:3: unknown section [water]; did you mean [fluid NAME]?"},
-    {"fluid w\n", NULL,
-     "bad.cfg:1: `fluid w` is neither `key = value` nor `[section]`; write the section in "
-     "brackets"},
-    {"dp: 1\n", NULL, "bad.cfg:1: `dp: 1` is neither `key = value` nor `[section]`; write = for :"},
+    {"fluid w\n", NULL, "bad.cfg:1: `fluid w` is neither `key = value` nor `[section]`"},
     {TOP "[numerics]\nintegrator = verlet\n" SOLID, NULL,
      "bad.cfg:4: unknown key `integrator` in [numerics]; it belongs at the top of the file"},
     {TOP "friction = 0.3\n" SOLID, NULL,
@@ -44,28 +40,22 @@ static const struct {
      "fluid, wall, solid, rigid, beam, spring, damping, contact, load, motion, inflow, outflow, "
      "probe, "
      "reference"},
-    {TOP "[fluid w]\nviscosity = 1\n", NULL,
-     "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
-     "`laminar_viscosity`?"},
-    {TOP "[solid a]\nE = 1 MPa\n", NULL,
-     "bad.cfg:4: unknown key `E` in [solid]; did you mean `young`?"},
     {TOP SOLID, "a.young=1 Mpa",
-     "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` after 1 is not a unit; did you mean `MPa`?"},
+     "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` after 1 is not a unit (units: m km cm mm um"},
     {"dp = \xE2\x88\x92"
      "1 mm\n",
      NULL,
      "bad.cfg:1: dp = \xE2\x88\x92"
-     "1 mm: a value is expected, not a Unicode minus; write -"},
+     "1 mm: a character outside ASCII, such as a no-break space, a typographic minus or a micro "
+     "sign, where a value is expected"},
     {"dp = 1\xC2\xA0mm\n", NULL,
-     "bad.cfg:1: dp = 1\xC2\xA0mm: an operator is expected, not a no-break space; write an "
-     "ordinary space"},
+     "bad.cfg:1: dp = 1\xC2\xA0mm: a character outside ASCII, such as a no-break space, a "
+     "typographic minus or a micro sign, where an operator is expected"},
     {"\xC2\xA0"
      "dp = 1 mm\n",
      NULL,
      "bad.cfg:1: `\xC2\xA0"
-     "dp` has a no-break space; write an ordinary space"},
-    {"dp = 5 \xC2\xB5m\n", NULL,
-     "bad.cfg:1: dp = 5 \xC2\xB5m: an operator is expected, not a micro sign; write u, as in um"},
+     "dp` is not a valid key: a key has up to 63 letters, digits and _"},
     {"dp = 0,005\n", NULL,
      "bad.cfg:1: dp = 0,005: `,` where an operator is expected; a decimal number is written with a "
      "point: 0.005"},
@@ -78,8 +68,7 @@ static const struct {
      "comma separates numbers, and a decimal number is written with a point: 0.005"},
     {"dp = 1 mm // spacing\n", NULL,
      "bad.cfg:1: dp = 1 mm // spacing: `//` where a value is expected; a comment begins with #"},
-    {"// a comment\n", NULL,
-     "bad.cfg:1: `// a comment` is neither `key = value` nor `[section]`; a comment begins with #"},
+    {"// a comment\n", NULL, "bad.cfg:1: `// a comment` is neither `key = value` nor `[section]`"},
     {TOP SOLID, "a.young=3 kg*m/s^5",
      "--set a.young=3 kg*m/s^5: young = 3 kg*m/s^5: a quantity in kg m/s^5 where a pressure (Pa) "
      "is expected"},
@@ -321,7 +310,7 @@ static const struct {
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
      "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
     {TOP FLUID "density = 1000 kg/m3\n", NULL,
-     "bad.cfg:6: density = 1000 kg/m3: unknown name `m3`; did you mean the unit `m^3`?"},
+     "bad.cfg:6: density = 1000 kg/m3: unknown name `m3`; define it in [constants]"},
     {TOP FLUID "[probe S]\nquantity = surface_pressure\npoint = 0, 0\nto = 0, 0\n", NULL,
      "bad.cfg:6: [probe S] measures the pressure on the line from `point` to `to`; the two"},
     {TOP FLUID "[probe Q]\nquantity = flux\npoint = 0, 0\nto = 0, 0\n", NULL,
@@ -412,7 +401,6 @@ static const struct {
     {TOP SOLID, "friction=1", "--set friction=1: unknown key `friction`; it belongs in [contact]"},
     {TOP SOLID, "output.young=1",
      "--set output.young=1: unknown key `young`; it belongs in [solid]"},
-    {TOP SOLID, "a.E=1 MPa", "--set a.E=1 MPa: unknown key `E`; did you mean `young`?"},
 };
 
 void setUp(void) {}

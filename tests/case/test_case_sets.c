@@ -40,7 +40,6 @@ static const struct {
     {TOP SOLID, "a.zzzzzzzzzzz=1e6", "unknown key `zzzzzzzzzzz`"},
     {TOP SOLID, "zzzzzzzzzzz=1e6", "unknown key or constant `zzzzzzzzzzz`"},
     {TOP SOLID, "yield=1e6", "did you mean `title`?"},
-    {TOP SOLID, "a.viscosity=1", "did you mean `artificial_viscosity` or `viscosity_form`?"},
     {TOP SOLID WATER, "artificial_viscosity=1", "write `a.artificial_viscosity`"},
     {TOP SOLID, ".young=1e6", "write key=value or section.key=value"},
     {TOP SOLID, LONG "=1", "write key=value or section.key=value"},
@@ -48,8 +47,6 @@ static const struct {
     {TOP SOLID, "a.young=1\001", "control byte 1"},
     {TOP SOLID, "1a.young=1", "the case has no section `1a`"},
     {TOP "[constant]\nA = 1\n" SOLID, NULL, "did you mean [constants]?"},
-    {TOP "[variables]\nA = 1\n" SOLID, NULL, "did you mean [constants]?"},
-    {TOP "[structure b]\nA = 1\n" SOLID, NULL, "did you mean [solid NAME]?"},
     {TOP "[zzzzzzzzzz]\nA = 1\n" SOLID, NULL, "known: constants, numerics"},
     /* Numbers and units. */
     {TOP SOLID, "dp=1.2.3 mm", "`1.2.3` is not a number"},

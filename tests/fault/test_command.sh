@@ -19,8 +19,6 @@ for name in $names; do
     "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] ||
         fail "--preview $name"
 done
-refuses 1 '--set H=0.15 has no unit, but the case has `H = 0.3 m`: give one' dam_break.cfg \
-    --set H=0.15
 # A bonded body does not move freely.
 cat >bonded.cfg <<'END'
 dp = 5 mm
