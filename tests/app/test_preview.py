@@ -146,7 +146,7 @@ def check(picture):
                                             "E 1e+06 Pa, nu 0.4; 16 clamped (dark)")
     assert picture.listed("solid kite").startswith("solid kite: 0.066 x 0.066 m, 25")
     assert "25 particles; 900 kg/m^3" in picture.listed("solid kite")
-    assert picture.listed("solid kite").endswith("; nothing clamped")
+    assert picture.listed("solid kite").endswith("; 0 clamped (dark)")
     assert picture.listed("probe rise") == "probe rise: level at (0.05, 0) m"
     assert picture.listed("probe through") == "probe through: flux from (0.1, 0) to (0.15, 0.1) m"
 

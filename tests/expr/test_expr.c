@@ -140,7 +140,9 @@ static void test_what_makes_no_sense(void)
     wrong("the power of a length (m); it needs a number without a unit", "2^L");
     wrong("the exponent of a unit must be a number from -9 to 9", "2 m^99");
     wrong("a quantity with a unit has an exponent outside the range -9 to 9", "L^99");
-    wrong("a character outside ASCII (byte 200) where an operator is expected", "2\xC8");
+    wrong("a character outside ASCII, such as a no-break space, a typographic minus or a micro "
+          "sign, where an operator is expected",
+          "2\xC8");
     wrong("`x` is known only in keys that take an expression in x and y", "x");
     wrong("unknown name `q`", "q");
     wrong("unknown function `L`", "L(2)");
