@@ -62,8 +62,7 @@ static void warn_of_damping(const struct simulation *sim, struct diag *d)
     }
 }
 
-/* Bounds below a tenth of the step that sound waves would allow: of the fluid's laws; a body that
- * is light, or one that steps together with the fluid. */
+/* Bounds below a tenth of the step that sound waves would allow. */
 static void warn_of_bounds(const struct simulation *sim, struct diag *d)
 {
     static const struct {
@@ -87,24 +86,6 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
                 "much. The run becomes longer by this factor; a %s %s may help",
                 owner[k].key, bound, acoustic / bound, owner[k].change, owner[k].key);
     }
-    const double added = sim->dt_bound[BOUND_added_mass], solid = sim->dt_bound[BOUND_solid];
-    if (sim->effects & FX_COUPLING && added > 0 && added < 0.1 * acoustic) {
-        int lightest;
-        coupling_added_mass_step(&sim->coupling, &lightest);
-        const struct scene_solid *const body = &scene->solid[lightest];
-        warn_at(
-            d, scene, scene_line(scene, SECTION_solid, lightest, "density"),
-            "[solid %s] is %.3g times as dense as the fluid, so it limits the time step to %.3g s, "
-            "while sound waves would allow %.3g times as much; a denser body shortens the run",
-            body->common.name, body->density / scene->rho0, added, acoustic / added);
-    }
-    if (sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE) && solid > 0 &&
-        solid < 0.1 * acoustic && scene->numerics.multirate == MULTIRATE_OFF)
-        warn_at(
-            d, scene, scene_line(scene, SECTION_numerics, 0, "multirate"),
-            "the solid limits the time step of the fluid to %.3g s, while sound waves would allow "
-            "%.3g times as much. numerics.multirate = auto gives the solid steps of its own",
-            solid, acoustic / solid);
 }
 
 static void warn_of_precision(const struct simulation *sim, struct diag *d)

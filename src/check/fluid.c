@@ -60,29 +60,21 @@ static enum err warn_of_missing_floor(struct check *check)
 
 /* --- `surface`: gravity along -y, and water up to that height --- */
 
-/* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank
- * may be shaken. The mean over the run is by the midpoint rule. Fluid with nothing above it, more
- * than one spacing below the surface, begins under pressure. */
+/* Gravity at t = 0 sets the initial pressure. Fluid with nothing above it, more than one spacing
+ * below the surface, begins under pressure. */
 static void warn_of_surface(struct check *check, int f)
 {
-    enum { TIMES = 1000 };
     const struct scene *const scene = check->scene;
     const struct points *const p = &check->points;
     const struct scene_fluid *const fluid = &scene->fluid[f];
     const double dp = scene->top.dp, up[2] = {0, 0.9};
-    double mean = 0, gravity[2], top = -HUGE_VAL, lowest = HUGE_VAL;
+    double top = -HUGE_VAL, lowest = HUGE_VAL;
     int64_t above = 0;
-    for (int n = 0; n < TIMES; n++) {
-        scene_gravity_at(scene, scene->top.end_time * (n + 0.5) / TIMES, gravity);
-        mean += gravity[1] / TIMES;
-    }
-    if (max2(scene->top.gravity[1], mean) > 1e-9)
-        warn_at(
-            check->diag, check->scene, fluid->common.line,
-            "`surface`, but gravity points upwards, by %.3g m/s^2 at t = 0 and %.3g on average: "
-            "the water will rise from its tank; gravity that points down has a negative second "
-            "component",
-            scene->top.gravity[1], mean);
+    if (scene->top.gravity[1] > 0)
+        warn_at(check->diag, check->scene, fluid->common.line,
+                "[fluid %s] has a `surface`, but gravity points upwards, by %.3g m/s^2 at t = 0; "
+                "gravity that points down has a negative second component",
+                fluid->common.name, scene->top.gravity[1]);
     for (int64_t k = 0; k < p->n; k++) {
         if (p->bit[k] != POINT_FLUID || p->section[k] != f) continue;
         above += p->y[k] > fluid->surface;
@@ -325,38 +317,16 @@ static bool has_surface(const struct check *check)
 
 /* --- probes --- */
 
-/* The corners of the square of side dp around a point. */
-static void corner_around(const struct check *check, const double at[2], int corner, double to[2])
-{
-    const double side = 0.5 * check->scene->top.dp;
-    to[0] = at[0] + (corner & 1 ? side : -side);
-    to[1] = at[1] + (corner & 2 ? side : -side);
-}
-
 /* Whether the point is in walls or solids, more than half a spacing from their faces, i.e. deeper
  * than the outermost particle reaches. */
 static bool is_buried(const struct check *check, const double at[2])
 {
-    for (int corner = 0; corner < 4; corner++) {
-        double to[2];
-        corner_around(check, at, corner, to);
-        if (drawn_at(check, to[0], to[1]) < 0) return false;
-    }
+    const double side = 0.5 * check->scene->top.dp;
+    for (int corner = 0; corner < 4; corner++)
+        if (drawn_at(check, at[0] + (corner & 1 ? side : -side),
+                     at[1] + (corner & 2 ? side : -side)) < 0)
+            return false;
     return true;
-}
-
-/* Whether nothing but gravity drives the fluid, so that it rises above its top by splashes only,
- * and the point is more than 2 h above all fluid. */
-static bool is_in_air(const struct scene *scene, const double at[2])
-{
-    const struct scene_points *const p = &scene->points[KIND_FLUID];
-    const double *const g = scene->top.gravity, size = elementary_hypot(g[0], g[1]);
-    bool air = scene_open_count(scene) == 0 && scene->n_motion == 0 &&
-               !scene_gravity_varies(scene) && size > 0 && p->n > 0;
-    for (int k = 0; k < scene->n_fluid; k++) air &= !scene->fluid[k].velocity.e[0];
-    for (int64_t k = 0; k < p->n && air; k++)
-        air = dot(g, p->x[k] - at[0], p->y[k] - at[1]) > 2 * scene->h * size;
-    return air;
 }
 
 /* A value at a point is a mean over the fluid within 2 h. */
@@ -375,81 +345,7 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
                 "[probe %s] point = %g, %g lies inside a wall or solid, where there is no "
                 "fluid, so %s; move it to the face",
                 probe->common.name, at[0], at[1], value);
-    } else if (probe->quantity == PROBE_PRESSURE && is_in_air(scene, at))
-        warn_at(check->diag, check->scene, probe->common.line,
-                "[probe %s] point = %g, %g lies in the air, above all fluid, so its "
-                "pressure is 0 unless a splash reaches it; move it into the fluid",
-                probe->common.name, at[0], at[1]);
-}
-
-/* Whether a wall has a part within half a spacing of a point along each axis. */
-static bool wall_is_at(const struct check *check, int wall, const double at[2])
-{
-    const struct region *const region = &check->shapes.regions[check->scene->n_solid + wall];
-    for (int corner = 0; corner < 4; corner++) {
-        double to[2];
-        corner_around(check, at, corner, to);
-        if (geometry_covers(region, to[0], to[1])) return true;
     }
-    return false;
-}
-
-enum { TIMES_IN_RUN = 16 };
-
-/* The k-th of some times in the run, s. By the golden ratio, so that no period divides them. */
-static double time_in_run(const struct scene *scene, int k)
-{
-    const double part = 0.6180339887498949 * k;
-    return scene->top.end_time * (part - floor(part));
-}
-
-/* Whether a wall at a point is elsewhere at one of these times. A lid that slides along itself, or
- * a drum that turns about its axis, is not. */
-static bool wall_leaves(const struct check *check, int wall, const double at[2])
-{
-    const struct scene *const scene = check->scene;
-    const int motion = scene_find_motion(scene, scene->wall[wall].motion);
-    for (int k = 1; k <= TIMES_IN_RUN && motion >= 0; k++) {
-        const struct motion_state m = motion_at(scene, motion, time_in_run(scene, k));
-        const double x = at[0] - m.centre[0] - m.d[0], y = at[1] - m.centre[1] - m.d[1];
-        const double cosine = m.angle == 0 ? 1 : m.turn[0], sine = m.angle == 0 ? 0 : m.turn[1];
-        const double before[2] = {m.centre[0] + cosine * x + sine * y,
-                                  m.centre[1] - sine * x + cosine * y};
-        if (!wall_is_at(check, wall, before)) return true;
-    }
-    return false;
-}
-
-/* The wall that is at a point now and leaves it, unless one that stays is there too; -1: none. */
-static int leaving_wall(const struct check *check, const double at[2])
-{
-    int found = -1;
-    for (int k = 0; k < check->scene->n_wall; k++) {
-        if (!wall_is_at(check, k, at)) continue;
-        if (!wall_leaves(check, k, at)) return -1;
-        found = k;
-    }
-    return found;
-}
-
-/* The pressure at a wall that moves away is hardly meant to be that of the place where it once
- * was. */
-static void warn_of_fixed_probe(struct check *check, const struct scene_probe *probe)
-{
-    const bool face = probe->quantity == PROBE_SURFACE_PRESSURE;
-    if ((probe->quantity != PROBE_PRESSURE && !face) || *probe->on) return;
-    int wall = -1;
-    for (int k = face ? 1 : 0; k < (face ? 4 : 1) && wall < 0; k++) {
-        const double at[2] = {probe->point[0] + 0.25 * k * (probe->to[0] - probe->point[0]),
-                              probe->point[1] + 0.25 * k * (probe->to[1] - probe->point[1])};
-        if (!is_buried(check, at)) wall = leaving_wall(check, at);
-    }
-    if (wall < 0) return;
-    const char *const name = check->scene->wall[wall].common.name;
-    warn_at(check->diag, check->scene, probe->common.line,
-            "[probe %s] stays in place while [wall %s], at which it begins, moves away; `on = %s` "
-            "moves it with the wall",
-            probe->common.name, name, name);
 }
 
 /* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and
@@ -464,13 +360,13 @@ static void warn_of_turning(struct check *check)
         const struct scene_wall *const w = b ? NULL : &scene->wall[k - scene->n_solid];
         const struct scene_section_common *const common = b ? &b->common : &w->common;
         const int motion = b ? -1 : scene_find_motion(scene, w->motion);
-        bool turns = b && b->clamp.n == 0, asked = b;
+        const struct scene_motion *const m = motion < 0 ? NULL : &scene->motion[motion];
+        const bool turns = b ? b->clamp.n == 0 : m && (m->kind == MOTION_ROTATION || m->turn.e[0]);
+        bool asked = b;
         char name[SCENE_TEXT];
-        for (int n = 1; n <= TIMES_IN_RUN && motion >= 0; n++)
-            turns |= motion_at(scene, motion, time_in_run(scene, n)).angle != 0;
-        for (int m = 0; m < scene->n_probe && !b; m++)
-            for (int n = 0; scene_listed(scene->probe[m].body, n, name); n++)
-                asked |= scene->probe[m].quantity == PROBE_FORCE && strcmp(name, common->name) == 0;
+        for (int p = 0; p < scene->n_probe && !b; p++)
+            for (int n = 0; scene_listed(scene->probe[p].body, n, name); n++)
+                asked |= scene->probe[p].quantity == PROBE_FORCE && strcmp(name, common->name) == 0;
         if (turns && asked && (b ? b->slip : w->slip) == SLIP_NONE)
             warn_at(
                 check->diag, check->scene, common->line,
@@ -549,10 +445,7 @@ enum err warn_of_fluid(struct check *check)
         warn_of_level(check, &o);
     }
     if (scene->full) warn_of_balance(check);
-    for (int k = 0; k < scene->n_probe; k++) {
-        warn_of_fixed_probe(check, &scene->probe[k]);
-        warn_of_dry_probe(check, &scene->probe[k]);
-    }
+    for (int k = 0; k < scene->n_probe; k++) warn_of_dry_probe(check, &scene->probe[k]);
     warn_of_turning(check);
     warn_of_drift(check);
     warn_of_streamlines(check);

@@ -90,73 +90,19 @@ static enum err warn_of_loose_bodies(struct check *check)
 
 /* --- clamps --- */
 
-/* Fewer rows than a body needs across. */
-enum { RESOLVED_ROWS = 4 };
-
-/* How many rows of particles beside its clamps a body has free; RESOLVED_ROWS: these or more. */
-static int free_rows(const struct scene *scene, const struct point_grid *clamped, int body)
+static void warn_of_full_clamp(struct check *check, int body)
 {
-    const struct scene_points *const p = &scene->points[KIND_SOLID];
-    const double dp = scene_solid_dp(scene, body);
-    int rows = 0;
-    for (int64_t k = 0; k < p->n && rows < RESOLVED_ROWS; k++) {
-        if (p->body[k] != body || p->clamped[k]) continue;
-        for (bool held = false; rows < RESOLVED_ROWS; rows++, held = false) {
-            struct point_visit v = point_grid_visit(clamped, p->x[k], p->y[k], (rows + 0.5) * dp);
-            while (!held && point_grid_next(clamped, &v)) held = p->body[v.k] == body;
-            if (held) break;
-        }
+    const struct scene_points *const p = &check->scene->points[KIND_SOLID];
+    long long all = 0, held = 0;
+    for (int64_t k = 0; k < p->n; k++) {
+        all += p->body[k] == body;
+        held += p->body[k] == body && p->clamped[k];
     }
-    return rows;
-}
-
-static enum err warn_of_full_clamps(struct check *check)
-{
-    const struct scene *const scene = check->scene;
-    const struct scene_points *const p = &scene->points[KIND_SOLID];
-    struct point_grid clamped;
-    TRY(point_grid_create(&clamped, (RESOLVED_ROWS + 0.5) * scene->top.dp, p->n, p->x, p->y,
-                          &check->shapes.temp, check->diag));
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->clamped[k]) point_grid_insert(&clamped, k);
-    for (int body = 0; body < scene->n_solid; body++) {
-        const char *const name = scene->solid[body].common.name;
-        const int line = scene_line(scene, SECTION_solid, body, "clamp");
-        long long all = 0, held = 0;
-        for (int64_t k = 0; k < p->n; k++) {
-            all += p->body[k] == body;
-            held += p->body[k] == body && p->clamped[k];
-        }
-        if (held == 0) continue;
-        const int rows = free_rows(scene, &clamped, body);
-        if (rows >= RESOLVED_ROWS || (rows > 0 && scene_is_bonded(scene, body))) continue;
-        warn_at(check->diag, check->scene, line,
-                "`clamp` leaves %d row%s of particles of [solid %s] free, %lld of %lld particles, "
-                "so %s; make the clamp smaller, or use %s",
-                rows, rows == 1 ? "" : "s", name, all - held, all,
-                rows == 0   ? "it cannot deform"
-                : rows == 1 ? "they move, but the body can neither bend nor stretch as drawn"
-                            : "what bends or stretches there is inaccurate",
-                rows == 0 ? "a [wall], which is faster" : "a finer dp, for 4 rows or more");
-    }
-    return ERR_OK;
-}
-
-/* A small circle is meant as a hinge, but two clamped particles fix the angle, too. */
-static void warn_of_hinge(struct check *check, int body)
-{
-    const struct scene *const scene = check->scene;
-    const struct scene_points *const p = &scene->points[KIND_SOLID];
-    const struct shape *const clamp = scene->solid[body].clamp.item;
-    long long held = 0;
-    if (scene->solid[body].clamp.n != 1 || !geometry_is_hinge(clamp, scene_solid_dp(scene, body)))
-        return;
-    for (int64_t k = 0; k < p->n; k++) held += p->body[k] == body && p->clamped[k];
-    if (held >= 2)
-        warn_at(check->diag, check->scene, clamp->line,
-                "this small clamp holds %lld particles of [solid %s], so the body cannot turn "
-                "about it; a hinge holds a point: hinge = %.6g, %.6g",
-                held, scene->solid[body].common.name, clamp->pt[0][0], clamp->pt[0][1]);
+    if (held > 0 && held == all)
+        warn_at(check->diag, check->scene, scene_line(check->scene, SECTION_solid, body, "clamp"),
+                "`clamp` holds all %lld particles of [solid %s], so it cannot deform; make the "
+                "clamp smaller, or use a [wall], which is faster",
+                all, check->scene->solid[body].common.name);
 }
 
 /* Whether a clamped particle of the body touches a particle of the wall. */
@@ -255,9 +201,8 @@ enum err warn_of_solids(struct check *check)
                   "pass through each other and through walls; periodic = none enables "
                   "contact");
     TRY(warn_of_loose_bodies(check));
-    TRY(warn_of_full_clamps(check));
     for (int k = 0; k < scene->n_solid; k++) {
-        warn_of_hinge(check, k);
+        warn_of_full_clamp(check, k);
         warn_of_other_motions(check, k);
         warn_of_material(check, k);
         warn_of_flutter(check, k);

@@ -9,9 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A table this many times as long as the run has mostly another unit of time. */
-enum { LONG_TABLE = 100 };
-
 static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fluid)
 {
     const struct scene *const scene = check->scene;
@@ -27,12 +24,6 @@ static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fl
                 "the initial pressure is zero",
                 fluid->common.name);
     if (fluid != scene->fluid || fluid->shifting_speed != SHIFTING_LARGEST) return;
-    if (scene->top.gravity[0] != 0 || scene->top.gravity[1] != 0)
-        warn_at(check->diag, check->scene, fluid->common.line,
-                "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
-                "energy, in proportion to `shifting`; if the fluid has a free surface, use "
-                "shifting_speed = own",
-                fluid->common.name);
     if (fluid->shifting * scene->numerics.cfl > 5 * (1 + 1e-9))
         warn_at(check->diag, check->scene, fluid->common.line,
                 "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit "
@@ -57,18 +48,6 @@ static void warn_of_sliding(struct check *check)
     }
 }
 
-/* Its time, where a table is much longer than the run. */
-static void warn_of_long_table(struct check *check, const struct scene_table *table, int line,
-                               const char *key, const char *name)
-{
-    const double last = table->t[table->n - 1], end = check->scene->top.end_time;
-    if (last > LONG_TABLE * end)
-        warn_at(check->diag, check->scene, line,
-                "%s = %.200s lasts until t = %g s, of which the run uses the first %g s "
-                "(end_time): its times are in seconds, not in milliseconds",
-                key, name, last, end);
-}
-
 static void warn_of_motion_of_nothing(struct check *check, const struct scene_motion *motion)
 {
     const struct scene *const scene = check->scene;
@@ -91,49 +70,30 @@ static void warn_of_motion_table(struct check *check, int k)
     const struct scene_motion *const motion = &scene->motion[k];
     const struct scene_table *const table = &scene->motion_data[k];
     const int n = table->n, line = scene_line(scene, SECTION_motion, k, "file");
-    char key[2 * SCENE_NAME];
-    snprintf(key, sizeof key, "[motion %s] file", motion->common.name);
-    warn_of_long_table(check, table, line, key, motion->file);
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
     warn_at(check->diag, check->scene, line,
-            "%s = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last two rows "
-            "differ: the motion stops there within a step; continue the table, end it at rest, or "
-            "use end_time = %.6g s",
-            key, motion->file, end, scene->top.end_time, end);
+            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last "
+            "two rows differ: the motion stops there within a step; continue the table, end it at "
+            "rest, or use end_time = %.6g s",
+            motion->common.name, motion->file, end, scene->top.end_time, end);
 }
 
-/* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. An
- * accelerometer at rest shows gravity, which the table would add a second time. */
+/* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. */
 static void warn_of_gravity_table(struct check *check)
 {
     const struct scene *const scene = check->scene;
     const struct scene_table *const table = &scene->gravity_data;
-    const double *const g = scene->top.gravity, size2 = square(g[0]) + square(g[1]);
-    const char *const name = scene->top.gravity_file;
     const int line = scene_line(scene, SECTION_top, 0, "gravity_file"), last = table->n - 1;
-    warn_of_long_table(check, table, line, "gravity_file", name);
     const bool acts = table->x[last] != 0 || table->y[last] != 0;
     if (acts && table->t[last] < scene->top.end_time * (1 - 1e-9))
         warn_at(check->diag, check->scene, line,
                 "gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
                 "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add "
                 "a row of zeros, or use end_time = %.6g s",
-                name, table->t[last], scene->top.end_time, table->x[last], table->y[last],
-                table->t[last]);
-    double sum[2] = {0, 0};
-    for (int k = 0; k < last; k++) {
-        const double half = 0.5 * (table->t[k + 1] - table->t[k]) / (table->t[last] - table->t[0]);
-        sum[0] += half * (table->x[k] + table->x[k + 1]);
-        sum[1] += half * (table->y[k] + table->y[k + 1]);
-    }
-    if (size2 > 0 && fabs(sum[0] * g[0] + sum[1] * g[1]) > 0.9 * size2)
-        warn_at(check->diag, check->scene, line,
-                "gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
-                "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
-                "out of one of them",
-                name, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
+                scene->top.gravity_file, table->t[last], scene->top.end_time, table->x[last],
+                table->y[last], table->t[last]);
 }
 
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
@@ -182,12 +142,6 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
                 "fluid resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 "
                 "lets waves up to the length L pass",
                 open->word, open->common->name, open->absorb, wave, reach);
-    if (open->absorb > scene->top.end_time)
-        warn_at(check->diag, check->scene, line,
-                "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that begins is "
-                "treated as sound: rho0 c0 = %.3g Pa for each m/s resist it; use a shorter time",
-                open->word, open->common->name, open->absorb, scene->top.end_time,
-                scene->rho0 * scene->c0);
 }
 
 void warn_of_values(struct check *check)

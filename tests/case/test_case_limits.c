@@ -115,20 +115,12 @@ static void test_gravity_at_the_end(void)
 
 static void test_shifting_that_goes_wrong_is_warned_of(void)
 {
-    takes(TOP "gravity = 0, -9.81\nscheme = paper\n" WATER
-              "shifting = 2\nshifting_speed = largest\n"
-              "artificial_viscosity = 0.1\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warned,
-                                        "l.cfg:5: [fluid w] shifting_speed = largest with gravity"),
-                                 warned);
-    TEST_ASSERT_NULL(strstr(warned, "is above 5"));
     takes(TOP "scheme = paper\n" WATER
               "shifting = 10\nshifting_speed = largest\nartificial_viscosity = 0.1\n"
               "[numerics]\ncfl = 0.51\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warned,
                                         "shifting = 10 times numerics.cfl = 0.51 is above 5"),
                                  warned);
-    TEST_ASSERT_NULL(strstr(warned, "with gravity"));
 }
 
 /* What an open boundary gives the fluid beyond its speed of sound, of 20 m/s. */
@@ -316,30 +308,6 @@ static void test_tables(void)
                                  diag.text);
 }
 
-static void test_gravity_tables_that_are_hardly_meant(void)
-{
-    static const struct {
-        const char *rows, *warning;
-    } row[] = {
-        {"0, 0, -9.81\n0.5, 1, -9.81\n2, 0, -9.81\n",
-         "l.cfg:4: gravity_file = test_case_limits.tmp has a mean of (0.5, -9.81) m/s^2, so it "
-         "seems to contain gravity"},
-        {"0, 0, -8\n0.5, 1, 8\n2, 0, 0\n", NULL},
-        {"0, 0, 0\n10, 1, 0\n101, 0, 0\n",
-         "gravity_file = test_case_limits.tmp lasts until t = 101 s, of which the run uses the "
-         "first 1 s"},
-        {"0, 0, 0\n10, 1, 0\n99, 0, 0\n", NULL},
-    };
-    for (size_t k = 0; k < COUNT_OF(row); k++) {
-        FILE *file = fopen("test_case_limits.tmp", "w");
-        fputs(row[k].rows, file);
-        fclose(file);
-        takes(TOP "gravity = 0, -9.81\ngravity_file = test_case_limits.tmp\n" WATER);
-        const char *const found = strstr(warned, row[k].warning ? row[k].warning : "gravity_file");
-        TEST_ASSERT_TRUE_MESSAGE(!found == !row[k].warning, warned);
-    }
-}
-
 static void test_long_tables(void)
 {
     static char bytes[12000000];
@@ -373,7 +341,6 @@ int main(void)
     RUN_TEST(test_paths_that_are_too_long);
     RUN_TEST(test_a_file_that_is_too_long);
     RUN_TEST(test_tables);
-    RUN_TEST(test_gravity_tables_that_are_hardly_meant);
     RUN_TEST(test_long_tables);
     RUN_TEST(test_a_folder_is_no_table);
     return UNITY_END();

@@ -92,46 +92,10 @@ static void test_bounds(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "a larger fixed_step may help"), said);
 }
 
-/* A light body bounds the step of the fluid by T-35d, a stiff one by its own step without
- * sub-steps. */
-static void test_bodies(void)
-{
-    static const char post[] = "[solid post]\nshape = box 0.1, 0, 0.14, 0.1\ndensity = 1000\n"
-                               "young = 1e6\npoisson = 0\n";
-    char text[1000], set[64], want[200];
-    snprintf(text, sizeof text, "%s%s", water, post);
-    for (int light = 0; light < 2; light++) {
-        const double density = light ? 10 : 300;
-        snprintf(set, sizeof set, "post.density=%g", density);
-        warn_of(text, set);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(light, said[0] != '\0', said);
-    }
-    const double sound = rig.sim.scene->numerics.cfl * rig.sim.fluid.k.h / 20;
-    const double bound = rig.sim.dt_bound[BOUND_added_mass];
-    snprintf(want, sizeof want,
-             "--set: [solid post] is 0.01 times as dense as the fluid, so it limits the "
-             "time step to %.3g s, while sound waves would allow %.3g times as much",
-             bound, sound / bound);
-    TEST_ASSERT_EQUAL_STRING_LEN(want, said, strlen(want));
-    /* The step of the solid alone falls with the root of its modulus: 1 MPa has 0.3 of the fluid's.
-     */
-    warn_of(text, "numerics.multirate=off");
-    TEST_ASSERT_EQUAL_STRING("", said);
-    snprintf(text, sizeof text, "%s%s[numerics]\nmultirate = off\n", water, post);
-    warn_of(text, "post.young=1e9");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, ":19: the solid limits the time step of the fluid"),
-                                 said);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "numerics.multirate = auto gives"), said);
-    snprintf(text, sizeof text, "%s%s", water, post);
-    warn_of(text, "post.young=1e9");
-    TEST_ASSERT_EQUAL_STRING("", said);
-}
-
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_damping);
     RUN_TEST(test_bounds);
-    RUN_TEST(test_bodies);
     return UNITY_END();
 }

@@ -25,17 +25,9 @@ static void test_a_sound_tank_gets_no_warning(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
-/* Four particles about a point clamp the bar; one is a hinge, and its area is no doubt of either.
- */
+/* Beside another clamp a hinge of one particle does not add to the part that the other holds. */
 static void test_a_hinge_is_one_particle(void)
 {
-#define BAR "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST "clamp = circle 0.01, 0.09, "
-    read(HEAD BAR "0.71*dp\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "holds 4 particles of [solid bar]"), warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "a hinge holds a point: hinge = 0.01, 0.09"),
-                                 warnings);
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "its area"), warnings);
-    /* Beside another clamp it is none, and does not add to the part that the other holds. */
     read(HEAD "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST
               "clamp = box 0, 0, 0.02, 0.02\nclamp = circle 0.01, 0.09, 0.71*dp\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);
@@ -91,13 +83,9 @@ static void test_surface_against_gravity_and_below_the_water(void)
     read("dp = 5 mm\nend_time = 1 s\ngravity = 0, 9.81\n" WATER SIDES FLOOR
          "[wall lid]\nshape = box -0.02, 0.05, 0.12, 0.07\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(warnings, "`surface`, but gravity points upwards, by 9.81 m/s^2 at t = 0"),
+        strstr(warnings, "a `surface`, but gravity points upwards, by 9.81 m/s^2 at t = 0"),
         warnings);
-    /* It grows upwards from zero; or a tank is shaken by more than g, about -g. */
-    read("dp = 5 mm\nend_time = 1 s\ngravity = 0, 9.81*min(t, 1)\n" WATER SIDES FLOOR);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
-                                        "upwards, by 0 m/s^2 at t = 0 and 4.91 on average"),
-                                 warnings);
+    /* A tank is shaken by more than g, about -g. */
     read("dp = 5 mm\nend_time = 1 s\ngravity = 0, -9.81 + 20*sin(50*t)\n" WATER SIDES FLOOR);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "upward"), warnings);
     read(HEAD "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\nsurface = 0.03\n" SIDES
@@ -190,29 +178,9 @@ static void test_a_clamp_that_covers_the_body(void)
     char text[1024];
     snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.1\n", post);
     read(text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "leaves 0 rows of particles of [solid post] "
-                                                  "free, 0 of 80 particles, so it cannot deform"),
-                                 warnings);
-    /* All but the four particles of the upper row, and all but those of the upper two. */
-    snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.095\n", post);
-    read(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(warnings, "leaves 1 row of particles of [solid post] free, 4 of 80 particles"),
+        strstr(warnings, "`clamp` holds all 80 particles of [solid post], so it cannot deform"),
         warnings);
-    for (int rows = 2; rows <= 4; rows++) {
-        char want[60];
-        snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, %g\n", post, 0.1 - 0.005 * rows);
-        snprintf(want, sizeof want, "leaves %d rows of particles of [solid post] free", rows);
-        read(text);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(rows < 4, strstr(warnings, want) != NULL, warnings);
-    }
-    /* The rows beside a bond belong to a larger whole. */
-    snprintf(text, sizeof text,
-             "%sclamp = box 0, 0, 0.02, 0.09\n[solid tip]\nlike = post\njoined = post\n"
-             "shape = box 0, 0.1, 0.02, 0.2\n",
-             post);
-    read(text);
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "`clamp` leaves"), warnings);
     snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.02\n", post);
     read(text);
     TEST_ASSERT_EQUAL_STRING("", warnings);
@@ -254,7 +222,7 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
 
 #define PROBE "[probe P]\nquantity = pressure\npoint = "
 
-static void test_a_pressure_probe_in_a_wall_or_in_the_air(void)
+static void test_a_pressure_probe_in_a_wall(void)
 {
     read(HEAD WATER SIDES FLOOR PROBE "0.05, -0.01\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies inside a wall or solid"), warnings);
@@ -264,19 +232,6 @@ static void test_a_pressure_probe_in_a_wall_or_in_the_air(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies inside a wall or solid"), warnings);
     read(HEAD WATER SIDES FLOOR PROBE "0.05, 0\n"
                                       "[probe Q]\nquantity = pressure\npoint = 0, 0.02\n");
-    TEST_ASSERT_EQUAL_STRING("", warnings);
-    read(HEAD WATER SIDES FLOOR PROBE "0.05, 0.08\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies in the air"), warnings);
-    /* Beside the water, where a dam break may reach it. */
-    read(HEAD
-         "[fluid water]\nshape = box 0, 0, 0.03, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
-             FLOOR PROBE "0.1, 0.04\n");
-    TEST_ASSERT_EQUAL_STRING("", warnings);
-    /* A wave maker may throw water anywhere. */
-    read(HEAD WATER SIDES FLOOR PROBE
-         "0.05, 0.08\n"
-         "[wall paddle]\nshape = box 0.04, 0.12, 0.06, 0.14\nmotion = m\n"
-         "[motion m]\nvelocity = 0, -0.1\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
@@ -489,11 +444,6 @@ static void test_absorption_without_effect(void)
                                                   "waves below c0 absorb/4 = 5e-10 m pass"),
                                  warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "doubts.cfg:15: "), warnings);
-    /* From rest, 20 Pa then drive 0.01 m/s instead of 0.2 m/s at the end. */
-    read(OPEN_CHANNEL IN OUT("pressure = 0\nabsorb = 5") SIDE_WALLS);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "absorb = 5 s is longer than end_time = 4 s"),
-                                 warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "rho0 c0 = 2e+03 Pa for each"), warnings);
 }
 
 int main(void)
@@ -514,7 +464,7 @@ int main(void)
     RUN_TEST(test_lines_that_end_in_the_fluid);
     RUN_TEST(test_absorption_without_effect);
     RUN_TEST(test_a_clamp_and_a_wall_that_move_differently);
-    RUN_TEST(test_a_pressure_probe_in_a_wall_or_in_the_air);
+    RUN_TEST(test_a_pressure_probe_in_a_wall);
     RUN_TEST(test_a_gap_of_one_particle);
     RUN_TEST(test_a_gap_within_one_wall);
     RUN_TEST(test_a_gap_that_sampling_closes);

@@ -111,39 +111,12 @@ static void test_probes_inside_a_wall(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
-static void test_a_probe_that_its_wall_leaves(void)
-{
-#define PISTON                                                                                 \
-    HEAD WATER "shape = box 0, 0, 0.1, 0.05\n[wall tank]\nshape = box -0.02, -0.02, 0.12, 0\n" \
-               "shape = box 0.1, 0, 0.12, 0.1\n[wall piston]\nshape = box -0.02, 0, 0, 0.1\n"  \
-               "motion = m\n[motion m]\nvelocity = 0.1, 0\n[probe p]\n"
-    read(PISTON "quantity = pressure\npoint = 0, 0.03\n");
-    expect("[probe p] stays in place while [wall piston], at which it begins, moves away; "
-           "`on = piston` moves");
-    read(PISTON "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\n");
-    expect("[probe p] stays in place while [wall piston]");
-    read(PISTON "quantity = pressure\npoint = -0.01, 0.03\n"); /* inside it */
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "stays in place"), warnings);
-    static const char *const right[] = {
-        "quantity = pressure\npoint = 0, 0.03\non = piston\n",
-        "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\non = piston\n",
-        "quantity = pressure\npoint = 0.1, 0.03\n", "quantity = pressure\npoint = 0, 0\n",
-        "quantity = velocity\npoint = 0, 0.03\n"};
-    for (size_t k = 0; k < COUNT_OF(right); k++) {
-        char text[1000];
-        snprintf(text, sizeof text, "%s%s", PISTON, right[k]);
-        read(text);
-        TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "stays in place"), warnings);
-    }
-}
-
 static void test_the_moment_on_a_wall_that_turns(void)
 {
 #define DRUM(slip, motion)                                                                 \
     "dp = 5 mm\nend_time = 1 s\n[fluid oil]\nshape = circle 0, 0, 0.1\nsound_speed = 10\n" \
     "laminar_viscosity = 1e-3\npressure = 50\n[wall drum]\nshape = circle 0, 0, 0.12\n"    \
     "minus = circle 0, 0, 0.1\n" slip motion "[probe p]\nquantity = force\nbody = drum\n"
-#define FACE "[probe q]\nquantity = pressure\npoint = 0.1, 0\n"
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
     expect("[wall drum] turns with slip = none: the viscous moment on it is off by 2 mu A omega");
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = expression\nturn = t\n"));
@@ -159,9 +132,6 @@ static void test_the_moment_on_a_wall_that_turns(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
     read(FLOATER);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
-    /* It slides along a probe at its face. */
-    read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n") FACE);
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "stays in place"), warnings);
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nvelocity = 1, 0\n"));
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "moment on it"), warnings);
     read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
@@ -215,7 +185,6 @@ int main(void)
     RUN_TEST(test_a_motion_near_the_speed_of_sound);
     RUN_TEST(test_an_inflow_above_the_surface);
     RUN_TEST(test_probes_inside_a_wall);
-    RUN_TEST(test_a_probe_that_its_wall_leaves);
     RUN_TEST(test_the_moment_on_a_wall_that_turns);
     RUN_TEST(test_a_body_that_is_thrown);
     RUN_TEST(test_bodies_that_stand);

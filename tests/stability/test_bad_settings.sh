@@ -43,8 +43,6 @@ fi
 says 1 'gap = 0.05 m is more than 4 particle spacings of 0.01 m' settle.cfg bed.gap=5*dp
 says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp prevents that' \
     gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
-says 0 'shifting_speed = largest with gravity raises a free surface' column.cfg water.shifting=2 \
-    water.shifting_speed=largest
 says 0 'is above 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6
 says 0 \
