@@ -315,9 +315,8 @@ static enum err view_computed(struct sphfsi_simulation *handle, enum kind kind, 
     struct nearest best = {0};
     const char *known;
     for (int k = 0; (known = field_name(sim, kind, k)); k++) nearest_offer(&best, name, known);
-    return diag_fail(d, ERR_INPUT, "field: %s particles have no field '%.60s' in this scene%s%s",
-                     kind_names[kind], name, best.name ? "; the nearest name is " : "",
-                     best.name ? best.name : "");
+    return diag_fail(d, ERR_INPUT, "field: %s particles have no field '%.60s' in this scene%s",
+                     kind_names[kind], name, nearest_hint(&best));
 }
 
 static enum err find_field(struct sphfsi_simulation *handle, enum sphfsi_kind kind,
@@ -356,8 +355,8 @@ static enum err find_probe(struct sphfsi_simulation *handle, const char *name, d
         probes_values(&handle->probes, &handle->session.simulation, k, values);
         return ERR_OK;
     }
-    return diag_fail(d, ERR_INPUT, "probe: the case has no [probe %.60s]%s%s", name,
-                     near.name ? "; the nearest name is " : "", near.name ? near.name : "");
+    return diag_fail(d, ERR_INPUT, "probe: the case has no [probe %.60s]%s", name,
+                     nearest_hint(&near));
 }
 
 enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *handle, const char *name,
@@ -434,8 +433,8 @@ static enum err set_motion(struct sphfsi_simulation *handle, const char *name,
     for (int k = 0; k < scene->n_motion; k++)
         nearest_offer(&near, name, scene->motion[k].common.name);
     if (at < 0)
-        return diag_fail(d, ERR_INPUT, "motion: the case has no [motion %.60s]%s%s", name,
-                         near.name ? "; the nearest name is " : "", near.name ? near.name : "");
+        return diag_fail(d, ERR_INPUT, "motion: the case has no [motion %.60s]%s", name,
+                         nearest_hint(&near));
     const size_t n = (size_t)scene->n_motion;
     struct motion_hook **const hook = &scene->motion_hook;
     if (!handle->motion)

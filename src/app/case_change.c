@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Which changes of a case a restart or a fork accepts. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -73,11 +73,6 @@ enum err case_change_check(const char *old, const char *now, bool fork, struct d
     } while (a.length > 0 && a.length == b.length && memcmp(a.text, b.text, (size_t)a.length) == 0);
     if (a.length == 0 && b.length == 0) return ERR_OK;
     const int shown_a = a.length < 200 ? a.length : 200, shown_b = b.length < 200 ? b.length : 200;
-    if (!a.section[0] && is_word(a.text, "dp", " ") && is_word(b.text, "dp", " "))
-        return diag_fail(d, ERR_INPUT,
-                         "%s: the checkpoint has '%.*s', but this case '%.*s': the spacing of "
-                         "particles cannot change during a run; start a new run with the other dp",
-                         what, shown_a, a.text, shown_b, b.text);
     return diag_fail(
         d, ERR_INPUT, "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
         what, a.section[0] ? a.section : "at the top", shown_a, a.text, shown_b, b.text,

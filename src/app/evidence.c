@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The expected error of a case, from problems with known answers: src/app/data/evidence.csv, which
  * `make accuracy` and `make coverage` write. */
-#include "app/actions.h"
+#include "app/session.h"
 #include "app/embedded.h"
 #include "base/csv.h"
 #include "case/params.h"

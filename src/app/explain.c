@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * --explain: what would be simulated and what it would cost, as text and as JSON. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include "app/forecast.h"
 #include "case/params.h"
@@ -43,31 +43,6 @@ static void say_lattices(const struct scene *scene, const struct sphfsi_options 
                     "%.2g %%, bending stiffness of a thin body by about %.2g %%",
                     scene->solid[k].common.name, l->angle * degrees, l->spacing[0], l->spacing[1],
                     100 * off, 100 * (square(1 + off) * (1 + off) - 1));
-    }
-}
-
-/* What the scheme has set, as far as the case has left it. */
-static void say_scheme(const struct scene *scene, const struct sphfsi_options *o)
-{
-    char name[SCENE_NAME];
-    param_choice_name(param_find(SECTION_top, "scheme"), scene->top.scheme, name);
-    session_say(o,
-                scene->top.scheme == SCHEME_PAPER
-                    ? "scheme %s: all keys have their defaults, the method of the article (--cite)"
-                    : "scheme %s sets",
-                name);
-    for (int k = 0; k < PARAM_COUNT; k++) {
-        const struct param *const param = &param_table[k];
-        double value;
-        if (!scene_scheme_sets(scene, param->section, param->key, &value)) continue;
-        char text[SCENE_NAME];
-        if (param->type == PARAM_CHOICE)
-            param_choice_name(param, (int)value, text);
-        else
-            snprintf(text, sizeof text, "%g", value);
-        const bool given = scene_given(scene, param->section, 0, param->key) != NULL;
-        session_say(o, "  %s.%s = %s%s", section_table[param->section].word, param->key, text,
-                    given ? ", but the case sets it" : "");
     }
 }
 
@@ -239,22 +214,23 @@ static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o
 }
 
 static enum err explain_text(struct session *session, const struct sphfsi_options *o,
-                             const char *unused, struct diag *d)
+                             struct diag *d)
 {
-    (void)unused;
     struct simulation *sim = &session->simulation;
     say_scene(session, o);
     say_lattices(&session->scene, o);
-    say_scheme(&session->scene, o);
     say_effects(sim, o);
     say_fields(sim, o);
     say_output(sim, o);
-    char precision[SCENE_NAME], integrator[SCENE_NAME];
+    char precision[SCENE_NAME], integrator[SCENE_NAME], scheme[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "scheme"), sim->scene->top.scheme, scheme);
     param_choice_name(param_find(SECTION_top, "precision"), sim->scene->top.precision, precision);
     param_choice_name(param_find(SECTION_top, "integrator"), sim->scene->top.integrator,
                       integrator);
-    session_say(o, "integrator %s, precision %s; compiled loops of the fluid: %s, of the solid: %s",
-                integrator, precision,
+    session_say(o,
+                "scheme %s, integrator %s, precision %s; compiled loops of the fluid: %s, of the "
+                "solid: %s",
+                scheme, integrator, precision,
                 sim->kind[KIND_FLUID].n > 0 ? sim->fluid.kernel->name : "none",
                 sim->solid.sweeps ? sim->solid.sweeps->name : "none");
     return say_trial(sim, o, d);
@@ -358,18 +334,17 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
 }
 
 static enum err explain_json(struct session *session, const struct sphfsi_options *o,
-                             const char *unused, struct diag *d)
+                             struct diag *d)
 {
-    (void)unused;
     return session_json(o, write_all, &(struct explained){session, o->context}, d);
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
 {
-    return call_of_case("explain", options, true, explain_text, NULL);
+    return call_of_case("explain", options, true, explain_text);
 }
 
 enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
 {
-    return call_of_case("explain", options, true, explain_json, NULL);
+    return call_of_case("explain", options, true, explain_json);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * --inspect: the contents of a checkpoint as text. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include "output/checkpoint.h"
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The reference of keys, from the same tables as the reader of cases; publications; templates of
  * cases. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include "app/embedded.h"
+#include "base/csv.h"
 #include "case/effects.h"
 #include "case/params.h"
 #include "output/json.h"
@@ -298,93 +299,57 @@ enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options)
 
 /* --- publications: src/app/data/citations.txt --- */
 
-static bool any_law(const struct scene *scene, int law)
+/* Conditions on a scene that are no effects. */
+static bool meets_condition(const struct scene *scene, effect_set fx, const char *word)
 {
-    bool any = false;
-    for (int k = 0; k < scene->n_solid; k++) any |= scene->solid[k].law == law;
-    return any;
-}
-
-/* Whether some probe interpolates in a solid. */
-static bool probes_material(const struct scene *scene)
-{
-    bool any = false;
+    const int shifted = fx & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
+    bool hyperelastic = false, probed = false;
+    for (int k = 0; k < scene->n_solid; k++) hyperelastic |= scene->solid[k].law != LAW_PAPER;
     for (int k = 0; k < scene->n_probe; k++)
-        any |= scene_probe_target(&scene->probe[k]) == TARGET_SOLID_POINT &&
-               scene_find_solid(scene, scene->probe[k].body) >= 0;
-    return any;
+        probed |= scene_probe_target(&scene->probe[k]) == TARGET_SOLID_POINT &&
+                  scene_find_solid(scene, scene->probe[k].body) >= 0;
+    const struct {
+        const char *word;
+        bool met;
+    } condition[] = {
+        {"ALWAYS", true},
+        {"HYPERELASTIC", hyperelastic},
+        {"PACKED", scene->packed},
+        {"PROBED_MATERIAL", probed},
+        {"SHIFTED_BY_OWN_SPEED", shifted == SHIFTING_OWN},
+        {"SHIFTED_BY_LARGEST_SPEED", shifted == SHIFTING_LARGEST},
+        {"SYMPLECTIC", scene->top.integrator == INTEGRATOR_SYMPLECTIC},
+    };
+    bool met = false;
+    for (size_t k = 0; k < COUNT_OF(condition); k++)
+        met |= condition[k].met && strcmp(condition[k].word, word) == 0;
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        met |= fx & EFFECT_BIT(k) && strcmp(effect_table[k].name, word) == 0;
+    return met;
 }
 
-/* Prints the source of a key, which is on a line of its own behind it. */
-static void say_source(const char *key, const struct sphfsi_options *o)
+static enum err cite(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
-    const size_t length = strlen(key);
-    const char *line = embedded_text("src/app/data/citations.txt");
-    while (strncmp(line, key, length) != 0 || line[length] != ':') line += strcspn(line, "\n") + 1;
-    line += length + 2;
-    session_say(o, "%.*s", (int)strcspn(line, "\n"), line);
-}
-
-static enum err cite(struct session *session, const struct sphfsi_options *o, const char *path,
-                     struct diag *d)
-{
-    (void)path, (void)d;
+    (void)d;
     const struct scene *const scene = &session->scene;
     const effect_set fx = effects_of_scene(scene);
-    const bool contact = fx & (FX_CONTACT | FX_CONTACT_WALL);
-    const int shifting = fx & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
-    const struct {
-        const char *key;
-        bool used;
-    } source[] = {
-        {"paper", true},
-        {"wendland", true},
-        {"monaghan_1994", fx & FX_FLUID},
-        {"monaghan_gingold", fx & FX_VISCOSITY},
-        {"molteni", fx & FX_DIFFUSION},
-        {"fourtakas", fx & FX_FOURTAKAS},
-        {"fourtakas_2025", fx & FX_DAMPER},
-        {"zhang_2017", fx & FX_WALL_DAMPING},
-        {"adami", fx & (FX_WALL | FX_MOTION | FX_COUPLING | FX_NO_SLIP)},
-        {"bonet", fx & FX_SOLID},
-        {"ganzenmueller", fx & FX_HOURGLASS},
-        {"belytschko", fx & FX_SOLID},
-        {"belytschko_1999", fx & FX_THIN},
-        {"oconnor", fx & FX_SOLID_VISCOSITY},
-        {"bonet_wood", any_law(scene, LAW_SVK) || any_law(scene, LAW_NEO_HOOKEAN)},
-        {"dualsphysics", scene->top.integrator == INTEGRATOR_SYMPLECTIC},
-        {"morris", fx & FX_LAMINAR},
-        {"durran", fx & FX_LEAPFROG},
-        {"verlet", scene->top.integrator == INTEGRATOR_VERLET},
-        {"lancaster", probes_material(scene)},
-        {"skillen", shifting == SHIFTING_OWN},
-        {"sun", shifting == SHIFTING_LARGEST},
-        {"antuono", fx & (FX_ANTUONO | FX_MASSES)},
-        {"meringolo", fx & FX_LIMITER},
-        {"zhang_2021", fx & FX_ONE_SIDED},
-        {"monaghan_2000", fx & FX_TENSILE},
-        {"banks", fx & FX_IMPEDANCE},
-        {"colagrossi", scene->packed},
-        {"lind", scene->packed || fx & FX_SHIFTING},
-        {"zhang", fx & FX_KELVIN_VOIGT},
-        {"cundall", contact},
-        {"edelsbrunner", contact},
-        {"li_2020", contact},
-        {"barnes", fx & FX_RELAX},
-        {"rayleigh", fx & FX_MASS_DAMPING},
-        {"simo_1986", fx & FX_BEAM},
-        {"simo_1995", fx & FX_BEAM},
-        {"macneal", fx & FX_BEAM},
-    };
-    for (size_t k = 0; k < COUNT_OF(source); k++)
-        if (source[k].used) say_source(source[k].key, o);
+    const char *line = embedded_text("src/app/data/citations.txt");
+    for (; *line; line = csv_next_line(line)) {
+        const int end = (int)strcspn(line, "\n"), head = (int)strcspn(line, ":\n");
+        char words[SCENE_TEXT], word[SCENE_TEXT];
+        bool used = false;
+        snprintf(words, sizeof words, "%.*s", head, line);
+        for (int k = 0; *line != '#' && scene_word(words, k, word); k++)
+            used |= meets_condition(scene, fx, word);
+        if (used) session_say(o, "%.*s", end - head - 2, line + head + 2);
+    }
     if (scene->top.source[0]) session_say(o, "The scene: %s", scene->top.source);
     return ERR_OK;
 }
 
 enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
 {
-    return call_of_case("cite", options, false, cite, NULL);
+    return call_of_case("cite", options, false, cite);
 }
 
 /* --- templates of cases: the files of cases/templates --- */
@@ -415,8 +380,7 @@ const char *sphfsi_template(const char *name)
         snprintf(list + at, sizeof list - at, "%s%s", at ? ", " : "", file->stem);
         nearest_offer(&near, name, file->stem);
     }
-    call_result(&d, diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
-                              near.name ? "; the nearest name is " : "", near.name ? near.name : "",
-                              list));
+    call_result(&d, diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s; known: %s", name,
+                              nearest_hint(&near), list));
     return NULL;
 }

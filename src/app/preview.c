@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * --preview: an SVG of the scene before it runs. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include "base/files.h"
 #include "case/params.h"
@@ -258,14 +258,12 @@ static void put_head(const struct drawing *g)
     put_text(g, LEFT, 42, "", text);
 }
 
-static enum err draw(struct session *session, const struct sphfsi_options *o, const char *unused,
-                     struct diag *d)
+static enum err draw(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     static const enum kind order[KIND_COUNT] = {KIND_WALL, KIND_FLUID, KIND_SOLID};
     char path[PATH_BYTES];
     int length;
     const char *const name = session_name(o, &length);
-    (void)unused;
     if (o->out)
         snprintf(path, sizeof path, "%s", o->out);
     else
@@ -289,5 +287,5 @@ static enum err draw(struct session *session, const struct sphfsi_options *o, co
 
 enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
 {
-    return call_of_case("preview", options, false, draw, NULL);
+    return call_of_case("preview", options, false, draw);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A run of a case: its folder and files, the time loop, restart and fork, and what it says at its
  * end. */
-#include "app/actions.h"
+#include "app/session.h"
 
 #include "base/run_dir.h"
 #include "check/check.h"

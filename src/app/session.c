@@ -154,33 +154,31 @@ const char *session_name(const struct sphfsi_options *o, int *length)
 /* Limit for the steps of a run and the rows of a file. */
 static const double max_count = 1e10;
 
-/* `between` is the value of a key: the time between two of `what`; 0: the key is not set. */
-static enum err check_count(const struct scene *scene, enum section_id section, int index,
-                            const char *key, double between, const char *what, struct diag *d)
-{
-    const double end = scene->top.end_time, n = end / between;
-    char place[LOCATION_TEXT];
-    if (between == 0 || n <= max_count) return ERR_OK;
-    scene_location(scene, scene_line(scene, section, index, key), place);
-    return diag_fail(d, ERR_INPUT,
-                     "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose "
-                     "at least %.3g s",
-                     place, key, between, n, what, end, max_count, end / max_count);
-}
-
+/* Keys that are the time between two steps or outputs; 0: not set. */
 static enum err check_counts(const struct scene *scene, struct diag *d)
 {
-    const struct scene_output *const out = &scene->output;
-    const double step = scene->numerics.fixed_step;
-    TRY(check_count(scene, SECTION_numerics, 0, "fixed_step", step, "steps", d));
-    TRY(check_count(scene, SECTION_output, 0, "probe_interval", out->probe_interval, "rows", d));
-    TRY(check_count(scene, SECTION_output, 0, "ledger_interval", out->ledger_interval, "rows", d));
-    TRY(check_count(scene, SECTION_output, 0, "snapshot_interval", out->snapshot_interval,
-                    "snapshots", d));
-    TRY(check_count(scene, SECTION_output, 0, "checkpoint_interval", out->checkpoint_interval,
-                    "checkpoints", d));
-    for (int k = 0; k < scene->n_probe; k++)
-        TRY(check_count(scene, SECTION_probe, k, "interval", scene->probe[k].interval, "rows", d));
+    static const struct {
+        enum section_id section;
+        const char *key, *what;
+    } between[] = {{SECTION_numerics, "fixed_step", "steps"},
+                   {SECTION_output, "probe_interval", "rows"},
+                   {SECTION_output, "ledger_interval", "rows"},
+                   {SECTION_output, "snapshot_interval", "snapshots"},
+                   {SECTION_output, "checkpoint_interval", "checkpoints"},
+                   {SECTION_probe, "interval", "rows"}};
+    const double end = scene->top.end_time;
+    for (size_t k = 0; k < COUNT_OF(between); k++)
+        for (int j = 0; j < section_count(scene, between[k].section); j++) {
+            const char *const key = between[k].key;
+            const double time = param_number(param_find(between[k].section, key),
+                                             section_at(scene, between[k].section, j));
+            if (time > 0 && end / time > max_count)
+                return fail_at(d, scene, scene_line(scene, between[k].section, j, key),
+                               "%s = %g s gives %.3g %s until %g s, more than the limit of %g; "
+                               "choose at least %.3g s",
+                               key, time, end / time, between[k].what, end, max_count,
+                               end / max_count);
+        }
     return ERR_OK;
 }
 
@@ -267,12 +265,10 @@ static enum err check_steps(const struct session *session, struct diag *d)
     const double step = timestep_longest(sim);
     const double end = session->scene.top.end_time, n = end / step;
     if (n <= max_count) return ERR_OK;
-    char place[LOCATION_TEXT];
-    scene_location(&session->scene, scene_line(&session->scene, SECTION_top, 0, "end_time"), place);
-    return diag_fail(d, ERR_INPUT,
-                     "%s: the run needs about %.3g steps of %.3g s until end_time = %g s, more "
-                     "than the limit of %g; choose at most %.3g s",
-                     place, n, step, end, max_count, max_count * step);
+    return fail_at(d, &session->scene, scene_line(&session->scene, SECTION_top, 0, "end_time"),
+                   "the run needs about %.3g steps of %.3g s until end_time = %g s, more than the "
+                   "limit of %g; choose at most %.3g s",
+                   n, step, end, max_count, max_count * step);
 }
 
 /* Puts the name of the case before a message from code that does not know it, such as that of the
@@ -305,7 +301,7 @@ enum err session_open(struct session *session, const struct sphfsi_options *o, s
 }
 
 enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *given,
-                                bool simulation, case_action *act, const char *path)
+                                bool simulation, case_action *act)
 {
     struct call c;
     enum err e = call_begin(&c, name, given);
@@ -315,7 +311,7 @@ enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *g
         e = simulation ? session_open(session, &c.options, &c.diag)
                        : read_case(session, &c.options, &c.diag);
     if (!e) {
-        e = act(session, &c.options, path, &c.diag);
+        e = act(session, &c.options, &c.diag);
         session_close(session);
     }
     free(session);
@@ -323,16 +319,17 @@ enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *g
 }
 
 static enum err write_effective(struct session *session, const struct sphfsi_options *o,
-                                const char *path, struct diag *d)
+                                struct diag *d)
 {
-    (void)o;
-    return scene_write(&session->scene, path, d);
+    return scene_write(&session->scene, o->out, d);
 }
 
 enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
 {
     if (!path) return call_null_argument("effective", "path");
-    return call_of_case("case", options, false, write_effective, path);
+    struct sphfsi_options to_path = options ? *options : (struct sphfsi_options){0};
+    to_path.out = path;
+    return call_of_case("case", options ? &to_path : NULL, false, write_effective);
 }
 
 /* --- small functions of the public header --- */

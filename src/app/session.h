@@ -58,13 +58,30 @@ typedef enum err json_writer(struct json *j, void *context, struct diag *d);
 enum err session_json(const struct sphfsi_options *o, json_writer *write, void *context,
                       struct diag *d) SPHFSI_CHECKED;
 
-/* An action on the scene of a case, or on its simulation; `path` is where to write, or NULL. */
+/* An action on the scene of a case, or on its simulation. */
 typedef enum err case_action(struct session *session, const struct sphfsi_options *o,
-                             const char *path, struct diag *d);
+                             struct diag *d);
 
 /* A whole call of the public header that does something with a case: with its scene, or with the
  * simulation at time zero. */
 enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *given,
-                                bool simulation, case_action *act, const char *path);
+                                bool simulation, case_action *act);
+
+/* --- what other files of this folder offer each other --- */
+
+/* case_change.c: compares two effective cases line by line: the checkpoint's, `old`, and the
+ * present one. A restart may change end_time and output. A fork may also change physics, but not
+ * what the state depends on: particles, masses, sound speed, kernel, integrator. ERR_INPUT names
+ * the first line that must not differ. */
+enum err case_change_check(const char *old, const char *now, bool fork, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* evidence.c: prints the error that the accuracy study lets expect of each body. */
+void evidence_say(const struct scene *scene, const struct sphfsi_options *o);
+
+/* manual.c: writes the example of a key to `text`: from src/app/data/key_examples.cfg, or its
+ * default; "". */
+struct param;
+void manual_example(const struct param *param, char *text, size_t size);
 
 #endif

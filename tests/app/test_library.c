@@ -161,7 +161,7 @@ static void a_motion_of_the_program(void)
     TEST_ASSERT_TRUE(force[1][0] < -5);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, force[1][0], force[0][0]);
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_set_motion(a, "pusch", pushing, NULL));
-    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is push"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "did you mean `push`"));
 }
 
 static void lost_after_a_while(void *context, double t, double d[2], double v[2], double acc[2])
@@ -186,7 +186,7 @@ static void an_unknown_probe_names_the_nearest(void)
     double values[SPHFSI_PROBE_COLUMNS];
     a = create(tiny_case, NULL);
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_probe(a, "M2", values));
-    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is M1"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "did you mean `M1`"));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_probe(a, "P", values));
     TEST_ASSERT_DOUBLE_WITHIN(30, 1000 * 9.81 * 0.08, values[0]);
 }

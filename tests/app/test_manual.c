@@ -2,7 +2,7 @@
  * What the program says of itself is true: examples are accepted, templates run, sources fit the
  * scene. */
 #include "case/effects.h"
-#include "app/actions.h"
+#include "app/session.h"
 #include "app/embedded.h"
 #include "base/csv.h"
 #include "check/check.h"
@@ -210,7 +210,7 @@ static void every_template_is_its_file(void)
 static void an_unknown_template_names_the_known(void)
 {
     TEST_ASSERT_NULL(sphfsi_template("dambreak"));
-    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is dam_break"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "did you mean `dam_break`"));
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "cantilever"));
 }
 

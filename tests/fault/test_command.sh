@@ -43,7 +43,7 @@ grep -q 'solid cap: .*; bonded to base' preview-bonded.svg || fail "a bond is no
 grep -q 'solid lump: .*; nothing clamped' preview-bonded.svg || fail "a free body is not drawn"
 grep -q 'cap. has no clamp' err && fail "a bonded copy moves freely: $(cat err)"
 grep -q 'lump. has no clamp, and .like. does not copy' err || fail "a free copy: $(cat err)"
-refuses 1 "nearest name is dam_break" --new dambreak
+refuses 1 'did you mean `dam_break`' --new dambreak
 refuses 1 "did you mean \`gravity\`" --preview gate.cfg --set gravty=1,2
 # All that is wrong with a case is said in one run.
 sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg

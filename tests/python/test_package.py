@@ -106,7 +106,7 @@ def test_views():
     assert {"velocity", "pressure", "density", "vx", "p"} <= set(fluid.fields)
     assert simulation.solid["stress"].shape == (45, 6) and fluid.unit("velocity") == "m/s"
     assert np.array_equal(fluid["velocity"][:, 0], fluid.vx)
-    raises(sphfsi.InputError, "the nearest name is vx", fluid.__getitem__, "vxx")
+    raises(sphfsi.InputError, "did you mean `vx`", fluid.__getitem__, "vxx")
     raises(AttributeError, "no field 'stress'", getattr, fluid, "stress")
     assert np.isnan(simulation.probe("M1")[2:]).all() and \
         np.isfinite(simulation.probe("M1")[:2]).all()
@@ -150,7 +150,7 @@ def test_motions():
     piston = simulation.wall.body == 1
     assert abs(simulation.wall.x[piston].min() - (-0.02 + 0.0025 + 1.5 * 0.02**2)) < 1e-12
     assert simulation.fluid.vx.max() > 0.02
-    raises(sphfsi.InputError, "nearest name is push", simulation.set_motion, "pusch", None)
+    raises(sphfsi.InputError, "did you mean `push`", simulation.set_motion, "pusch", None)
     simulation.set_motion("push", lambda t: ((float("nan"), 0), (0, 0), (0, 0)))
     raises(sphfsi.Guard, "[motion push]", simulation.step)
 
