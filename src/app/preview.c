@@ -129,7 +129,7 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     const char *const motion = kind == KIND_WALL ? scene->wall[body].motion : "";
     const char *const colour = motion[0] ? moving : fills[kind];
     struct box2 box = box2_empty();
-    char text[400], more[160] = "";
+    char text[400], more[240] = "";
     const int64_t n = put_particles(g, kind, body, false, colour, &box);
     const int64_t held = put_particles(g, kind, body, true, clamped, &box);
     for (int k = 0; k < scene->n_line; k++)
@@ -143,8 +143,9 @@ static void put_body(struct drawing *g, enum kind kind, int body)
         snprintf(more, sizeof more, "%.4g kg/m, moves freely",
                  scene->rigid_mass[common->index].mass);
     else if (solid)
-        snprintf(more, sizeof more, "%g kg/m^3, E %.4g Pa, nu %g; %lld clamped (dark)",
-                 solid->density, solid->young, solid->poisson, (long long)held);
+        snprintf(more, sizeof more, "%g kg/m^3, E %.4g Pa, nu %g; %lld clamped (dark)%s%.64s",
+                 solid->density, solid->young, solid->poisson, (long long)held,
+                 solid->joined[0] ? "; bonded to " : "", solid->joined);
     else
         snprintf(more, sizeof more, motion[0] ? "moved by %s" : "at rest", motion);
     snprintf(text, sizeof text, "%s %s: %.4g x %.4g m, %lld particles; %s",

@@ -39,15 +39,9 @@ static const struct {
     {{1, -1, -2}, "a pressure (Pa)"},
     {{0, 0, -1}, "a frequency (Hz)"},
     {{1, 1, -2}, "a force (N)"},
-    {{0, -1, 0}, "an inverse length (1/m)"},
     {{1, 0, -2}, "a force per length (N/m)"},
-    {{0, 3, 0}, "a volume (m^3)"},
     {{0, 2, -1}, "a kinematic viscosity (m^2/s)"},
-    {{1, -1, -1}, "a dynamic viscosity (Pa s)"},
     {{1, 2, -2}, "an energy or a moment (N m)"},
-    {{1, 1, -1}, "an impulse (N s)"},
-    {{1, 2, -3}, "a power (N m/s)"},
-    {{1, -2, -2}, "a force per volume (N/m^3)"},
 };
 
 static const struct unit *find_unit(struct slice name)

@@ -40,7 +40,7 @@ shape = box 0, 0.2, 0.1, 0.22
 END
 "$sphfsi" --preview bonded.cfg >/dev/null 2>err || fail "--preview of a bond"
 grep -q 'solid cap: .*; bonded to base' preview-bonded.svg || fail "a bond is not drawn"
-grep -q 'solid lump: .*; nothing clamped' preview-bonded.svg || fail "a free body is not drawn"
+grep -q 'solid lump: .*; 0 clamped' preview-bonded.svg || fail "a free body is not drawn"
 grep -q 'cap. has no clamp' err && fail "a bonded copy moves freely: $(cat err)"
 grep -q 'lump. has no clamp, and .like. does not copy' err || fail "a free copy: $(cat err)"
 refuses 1 'did you mean `dam_break`' --new dambreak

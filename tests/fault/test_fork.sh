@@ -33,7 +33,7 @@ expect 1 'has format 0' --inspect "$dir/patched.ckpt"
 patched 8 '\0\0\0\x01\x01\x02\x03\x04'
 expect 1 'byte-order mark is wrong' --inspect "$dir/patched.ckpt"
 expect 1 'byte-order mark is wrong' "$case" --out "$run" --restart "$dir/patched.ckpt"
-expect 1 "the checkpoint has 'dp = 0.01 m'.*'dp = 0.005 m'" "$case" --out "$run" --restart \
+expect 1 "'dp = 0.01 m' is now 'dp = 0.005 m'" "$case" --out "$run" --restart \
     --set dp=5mm
 expect 1 'has changed.*integrator' "$case" --out "$run" --restart --set integrator=verlet
 
