@@ -145,9 +145,6 @@ SPHFSI_API const char *sphfsi_more_errors(void);
  * is 128 plus the number of the signal. */
 SPHFSI_API int sphfsi_exit_status(enum sphfsi_status status, int signal_number);
 
-/** The name most similar to a misspelt word, for messages; NULL if none is similar. */
-SPHFSI_API const char *sphfsi_nearest(const char *word, const char *const *names, int n);
-
 /** Builds a simulation in memory at time zero; no file is written. On success the caller frees
  * *result with sphfsi_free; on failure *result is NULL. */
 SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,

@@ -244,22 +244,6 @@ static int names_a_tool(const char *argument)
     return 0;
 }
 
-static int unknown_option(const char *argument)
-{
-    if (names_a_tool(argument)) return 1;
-    const char *names[OPTION_COUNT];
-    char word[64];
-    for (int k = 0; k < OPTION_COUNT; k++)
-        names[k] = options[k].name + strspn(options[k].name, "-");
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(argument, "="), argument);
-    const char *near = sphfsi_nearest(word + strspn(word, "-"), names, OPTION_COUNT);
-    for (int k = 0; near && k < OPTION_COUNT; k++)
-        if (names[k] == near)
-            return usage_error("unknown option %s; the nearest one is %s", argument,
-                               options[k].name);
-    return usage_error("unknown option %s%s", argument, "");
-}
-
 /* Whether the word after an option with an optional operand is its operand. After --restart it is
  * the checkpoint, unless no case has been named yet and it does not end in .ckpt. */
 static int is_operand(const struct command *c, const struct option *option, const char *next)
@@ -274,7 +258,8 @@ static int parse_option(struct command *c, const char *argument, const char *nex
 {
     const char *operand;
     const struct option *option = find_option(argument, &operand);
-    if (!option) return unknown_option(argument);
+    if (!option && names_a_tool(argument)) return 1;
+    if (!option) return usage_error("unknown option %s%s", argument, "");
     if (option->takes == NOTHING && operand)
         return usage_error("%s takes no value, but '%s' is given", option->name, operand);
     if (option->takes == OPERAND && !operand && !next)

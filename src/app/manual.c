@@ -14,34 +14,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const section_meanings[][2] = {
-    {"top", "Keys before the first section."},
-    {"numerics",
-     "Parameters of the numerical method. [theory.md](theory.md), Sec. 9, lists where the "
-     "defaults depart from the article. \"The article\" and \"Eq.\" refer to the publication that "
-     "the program reproduces, \"T-\" to equations of theory.md. The article is named there."},
-    {"domain", "The region in which particles may be."},
-    {"output", "What is written, and how often."},
-    {"relax", "A search for a state of rest before the run."},
-    {"fluid",
-     "Fluid at the start. Several sections may differ in shape, surface, pressure and velocity; "
-     "their other values must be equal."},
-    {"wall", "Rigid bodies, at rest or with a prescribed motion."},
-    {"rigid", "Rigid bodies that move freely."},
-    {"beam",
-     "Elastic beams and plates that may be far thinner than a particle, as lines of nodes with any "
-     "rotation and small strains."},
-    {"damping", "A zone in which the fluid is damped, so that waves leave."},
-    {"spring", "Springs, dampers and mooring lines between rigid bodies, or from one to a place."},
-    {"solid", "Elastic bodies."},
-    {"contact", "Parameters of contact between bodies, or no contact."},
-    {"load", "A force on a region of a solid or beam."},
-    {"motion",
-     "A prescribed motion of walls or clamps: the displacement from their initial position."},
-    {"probe", "A measurement."},
-    {"reference", "A curve that a probe is compared with, in the summary and in plots."},
-};
-
 static bool pure(const struct param *param)
 {
     return !param->unit || strcmp(param->unit, "1") == 0;
@@ -130,14 +102,6 @@ static void param_type_text(const struct param *param, char *text, size_t size)
                  param->type == PARAM_EXPR && param->count == 2 ? "s" : "", scopes[param->scope]);
 }
 
-static const char *section_meaning(enum section_id id)
-{
-    for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
-        if (strcmp(section_meanings[k][0], section_table[id].word) == 0)
-            return section_meanings[k][1];
-    return "";
-}
-
 /* The meaning of a key, with the kinds of motion that have it. */
 static void meaning_of(const struct param *param, char *text, size_t size)
 {
@@ -191,8 +155,7 @@ enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
         const enum section_id id = param_table[k].section;
         const struct section_info *const info = &section_table[id];
         if (k == 0 || id != param_table[k - 1].section)
-            session_say(o, "[%s%s] %s", info->word, info->named ? " NAME" : "",
-                        section_meaning(id));
+            session_say(o, "[%s%s] %s", info->word, info->named ? " NAME" : "", info->meaning);
         say_key(&param_table[k], o);
     }
     if (!e) session_say(o, "Quantities of a probe, and their columns");
@@ -251,7 +214,7 @@ static void write_key(struct json *j, const struct param *param)
 static void write_section(struct json *j, enum section_id id)
 {
     json_open(j, section_table[id].word, '{');
-    json_text(j, "meaning", section_meaning(id));
+    json_text(j, "meaning", section_table[id].meaning);
     json_integer(j, "named", section_table[id].named);
     json_open(j, "keys", '{');
     for (int k = 0; k < PARAM_COUNT; k++)

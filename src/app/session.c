@@ -342,11 +342,3 @@ int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
         return 128 + signal_number;
     return (unsigned)status <= SPHFSI_INTERRUPT ? err_status((enum err)status) : 2;
 }
-
-const char *sphfsi_nearest(const char *word, const char *const *names, int n)
-{
-    struct nearest best = {0};
-    for (int k = 0; word && names && k < n; k++)
-        if (names[k]) nearest_offer(&best, word, names[k]);
-    return best.name;
-}

@@ -10,8 +10,9 @@
 
 const struct section_info section_table[SECTION_COUNT + 1] = {
     [SECTION_constants] = {.word = "constants"},
-#define SECTION(section, named) \
-    [SECTION_##section] = {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
+#define SECTION(section, named, text)                                     \
+    [SECTION_##section] = {#section, text, named, WHERE_##named(section), \
+                           sizeof(struct scene_##section)},
 #define END
 #include "case/params.def"
 };

@@ -7,7 +7,7 @@
 #include "case/scene.h"
 
 enum section_id {
-#define SECTION(section, named) SECTION_##section,
+#define SECTION(section, ...) SECTION_##section,
 #define END
 #include "case/params.def"
     SECTION_COUNT,
@@ -15,7 +15,7 @@ enum section_id {
 };
 
 struct section_info {
-    const char *word;
+    const char *word, *meaning;
     bool named;          /* an array of them in struct scene, with its count */
     size_t offset;       /* in struct scene: of the struct, or of the pointer to the array */
     size_t count_offset; /* in struct scene: of the count (named only) */

@@ -75,7 +75,7 @@ struct scene_section_common {
 #define MEMBER_HINGES(key) struct hinge_list key;
 #define PARAM(section, key, type, ...) MEMBER_##type(key)
 /* clang-format off */
-#define SECTION(section, named) struct scene_##section { struct scene_section_common common;
+#define SECTION(section, ...) struct scene_##section { struct scene_section_common common;
 #define END };
 /* clang-format on */
 #include "case/params.def"
@@ -227,7 +227,7 @@ struct scene {
 #define SCENE_MEMBER_1(section)      \
     struct scene_##section *section; \
     int n_##section;
-#define SECTION(section, named) SCENE_MEMBER_##named(section)
+#define SECTION(section, named, text) SCENE_MEMBER_##named(section)
 #define END
 #include "case/params.def"
     enum scene_kind kind;

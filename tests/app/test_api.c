@@ -383,13 +383,6 @@ static void a_request_stops_a_run(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
 }
 
-static void nearest_names(void)
-{
-    static const char *const names[] = {"--out", "--threads"};
-    TEST_ASSERT_EQUAL_STRING("--threads", sphfsi_nearest("--thread", names, 2));
-    TEST_ASSERT_NULL(sphfsi_nearest("--colour-of-water", names, 2));
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -410,6 +403,5 @@ int main(void)
     RUN_TEST(steps_without_a_limit_have_the_bits_of_a_run);
     RUN_TEST(probes_have_names);
     RUN_TEST(a_request_stops_a_run);
-    RUN_TEST(nearest_names);
     return UNITY_END();
 }

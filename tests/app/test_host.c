@@ -425,9 +425,6 @@ static void what_is_out_of_range_has_an_answer(void)
     TEST_ASSERT_NULL(sphfsi_template_name(-1));
     TEST_ASSERT_NULL(sphfsi_template_name(1000000));
     TEST_ASSERT_NULL(sphfsi_template(NULL));
-    TEST_ASSERT_NULL(sphfsi_nearest(NULL, one, 1));
-    TEST_ASSERT_NULL(sphfsi_nearest("a", NULL, 1));
-    TEST_ASSERT_NULL(sphfsi_nearest("a", one, 1));
     TEST_ASSERT_TRUE(isnan(sphfsi_time(NULL)) && isnan(sphfsi_end_time(NULL)) &&
                      isnan(sphfsi_time_step(NULL)) && isnan(sphfsi_next_output(NULL)));
     TEST_ASSERT_TRUE(sphfsi_steps(NULL) == 0 && sphfsi_count(NULL, SPHFSI_FLUID) == 0 &&

@@ -50,7 +50,7 @@ sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg
 "$sphfsi" wrong.cfg --quiet >out 2>err
 [ $? = 1 ] && [ "$(grep -c '^sphfsi: wrong.cfg:' err)" = 3 ] || fail "three mistakes: $(cat err)"
 [ ! -e runs/wrong ] || fail "a wrong case leaves a folder"
-refuses 1 "nearest one is --preview" --previw gate.cfg
+refuses 1 "unknown option --previw" --previw gate.cfg
 refuses 1 "takes no value" --keys=all
 refuses 1 "json follows --keys" --json
 

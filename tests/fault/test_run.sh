@@ -8,7 +8,7 @@ case=tests/fault/tiny.cfg
 expect 0 'usage:' --help
 expect 0 '^[0-9]*\.[0-9]*\.[0-9]' --version
 expect 1 'no case is given'
-expect 1 'nearest one is --threads' "$case" --thread 2
+expect 1 'unknown option --thread;' "$case" --thread 2
 expect 1 'unknown option -x' "$case" -x
 expect 1 '--out needs a value' "$case" --out
 expect 1 'from 1 to 2147483647' "$case" --threads 0
