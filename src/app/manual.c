@@ -302,7 +302,7 @@ static enum err cite(struct session *session, const struct sphfsi_options *o, st
         char words[SCENE_TEXT], word[SCENE_TEXT];
         bool used = false;
         snprintf(words, sizeof words, "%.*s", head, line);
-        for (int k = 0; *line != '#' && scene_listed(words, k, word); k++)
+        for (int k = 0; *line != '#' && scene_word(words, k, word); k++)
             used |= meets_condition(scene, fx, word);
         if (used) session_say(o, "%.*s", end - head - 2, line + head + 2);
     }

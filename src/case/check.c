@@ -479,7 +479,7 @@ static enum err check_output(struct reader *r, const void *section)
     const char *const fields = ((const struct scene_output *)section)->snapshot_fields;
     const size_t count = COUNT_OF(names);
     char word[SCENE_TEXT], known[300] = "";
-    for (int n = 0; strcmp(fields, "all") != 0 && scene_listed(fields, n, word); n++) {
+    for (int n = 0; strcmp(fields, "all") != 0 && scene_word(fields, n, word); n++) {
         struct nearest near = {0};
         size_t k = 0;
         while (k < count && strcmp(names[k], word) != 0) nearest_offer(&near, word, names[k++]);

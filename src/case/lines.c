@@ -63,17 +63,10 @@ static int find_section_id(const char *word)
 static enum err unknown_section(struct reader *r, int line, const char *word)
 {
     struct nearest near = {0};
-    char known[400] = "constants";
-    for (int id = SECTION_top + 1; id <= SECTION_constants; id++) {
-        const char *const name = section_table[id].word;
-        const size_t used = strlen(known);
-        nearest_offer(&near, word, name);
-        if (id < SECTION_constants)
-            snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
-    }
-    if (near.name)
-        return bad_line(r, line, "unknown section [%.60s]; did you mean [%s]?", word, near.name);
-    return bad_line(r, line, "unknown section [%.60s]; known: %s", word, known);
+    for (int id = SECTION_top + 1; id <= SECTION_constants; id++)
+        nearest_offer(&near, word, section_table[id].word);
+    return bad_line(r, line, "unknown section [%.60s]%s", word,
+                    near.name ? nearest_hint(&near) : "; --keys lists them");
 }
 
 static enum err add_section(struct reader *r, int line, int id, const char *name)

@@ -126,18 +126,27 @@ double scene_contact_gap(const struct scene *scene, const struct scene_contact *
 
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
 {
-    static const char between[] = " \t,";
-    list += strspn(list, between);
-    for (; k > 0; k--) list += strcspn(list, between), list += strspn(list, between);
-    snprintf(name, SCENE_TEXT, "%.*s", (int)strcspn(list, between), list);
-    return *name;
+    struct slice rest = slice_of(list), piece = rest;
+    for (; k >= 0; k--)
+        if (!slice_next(&rest, ',', &piece)) return false;
+    snprintf(name, SCENE_TEXT, "%.*s", (int)piece.length, piece.at);
+    return true;
+}
+
+bool scene_word(const char *list, int k, char word[SCENE_TEXT])
+{
+    static const char blanks[] = " \t,";
+    list += strspn(list, blanks);
+    for (; k > 0; k--) list += strcspn(list, blanks), list += strspn(list, blanks);
+    snprintf(word, SCENE_TEXT, "%.*s", (int)strcspn(list, blanks), list);
+    return *word;
 }
 
 bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 {
     char more[SCENE_TEXT];
     return scene_listed(text, 0, name[0]) && scene_listed(text, 1, name[1]) &&
-           !scene_listed(text, 2, more);
+           !scene_listed(text, 2, more) && *name[0] && *name[1];
 }
 
 /* --- probes and snapshots --- */
@@ -172,7 +181,7 @@ bool scene_snapshot_has(const struct scene *scene, const char *field)
     const char *const fields = scene->output.snapshot_fields;
     char word[SCENE_TEXT];
     bool has = strcmp(fields, "all") == 0;
-    for (int k = 0; !has && scene_listed(fields, k, word); k++) has = strcmp(word, field) == 0;
+    for (int k = 0; !has && scene_word(fields, k, word); k++) has = strcmp(word, field) == 0;
     return has;
 }
 

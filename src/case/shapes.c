@@ -17,6 +17,12 @@
 #include <stdio.h>
 #include <string.h>
 
+static enum err read_coordinate(struct reader *r, struct slice text, double *value)
+{
+    TRY(case_number(r, text, "m", value));
+    return fabs(*value) > 1e9 ? bad_value(r, "out of range: at most 1e9 m is allowed") : ERR_OK;
+}
+
 static enum err read_point(struct reader *r, struct slice text, int n, double *value)
 {
     struct slice piece;
@@ -25,10 +31,8 @@ static enum err read_point(struct reader *r, struct slice text, int n, double *v
         return bad_value(r, "%d numbers with commas between them are expected; `%.*s` has %d%s", n,
                          (int)(text.length < 40 ? text.length : 40), text.at, given,
                          given > n ? comma_hint(r->entry->value) : "");
-    for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
-        TRY(case_number(r, piece, "m", &value[k]));
-        if (fabs(value[k]) > 1e9) return bad_value(r, "out of range: at most 1e9 m is allowed");
-    }
+    for (int k = 0; k < n && slice_next(&text, ',', &piece); k++)
+        TRY(read_coordinate(r, piece, &value[k]));
     return ERR_OK;
 }
 
@@ -202,18 +206,17 @@ enum err case_shape(struct reader *r, struct shape_list *list)
 enum err case_hinge(struct reader *r, struct hinge_list *list)
 {
     struct hinge_point hinge = {.line = r->entry->line};
-    struct slice text = slice_of(r->entry->value), rest = text, piece = text;
-    const int n = slice_count(text, ',');
+    struct slice rest = slice_of(r->entry->value), piece;
+    const int n = slice_count(rest, ',');
     if (n != 2 && n != 3)
         return bad_value(r, "`X, Y` or `X, Y, NAME` is expected; there %s %d%s",
                          n == 1 ? "is" : "are", n, comma_hint(r->entry->value));
-    for (int k = 0; k < n; k++) slice_next(&rest, ',', &piece);
+    for (int k = 0; k < 2 && slice_next(&rest, ',', &piece); k++)
+        TRY(read_coordinate(r, piece, &hinge.at[k]));
     if (n == 3) {
-        snprintf(hinge.other, sizeof hinge.other, "%.*s", (int)piece.length, piece.at);
-        while (text.at[text.length - 1] != ',') text.length--;
-        text.length--;
+        rest = slice_trimmed(rest);
+        snprintf(hinge.other, sizeof hinge.other, "%.*s", (int)rest.length, rest.at);
     }
-    TRY(read_point(r, text, 2, hinge.at));
     list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof hinge,
                             "hinges of a body", r->diag);
     if (!list->item) return ERR_MEMORY;

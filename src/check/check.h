@@ -38,6 +38,17 @@ struct check {
     struct points points;
 };
 
+/* A solid, wall, rigid body or beam. */
+struct body {
+    const struct scene_section_common *common;
+    const char *word, *motion; /* of its section; of its clamps or of it all, or "" */
+    int slip;                  /* enum slip */
+    enum kind kind;
+    int index; /* among the points of this kind */
+};
+/* The k-th body of a scene, walls after solids. */
+struct body body_at(const struct scene *scene, int k);
+
 enum err list_points(struct check *check) SPHFSI_CHECKED;
 /* The region of walls or solids that covers a place as drawn, or -1. */
 int drawn_at(const struct check *check, double x, double y);

@@ -188,31 +188,28 @@ static void warn_of_start_gap(struct check *check, int fluid)
         }
     }
     if (n <= FEW) return;
-    const int section = p->section[body];
-    const bool wall = p->kind[body] == KIND_WALL;
+    const int walls_from = p->kind[body] == KIND_WALL ? check->scene->n_solid : 0;
+    const struct body other = body_at(check->scene, walls_from + p->section[body]);
     warn_at(check->diag, check->scene, check->scene->fluid[fluid].common.line,
             "[fluid %s] begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run "
             "against it; let their shapes touch, or leave a gap of 2 dp or more",
-            check->scene->fluid[fluid].common.name, dp, kind_names[p->kind[body]],
-            wall ? check->scene->wall[section].common.name
-                 : check->scene->solid[section].common.name,
-            p->x[first], p->y[first]);
+            check->scene->fluid[fluid].common.name, dp, other.word, other.common->name, p->x[first],
+            p->y[first]);
 }
 
 /* --- speeds near that of sound --- */
 
 /* The largest speed of the corners of the box around a wall or a body's clamps. */
-static void warn_of_motion(struct check *check, enum kind kind, int section,
-                           const struct scene_section_common *common, const char *name)
+static void warn_of_motion(struct check *check, const struct body *b)
 {
     enum { TIMES = 256 };
     struct scene *const scene = check->scene;
-    const struct scene_points *const p = &scene->points[kind];
-    const int motion = *name ? scene_find_motion(scene, name) : -1;
+    const struct scene_points *const p = &scene->points[b->kind];
+    const int motion = scene_find_motion(scene, b->motion);
     struct box2 box = box2_empty();
     double largest = 0;
     for (int64_t k = 0; k < p->n; k++)
-        if (p->body[k] == section && (kind != KIND_SOLID || p->clamped[k]))
+        if (p->body[k] == b->index && (b->kind != KIND_SOLID || p->clamped[k]))
             box2_include(&box, p->x[k], p->y[k]);
     if (motion < 0 || box.low[0] > box.high[0]) return;
     for (int n = 0; n <= TIMES; n++) {
@@ -226,7 +223,7 @@ static void warn_of_motion(struct check *check, enum kind kind, int section,
         }
     }
     warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves [%s %s] at",
-                  scene->motion[motion].common.name, kind_names[kind], common->name);
+                  scene->motion[motion].common.name, b->word, b->common->name);
 }
 
 /* --- open boundaries --- */
@@ -356,25 +353,27 @@ static void warn_of_turning(struct check *check)
     double nu = 0;
     for (int k = 0; k < scene->n_fluid; k++) nu = max2(nu, scene->fluid[k].laminar_viscosity);
     for (int k = 0; k < scene->n_solid + scene->n_wall && nu > 0; k++) {
-        const struct scene_solid *const b = k < scene->n_solid ? &scene->solid[k] : NULL;
-        const struct scene_wall *const w = b ? NULL : &scene->wall[k - scene->n_solid];
-        const struct scene_section_common *const common = b ? &b->common : &w->common;
-        const int motion = b ? -1 : scene_find_motion(scene, w->motion);
+        const struct body b = body_at(scene, k);
+        const bool solid = b.kind == KIND_SOLID;
+        const int motion = solid ? -1 : scene_find_motion(scene, b.motion);
         const struct scene_motion *const m = motion < 0 ? NULL : &scene->motion[motion];
-        const bool turns = b ? b->clamp.n == 0 : m && (m->kind == MOTION_ROTATION || m->turn.e[0]);
-        bool asked = b;
+        const bool turns = solid ? scene->solid[k].clamp.n == 0
+                                 : m && (m->kind == MOTION_ROTATION || m->turn.e[0]);
+        bool asked = solid;
         char name[SCENE_TEXT];
-        for (int p = 0; p < scene->n_probe && !b; p++)
+        for (int p = 0; p < scene->n_probe && !solid; p++)
             for (int n = 0; scene_listed(scene->probe[p].body, n, name); n++)
-                asked |= scene->probe[p].quantity == PROBE_FORCE && strcmp(name, common->name) == 0;
-        if (turns && asked && (b ? b->slip : w->slip) == SLIP_NONE)
-            warn_at(
-                check->diag, check->scene, common->line,
-                "[%s %s] %s with slip = none: the viscous moment on it is off by 2 mu A omega (mu "
-                "= %.3g Pa s, A: area of the body, omega: angular velocity); forces are right%s",
-                kind_names[b ? KIND_SOLID : KIND_WALL], common->name,
-                b ? "is free to turn" : "turns", nu * scene->rho0,
-                b ? ", but at low Reynolds numbers it turns up to twice as fast as it should" : "");
+                asked |=
+                    scene->probe[p].quantity == PROBE_FORCE && strcmp(name, b.common->name) == 0;
+        if (turns && asked && b.slip == SLIP_NONE)
+            warn_at(check->diag, scene, b.common->line,
+                    "[%s %s] %s with slip = none: the viscous moment on it is off by 2 mu A omega "
+                    "(mu = %.3g Pa s, A: area of the body, omega: angular velocity); forces are "
+                    "right%s",
+                    b.word, b.common->name, solid ? "is free to turn" : "turns", nu * scene->rho0,
+                    solid
+                        ? ", but at low Reynolds numbers it turns up to twice as fast as it should"
+                        : "");
     }
 }
 
@@ -406,19 +405,17 @@ static void warn_of_drift(struct check *check)
 static void warn_of_streamlines(struct check *check)
 {
     const struct scene *const scene = check->scene;
-    const char *kind = "wall", *name = NULL;
-    for (int k = 0; k < scene->n_wall && !name; k++)
-        if (scene->wall[k].slip == SLIP_NONE) name = scene->wall[k].common.name;
-    for (int k = 0; k < scene->n_solid && !name; k++)
-        if (scene->solid[k].slip == SLIP_NONE) kind = "solid", name = scene->solid[k].common.name;
-    if (!name || !scene->full) return;
-    for (int k = 0; k < scene->n_fluid; k++)
+    int k = 0;
+    while (k < scene->n_solid + scene->n_wall && body_at(scene, k).slip == SLIP_FREE) k++;
+    if (k == scene->n_solid + scene->n_wall || !scene->full) return;
+    const struct body b = body_at(scene, k);
+    for (k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting == 0)
             warn_at(check->diag, scene, scene->fluid[k].common.line,
                     "[fluid %s] sticks to [%s %s] and has no `shifting`: its particles align along "
                     "streamlines and leave gaps beside bodies, which disturb the forces; set "
                     "shifting = 10 and shifting_speed = largest",
-                    scene->fluid[k].common.name, kind, name);
+                    scene->fluid[k].common.name, b.word, b.common->name);
 }
 
 enum err warn_of_fluid(struct check *check)
@@ -434,10 +431,10 @@ enum err warn_of_fluid(struct check *check)
                       start_speed(scene, KIND_FLUID, f, &scene->fluid[f].velocity),
                       "[fluid %s] begins with", scene->fluid[f].common.name);
     }
-    for (int k = 0; k < scene->n_wall; k++)
-        warn_of_motion(check, KIND_WALL, k, &scene->wall[k].common, scene->wall[k].motion);
-    for (int k = 0; k < scene->n_solid; k++)
-        warn_of_motion(check, KIND_SOLID, k, &scene->solid[k].common, scene->solid[k].clamp_motion);
+    for (int k = 0; k < scene->n_solid + scene->n_wall; k++) {
+        const struct body b = body_at(scene, k);
+        warn_of_motion(check, &b);
+    }
     scene->full = scene_open_count(scene) > 0 && !has_surface(check);
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open o = scene_open_at(scene, k);

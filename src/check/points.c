@@ -3,6 +3,7 @@
 #include "check/check.h"
 
 #include "base/elementary.h"
+#include "case/params.h"
 
 #include <math.h>
 
@@ -11,6 +12,19 @@ int drawn_at(const struct check *check, double x, double y)
     for (int r = 0; r < check->scene->n_solid + check->scene->n_wall; r++)
         if (geometry_covers(&check->shapes.regions[r], x, y)) return r;
     return -1;
+}
+
+struct body body_at(const struct scene *scene, int k)
+{
+    const struct scene_solid *const solid = k < scene->n_solid ? &scene->solid[k] : NULL;
+    const struct scene_wall *const wall = solid ? NULL : &scene->wall[k - scene->n_solid];
+    const struct scene_section_common *const common = solid ? &solid->common : &wall->common;
+    return (struct body){common,
+                         section_table[common->section].word,
+                         solid ? solid->clamp_motion : wall->motion,
+                         solid ? solid->slip : wall->slip,
+                         solid ? KIND_SOLID : KIND_WALL,
+                         solid ? k : k - scene->n_solid};
 }
 
 #define ALLOCATE(field)                                                                          \

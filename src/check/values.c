@@ -37,14 +37,13 @@ static void warn_of_sliding(struct check *check)
     const struct scene *const scene = check->scene;
     if (scene->numerics.sides != SIDES_ONE || scene->n_fluid == 0) return;
     for (int k = 0; k < scene->n_solid + scene->n_wall; k++) {
-        const struct scene_solid *const solid = k < scene->n_solid ? &scene->solid[k] : NULL;
-        const struct scene_wall *const wall = solid ? NULL : &scene->wall[k - scene->n_solid];
-        if ((solid ? solid->slip : wall->slip) != SLIP_FREE || !(solid || *wall->motion)) continue;
+        const struct body b = body_at(scene, k);
+        if (b.slip != SLIP_FREE || (b.kind == KIND_WALL && !*b.motion)) continue;
         warn_at(check->diag, check->scene, scene_line(scene, SECTION_numerics, 0, "sides"),
                 "sides = one drags the fluid that slides along [%s %s], as if the body were larger "
                 "by a spacing all round: the added mass of a cylinder of 10 spacings is 40 %% too "
                 "large; use sides = both, or slip = none",
-                solid ? "solid" : "wall", solid ? solid->common.name : wall->common.name);
+                b.word, b.common->name);
     }
 }
 

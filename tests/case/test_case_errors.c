@@ -34,12 +34,8 @@ static const struct {
     {TOP "friction = 0.3\n" SOLID, NULL,
      "bad.cfg:3: unknown key `friction` at the top of the file; it belongs in [contact]"},
     {TOP SOLID, "young=1", "--set young=1: unknown key or constant `young`; write `a.young`"},
-    {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
-    {TOP "[zebra]\n", NULL,
-     "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
-     "fluid, wall, solid, rigid, beam, spring, damping, contact, load, motion, inflow, outflow, "
-     "probe, "
-     "reference"},
+    {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean `solid`?"},
+    {TOP "[zebra]\n", NULL, "bad.cfg:3: unknown section [zebra]; --keys lists them"},
     {TOP SOLID, "a.young=1 Mpa",
      "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` after 1 is not a unit (units: m km cm mm um"},
     {"dp = \xE2\x88\x92"
@@ -498,13 +494,13 @@ static void test_all_problems_of_a_case_are_reported(void)
                 "`probe_interval`?\n"
                 "bad.cfg:1: dp = 1 MPa: a pressure (Pa) where a length (m) is expected\n"
                 "bad.cfg:2: `end_time 1 s` is neither `key = value` nor `[section]`\n"
-                "bad.cfg:3: unknown section [constant]; did you mean [constants]?\n"
+                "bad.cfg:3: unknown section [constant]; did you mean `constants`?\n"
                 "bad.cfg:6: shape = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
                 "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...; "
                 "arc thickness T: X, Y, R, A, B\n"
                 "bad.cfg:7: young = 1/0: division by zero\n"
                 "bad.cfg:9: unknown key `poison` in [solid]; did you mean `poisson`?\n"
-                "bad.cfg:10: unknown section [solids]; did you mean [solid]?\n");
+                "bad.cfg:10: unknown section [solids]; did you mean `solid`?\n");
 }
 
 /* A constant that is wrong is reported where it stands, not at each use. */

@@ -46,8 +46,8 @@ static const struct {
     {TOP SOLID, "young", "write key=value or section.key=value"},
     {TOP SOLID, "a.young=1\001", "control byte 1"},
     {TOP SOLID, "1a.young=1", "the case has no section `1a`"},
-    {TOP "[constant]\nA = 1\n" SOLID, NULL, "did you mean [constants]?"},
-    {TOP "[zzzzzzzzzz]\nA = 1\n" SOLID, NULL, "known: constants, numerics"},
+    {TOP "[constant]\nA = 1\n" SOLID, NULL, "did you mean `constants`?"},
+    {TOP "[zzzzzzzzzz]\nA = 1\n" SOLID, NULL, "[zzzzzzzzzz]; --keys lists them"},
     /* Numbers and units. */
     {TOP SOLID, "dp=1.2.3 mm", "`1.2.3` is not a number"},
     {TOP SOLID, "dp=. mm", "`.` is not a number"},
