@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Drawing of particles, colour bars and curves, for the page of the program and the film of a run
-// (tools/view.js).
+// Drawing of particles, colour bars and curves, for the page of the program.
 "use strict";
 
 const VERTEX = `

@@ -26,7 +26,6 @@ from runs import program_hash
 from study import (complain, done, give_jobs, points_of, read_study, record_of, repeats_of,
                    run_point)
 from study_metrics import measure
-from study_results import front_names
 
 STUDY = ROOT / "tools" / "report" / "accuracy.toml"
 
@@ -41,12 +40,8 @@ def arguments():
     parser.add_argument("--cached", action="store_true",
                         help="run nothing; report what has been run or was collected before")
     parser.add_argument("--report", action="store_true", help="only write the report")
-    parser.add_argument("--again", nargs="?", const="", metavar="NAMES",
-                        help="time once more the finished points whose names begin like one of "
-                        "these (commas between), or, without NAMES, those of the fronts")
     parser.add_argument("--jobs", type=int, default=1,
                         help="points at a time; their timings are marked as taken side by side")
-    parser.add_argument("--prefix", default="", help="command in front of each run, such as nice")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the report")
     parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
     return parser.parse_args()
@@ -65,7 +60,7 @@ def run_all(missing, study, args, cost):
     started, left = time.monotonic(), list(missing)
 
     def run(job):
-        record = run_point(job, study, args.jobs - 1, args.prefix)
+        record = run_point(job, study, args.jobs - 1)
         left.remove(job)
         cpu = [t["cpu"] for t in record["timings"]]
         print(f"[{len(missing) - len(left)}/{len(missing)}, "
@@ -139,10 +134,8 @@ def main():
               if p["outcome"] != "not run"}
     cost = {name: cpu * repeats_of(cpu, study["study"]) for name, p in before.items()
             if p["timing"] for cpu in [min(t["cpu"] for t in p["timing"])]}
-    again = () if args.again is None else \
-        tuple(filter(None, args.again.split(","))) or tuple(front_names(args.data))
-    missing = {job.folder: job for p in reversed(chosen) if (job := jobs[p["name"]]) and
-               (p["name"].startswith(again) or not done(job))}
+    missing = {job.folder: job for p in reversed(chosen)
+               if (job := jobs[p["name"]]) and not done(job)}
     missing = list(reversed(missing.values()))
     if args.list:
         for p in chosen:

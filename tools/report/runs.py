@@ -101,7 +101,7 @@ class Job:
             found.get("program") == program_hash() and self.folder.is_dir()
         return found if same else {}
 
-    def run(self, say=print, threads=1, limit=None, prefix=(), anew=False):
+    def run(self, say=print, threads=1, limit=None, anew=False):
         """The record, after a run if there is none of one that ended; an interrupted run goes on
         unless it is to be `anew`."""
         before = self.record()
@@ -115,13 +115,13 @@ class Job:
         record = {"case": case_hash(self.effective()), "program": program_hash(),
                   "version": program_version(), "outcome": "started"}
         self.store(record)
-        command = [*prefix, str(PROGRAM), *self.arguments(), "--quiet", "--threads", str(threads),
+        command = [str(PROGRAM), *self.arguments(), "--quiet", "--threads", str(threads),
                    "--out", str(self.folder)]
         status, timing, said = timed([*command, "--restart"] if goes_on else command, threads,
                                      limit)
         if goes_on and status == 1 and NO_RESTART.search(said):
             say(f"{self.name}: {said.splitlines()[-1]}")
-            return self.run(say, threads, limit, prefix, anew=True)
+            return self.run(say, threads, limit, anew=True)
         record.update(timing=timing, log=said, resumed=bool(goes_on),
                       **outcome(self.folder, status, said, limit))
         self.store(record)

@@ -139,9 +139,3 @@ class Study:
 
     def marks(self, p):
         return "".join(mark for mark, is_so in (("†", self.busy), ("‡", self.beside)) if is_so(p))
-
-
-def front_names(path):
-    study = Study(path)
-    return [p["name"] for case in study.cases for p in study.front(case)] + \
-        [p["name"] for p in study.points if p["knob"] == "base"]
