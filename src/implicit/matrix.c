@@ -7,7 +7,7 @@
 #include "base/box2.h"
 #include "implicit/constraint.h"
 #include "solid/loads.h"
-#include "solid/packed.h"
+#include "solid/solid.h"
 
 static const char what[] = "matrix of the solid";
 

@@ -27,12 +27,6 @@ struct cloud {
 
 static int body_at(const struct cloud *of, int64_t i) { return of->first_body + of->section[i]; }
 
-/* Two neighbours with a free side. */
-struct link {
-    int32_t a, b;
-    bool sided;
-};
-
 /* Particles of the same group within reach of the circles. */
 enum { AROUND = 64 };
 struct around {
@@ -55,8 +49,9 @@ static bool empty_circle(const struct around *at, double x, double y, int32_t ot
     return true;
 }
 
-/* Links of a particle to neighbours with higher numbers. */
-static int64_t links_of(const struct around *at, struct link *link, int64_t n)
+/* Links of a particle to neighbours with higher numbers and a free side: edges between particles.
+ */
+static int64_t links_of(const struct around *at, struct contact_edge *link, int64_t n)
 {
     const struct cloud *const of = at->of;
     const int32_t i = at->self;
@@ -70,7 +65,8 @@ static int64_t links_of(const struct around *at, struct link *link, int64_t n)
         const bool left = empty_circle(at, mx - up * y, my + up * x, j);
         const bool right = empty_circle(at, mx + up * y, my - up * x, j);
         if (left || right)
-            link[n++] = left && !right ? (struct link){j, i, true} : (struct link){i, j, !left};
+            link[n++] = left && !right ? (struct contact_edge){j, i, true}
+                                       : (struct contact_edge){i, j, !left};
     }
     return n;
 }
@@ -87,7 +83,8 @@ static enum err grid_of(struct point_grid *g, double side, int64_t n, double *x,
 }
 
 static enum err find_links(const struct contact *contact, const struct cloud *of,
-                           struct arena *temp, struct link *link, int64_t *n_links, struct diag *d)
+                           struct arena *temp, struct contact_edge *link, int64_t *n_links,
+                           struct diag *d)
 {
     struct point_grid g;
     double side = 0;
@@ -135,8 +132,8 @@ static void add_edge(struct contact *contact, int32_t a, int32_t b, bool sided)
 }
 
 /* Edges, and the weights of points by their number (T-61a); 0 edges count as 1. */
-static void set_edges(struct contact *contact, const struct cloud of[2], struct link *const link[2],
-                      const int64_t n_links[2])
+static void set_edges(struct contact *contact, const struct cloud of[2],
+                      struct contact_edge *const link[2], const int64_t n_links[2])
 {
     for (int c = 0; c < 2; c++)
         for (int64_t k = 0; k < n_links[c]; k++) {
@@ -198,7 +195,7 @@ static enum err find_surface(struct contact *contact, struct arena *a,
                           .y = wall->y,
                           .section = wall->body,
                           .first_body = contact->n_solids}};
-    struct link *link[2];
+    struct contact_edge *link[2];
     int64_t n_links[2], n = 0;
     for (int k = 0; k < 2; k++) {
         /* A planar graph of n points has fewer than 3 n edges. */

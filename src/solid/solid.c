@@ -10,7 +10,6 @@
 #include "case/effects.h"
 #include "case/params.h"
 #include "geometry/motion.h"
-#include "solid/packed.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {
@@ -58,9 +57,7 @@ static void join_bodies(struct solid *solid, const struct scene *scene)
 const char *solid_needs_double(const struct solid *solid, const struct scene *scene,
                                const struct particles *particles)
 {
-    /* NOLINTNEXTLINE(clang-analyzer-core.VLASize): a solid has bodies */
-    bool held[solid->n_bodies];
-    memset(held, 0, sizeof held);
+    bool held[SCENE_MAX_SECTIONS] = {false};
     for (int64_t i = 0; i < particles->n; i++) {
         const int k = particles->body[i];
         if (particles->free[i] == 0 && scene_find_motion(scene, scene->solid[k].clamp_motion) < 0)

@@ -17,6 +17,12 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
 
+/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
+ * the weights of the gradient, and sums these (S_GX, S_GY). Bodies, sweeps and packed fields are
+ * set. */
+enum err solid_stencil_create(struct solid *solid, struct arena *a,
+                              const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
+
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). In the
  * variational form hourglass control adds to the stress; then also the viscous and the hourglass
  * force. */
@@ -78,9 +84,6 @@ double solid_step_of(double omega2, double damping);
  * present state. */
 double solid_stable_step(struct solid *solid, struct particles *particles, double *omega,
                          double *damping);
-
-/* The same about the undeformed state, stored in s. */
-void solid_find_step(struct solid *solid, struct particles *particles);
 
 /* Stiffness of the stiffest particle to a wave along a principal axis, over the undeformed one,
  * from gradients that are up to date. 1 if no particle is stretched or compressed by some 5 %. */

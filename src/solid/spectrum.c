@@ -158,12 +158,6 @@ double solid_stable_step(struct solid *solid, struct particles *particles, doubl
     return solid_step_of(square(*omega), *damping);
 }
 
-void solid_find_step(struct solid *solid, struct particles *particles)
-{
-    solid->stable_step =
-        solid_stable_step(solid, particles, &solid->omega_max, &solid->damping_max);
-}
-
 static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }
 
 /* The larger of dP_11/dF_11 and dP_22/dF_22 in the principal axes, the stiffness of an axial wave,

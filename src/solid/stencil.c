@@ -7,7 +7,7 @@
 #include "base/cholesky.h"
 #include "base/point_grid.h"
 #include "particles/kernel.h"
-#include "solid/packed.h"
+#include "solid/solid.h"
 
 /* Neighbours of one particle within 2h. */
 enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };

@@ -142,4 +142,19 @@ struct solid {
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };
 
+/* Element of an array in the precision of the sweeps, such as a packed field or the weights. */
+SPHFSI_INLINE void solid_set(const struct solid *solid, void *array, int64_t i, double value)
+{
+    if (solid->sweeps->size == sizeof(double))
+        ((double *)array)[i] = value;
+    else
+        ((float *)array)[i] = (float)value;
+}
+
+SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int64_t i)
+{
+    return solid->sweeps->size == sizeof(double) ? ((const double *)array)[i]
+                                                 : (double)((const float *)array)[i];
+}
+
 #endif

@@ -368,17 +368,12 @@ enum err guards_check(struct simulation *sim, struct diag *d)
 void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[KIND_FLUID];
-    const double *const low = sim->scene->domain_lower, *const high = sim->scene->domain_upper;
-    const double x = particles->x[first], y = particles->y[first];
-    const char *const side = x < low[0]     ? "left"
-                             : x >= high[0] ? "right"
-                             : y < low[1]   ? "lower"
-                                            : "upper";
     diag_warn(d,
-              "%s: fluid particle %lld has left the domain through its %s side, at (%.6g, "
-              "%.6g) m, and is removed: its mass and pressure will be missing; a [wall] in its way "
+              "%s: fluid particle %lld has left the domain at (%.6g, %.6g) m and is removed: its "
+              "mass and pressure will be missing; a [wall] in its way "
               "or a larger [domain] keeps it",
-              time_text(sim).text, (long long)particles->id[first], side, x, y);
+              time_text(sim).text, (long long)particles->id[first], particles->x[first],
+              particles->y[first]);
 }
 
 /* --- fluid inside a wall or a solid: at the places of the body's own particles --- */

@@ -59,20 +59,18 @@ static void start_fluid(struct simulation *sim)
         const double pressure =
             expr_or(f->pressure.e[0], x, y, -sim->scene->rho0 * sim->scene->top.gravity[1] * depth);
         particles->dens[i] = eos_dens(pressure, sim->scene->rho0, sim->scene->c0);
-        if (particles->dens_slow) particles->dens_slow[i] = particles->dens[i];
         if (particles->m)
             particles->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + particles->dens[i] : 1;
         particles->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
         particles->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
-        if (particles->vx_half) {
-            particles->vx_half[i] = particles->vx[i];
-            particles->vy_half[i] = particles->vy[i];
-        }
-        if (!particles->vx_old) continue;
-        particles->vx_old[i] = particles->vx[i];
-        particles->vy_old[i] = particles->vy[i];
-        particles->dens_old[i] = particles->dens[i];
     }
+    /* What integrators carry on begins with the same values. */
+    const size_t bytes = (size_t)particles->n * sizeof(double);
+    double *const to[] = {particles->vx_half, particles->vx_old,    particles->vy_half,
+                          particles->vy_old,  particles->dens_slow, particles->dens_old};
+    double *const from[] = {particles->vx, particles->vy, particles->dens};
+    for (size_t k = 0; k < COUNT_OF(to); k++)
+        if (to[k]) memcpy(to[k], from[k / 2], bytes);
 }
 
 static void start_solid(struct simulation *sim)
@@ -162,7 +160,8 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_HINGE)
         TRY(hinges_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
     start_solid(sim);
-    solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
+    sim->solid.stable_step = solid_stable_step(&sim->solid, &sim->kind[KIND_SOLID],
+                                               &sim->solid.omega_max, &sim->solid.damping_max);
     return ERR_OK;
 }
 

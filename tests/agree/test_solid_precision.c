@@ -3,7 +3,7 @@
  * going down or displacement going up, how it grows as a body turns, that both find the same step,
  * and where it is taken. */
 #include "rig.h"
-#include "solid/packed.h"
+#include "solid/solid.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * The solid as a body: rigid motions, balances of momentum, energy, clamps, bodies beside each
  * other; in double, and with pairs in float. */
 #include "rig.h"
-#include "solid/packed.h"
+#include "solid/solid.h"
 #include "time/energy.h"
 #include "geometry/load.h"
 #include "unity.h"
