@@ -15,12 +15,6 @@
  * may be nearer to each other than this many dp. The one of less priority is left out. */
 static const double too_near = 0.7;
 
-int geometry_piece_at(const struct region *region, double u, double v)
-{
-    if (!box2_contains(&region->box, u, v) || outlines_find(&region->minus, u, v) >= 0) return -1;
-    return outlines_find(&region->add, u, v);
-}
-
 bool geometry_covers(const struct region *region, double x, double y)
 {
     double at[2];

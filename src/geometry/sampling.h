@@ -176,7 +176,12 @@ enum err geometry_merge(struct sampler *sampler, const struct samples *samples) 
 enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* The piece of a region at a place in the axes of its lattice, or -1. */
-int geometry_piece_at(const struct region *region, double u, double v);
+SPHFSI_INLINE int geometry_piece_at(const struct region *region, double u, double v)
+{
+    if (!box2_contains(&region->add.box, u, v) || outlines_find(&region->minus, u, v) >= 0)
+        return -1;
+    return outlines_find(&region->add, u, v);
+}
 /* Whether a region has a point inside, with the rounding of its particles. */
 bool geometry_covers(const struct region *region, double x, double y);
 /* Whether a point lies in a region, and further from its edges than round-off. */
@@ -185,8 +190,7 @@ bool geometry_covers_strictly(const struct region *region, double x, double y);
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *sampler) SPHFSI_CHECKED;
 
-/* Mass, centre and inertia of a rigid body from its shapes, which are not yet rotated
- * (geometry/rigid.c). */
+/* Mass, centre and inertia of a rigid body from its shapes, which are not yet rotated. */
 enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct region *region)
     SPHFSI_CHECKED;
 

@@ -94,12 +94,10 @@ static double extension(const struct sampler *sampler, const struct scene_line *
     const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp,
                  along = last ? part.length + 0.5 * dp : -0.5 * dp,
                  x = part.from[0] + along * part.t[0], y = part.from[1] + along * part.t[1];
-    for (int k = 0; k < sampler->n_regions; k++) {
-        const struct region *const region = &sampler->regions[k];
-        if (region->kind == KIND_WALL && outlines_find(&region->add, x, y) >= 0 &&
-            outlines_find(&region->minus, x, y) < 0)
+    for (int k = 0; k < sampler->n_regions; k++)
+        if (sampler->regions[k].kind == KIND_WALL &&
+            geometry_piece_at(&sampler->regions[k], x, y) >= 0)
             return reach;
-    }
     return 0;
 }
 

@@ -12,12 +12,10 @@
 
 static bool is_fluid(const struct sampler *sampler, const double at[2])
 {
-    for (int k = 0; k < sampler->n_regions; k++) {
-        const struct region *const region = &sampler->regions[k];
-        if (region->kind == KIND_FLUID && outlines_find(&region->add, at[0], at[1]) >= 0 &&
-            outlines_find(&region->minus, at[0], at[1]) < 0)
+    for (int k = 0; k < sampler->n_regions; k++)
+        if (sampler->regions[k].kind == KIND_FLUID &&
+            geometry_piece_at(&sampler->regions[k], at[0], at[1]) >= 0)
             return true;
-    }
     return false;
 }
 

@@ -92,19 +92,15 @@ static double dividing_surface(const struct simulation *sim, double x, double y,
 {
     const int reach = (int)(KERNEL_REACH * sim->fluid.k.h / step);
     const double at_y = wetness(sim, x, y);
-    double level = y, before = at_y;
-    for (int k = 1; k <= reach; k++) {
-        const double now = wetness(sim, x, y + k * step);
-        if (now > 0.5) break; /* other water above */
-        level += 0.5 * (before + now) * step;
-        before = now;
-    }
-    before = at_y;
-    for (int k = 1; k <= reach; k++) {
-        const double now = wetness(sim, x, y - k * step);
-        if (now <= 0.5) break; /* below a thin layer */
-        level -= (1 - 0.5 * (before + now)) * step;
-        before = now;
+    double level = y;
+    for (int up = 1; up >= 0; up--) {
+        double before = at_y;
+        for (int k = 1; k <= reach; k++) {
+            const double now = wetness(sim, x, up ? y + k * step : y - k * step);
+            if ((now > 0.5) == up) break; /* other water above, or below a thin layer */
+            level += (0.5 * (before + now) - !up) * step;
+            before = now;
+        }
     }
     return level;
 }

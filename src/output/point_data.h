@@ -9,14 +9,10 @@
 /* The datasets below /VTKHDF, in the order of the table in output/snapshot_file.c. */
 enum data {
     D_POINTS_COUNT,
-    D_CELLS_COUNT,
-    D_IDS_COUNT,
     D_TIME,
     D_PARTS_BEFORE,
     D_PARTS,
     D_POINTS_BEFORE,
-    D_CELLS_BEFORE,
-    D_IDS_BEFORE,
     D_POINTS,
     D_CONNECTIVITY,
     D_OFFSETS,

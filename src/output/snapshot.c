@@ -28,10 +28,8 @@ static int64_t step_value(enum data what, const struct source *source)
     switch (what) {
     case D_PARTS_BEFORE: return source->steps_before;
     case D_PARTS: return 1;
-    case D_POINTS_BEFORE:
-    case D_CELLS_BEFORE:
-    case D_IDS_BEFORE: return source->points_before;
-    default: return source->n; /* points, cells, identifiers */
+    case D_POINTS_BEFORE: return source->points_before;
+    default: return source->n;
     }
 }
 
@@ -76,18 +74,11 @@ static void values_of(const void *context, enum data what, int column, int64_t n
         }
 }
 
-static int64_t count_points(const struct simulation *sim)
+/* Points of this snapshot, or the most of any. */
+static int64_t count_points(const struct simulation *sim, bool most)
 {
     int64_t n = 0;
-    for (int k = 0; k < KIND_COUNT; k++) n += sim->kind[k].n;
-    return n;
-}
-
-/* The most points of any snapshot. */
-static int64_t count_capacity(const struct simulation *sim)
-{
-    int64_t n = 0;
-    for (int k = 0; k < KIND_COUNT; k++) n += sim->kind[k].capacity;
+    for (int k = 0; k < KIND_COUNT; k++) n += most ? sim->kind[k].capacity : sim->kind[k].n;
     return n;
 }
 
@@ -95,7 +86,7 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file,
                             struct simulation *sim)
 {
     int64_t rows[D_COUNT];
-    const int64_t n = count_points(sim), steps = snapshot_file_steps(file);
+    const int64_t n = count_points(sim, false), steps = snapshot_file_steps(file);
     /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
      * below carry no information, and would take as long to compress as all other fields together.
      */
@@ -153,7 +144,8 @@ static bool reserve_space(const struct snapshots *w, int64_t points)
  * all), then appends a snapshot of `sim`, unless that is NULL. */
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *sim)
 {
-    const int64_t points = sim ? count_points(sim) : 0, most = sim ? count_capacity(sim) : 0;
+    const int64_t points = sim ? count_points(sim, false) : 0,
+                  most = sim ? count_points(sim, true) : 0;
     struct stat info;
     if (lstat(w->spare, &info) == 0 && !S_ISREG(info.st_mode)) unlink(w->spare);
     if (!reserve_space(w, most)) return false;

@@ -19,14 +19,10 @@ static const struct column {
     int width;
 } columns[D_COUNT] = {
     [D_POINTS_COUNT] = {"VTKHDF/NumberOfPoints", BY_STEP, I64, 1},
-    [D_CELLS_COUNT] = {"VTKHDF/NumberOfCells", BY_STEP, I64, 1},
-    [D_IDS_COUNT] = {"VTKHDF/NumberOfConnectivityIds", BY_STEP, I64, 1},
     [D_TIME] = {"VTKHDF/Steps/Values", BY_STEP, F64, 1},
     [D_PARTS_BEFORE] = {"VTKHDF/Steps/PartOffsets", BY_STEP, I64, 1},
     [D_PARTS] = {"VTKHDF/Steps/NumberOfParts", BY_STEP, I64, 1},
     [D_POINTS_BEFORE] = {"VTKHDF/Steps/PointOffsets", BY_STEP, I64, 1},
-    [D_CELLS_BEFORE] = {"VTKHDF/Steps/CellOffsets", BY_STEP, I64, 1},
-    [D_IDS_BEFORE] = {"VTKHDF/Steps/ConnectivityIdOffsets", BY_STEP, I64, 1},
     [D_POINTS] = {"VTKHDF/Points", BY_POINT, F64, 3},
     [D_CONNECTIVITY] = {"VTKHDF/Connectivity", BY_POINT, I64, 1},
     [D_OFFSETS] = {"VTKHDF/Offsets", BY_POINT_AND_ONE, I64, 1},
@@ -233,6 +229,14 @@ static bool put_attributes(hid_t file, const struct scene *scene, const char *pr
     return ok;
 }
 
+/* A second name of a dataset: a hard link. */
+static bool put_link(hid_t file, enum data what, const char *group, const char *name)
+{
+    char link[64];
+    snprintf(link, sizeof link, "%s/%s", group, name);
+    return H5Lcreate_hard(file, columns[what].name, file, link, H5P_DEFAULT, H5P_DEFAULT) >= 0;
+}
+
 bool snapshot_file_create(hid_t file, const struct scene *scene, const char *program, int64_t n,
                           hid_t like)
 {
@@ -245,14 +249,14 @@ bool snapshot_file_create(hid_t file, const struct scene *scene, const char *pro
     ok = ok && put_attributes(file, scene, program);
     for (int k = 0; ok && k < D_COUNT; k++)
         ok = !layout.has[k] || create_dataset(file, &layout, &columns[k], n, like);
-    /* All arrays of points have the same offsets: hard links to one dataset. */
-    for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++) {
-        char link[64];
-        if (!layout.has[k]) continue;
-        snprintf(link, sizeof link, "%s/%s", groups[3], strrchr(columns[k].name, '/') + 1);
-        ok = H5Lcreate_hard(file, columns[D_POINTS_BEFORE].name, file, link, H5P_DEFAULT,
-                            H5P_DEFAULT) >= 0;
-    }
+    /* Each point is a cell, and all arrays of points have the same offsets. */
+    ok = ok && put_link(file, D_POINTS_COUNT, "VTKHDF", "NumberOfCells") &&
+         put_link(file, D_POINTS_COUNT, "VTKHDF", "NumberOfConnectivityIds") &&
+         put_link(file, D_POINTS_BEFORE, groups[1], "CellOffsets") &&
+         put_link(file, D_POINTS_BEFORE, groups[1], "ConnectivityIdOffsets");
+    for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++)
+        ok = !layout.has[k] ||
+             put_link(file, D_POINTS_BEFORE, groups[3], strrchr(columns[k].name, '/') + 1);
     return ok;
 }
 
