@@ -382,3 +382,28 @@ enum err outlines_moments(const struct outlines *add, const struct outlines *min
     }
     return ERR_OK;
 }
+
+static double distance2_of_edge(const double a[2], const double b[2], double x, double y)
+{
+    const double ex = b[0] - a[0], ey = b[1] - a[1], length2 = ex * ex + ey * ey;
+    const double along = (x - a[0]) * ex + (y - a[1]) * ey;
+    const double s = length2 > 0 ? min2(1, max2(0, along / length2)) : 0;
+    return square(a[0] + s * ex - x) + square(a[1] + s * ey - y);
+}
+
+bool outlines_edge_within(const struct outlines *o, double x, double y, double reach)
+{
+    const struct box2 at = {{x, y}, {x, y}};
+    for (int k = 0; k < o->n; k++) {
+        const struct outline *const piece = &o->item[k];
+        if (!box2_near(&at, &piece->box, reach)) continue;
+        if (piece->n == 0 && fabs(elementary_hypot(x - piece->centre[0], y - piece->centre[1]) -
+                                  piece->radius) <= reach)
+            return true;
+        for (int j = 0; j < piece->n; j++)
+            if (distance2_of_edge(piece->pt[j], piece->pt[j + 1 < piece->n ? j + 1 : 0], x, y) <=
+                square(reach))
+                return true;
+    }
+    return false;
+}

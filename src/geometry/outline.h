@@ -58,5 +58,7 @@ enum err outlines_moments(const struct outlines *add, const struct outlines *min
 bool outline_contains(const struct outline *o, double x, double y);
 /* The first piece that has a point inside, or -1. */
 int outlines_find(const struct outlines *o, double x, double y);
+/* Whether an edge of any piece is at most `reach` away. */
+bool outlines_edge_within(const struct outlines *o, double x, double y, double reach);
 
 #endif

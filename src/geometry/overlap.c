@@ -7,6 +7,7 @@
 #include "base/point_grid.h"
 
 #include "case/case.h"
+#include "particles/kernel.h"
 
 #include <math.h>
 #include <string.h>
@@ -164,6 +165,19 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
     return ERR_OK;
 }
 
+/* Whether a particle of a wall or rigid body is out of reach of all that touches its surface: of
+ * fluid on any side, and of solids. So thick walls are shells. */
+static bool is_deep(const struct sampler *sampler, const struct samples *samples, int64_t k)
+{
+    const struct region *const mine = &sampler->regions[samples->region[k]];
+    const double reach = KERNEL_REACH * sampler->scene->h;
+    double at[2];
+    if (mine->kind != KIND_WALL) return false;
+    lattice_place(&mine->lattice, samples->x[k], samples->y[k], at);
+    return !outlines_edge_within(&mine->add, at[0], at[1], reach) &&
+           !outlines_edge_within(&mine->minus, at[0], at[1], reach);
+}
+
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
 {
     struct point_grid t;
@@ -176,6 +190,7 @@ enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
     for (int64_t k = 0; k < samples->n; k++) {
         kept[k] = !covered[k] && !is_crowded(&t, sampler, samples, k);
         if (kept[k]) point_grid_insert(&t, k);
+        kept[k] &= !is_deep(sampler, samples, k);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++)
         TRY(store(sampler, samples, kept, (enum kind)kind));

@@ -115,13 +115,43 @@ static void test_regions_that_abut_share_no_particle(void)
         "[wall bed]\nshape = polygon 0, 0; 20 mm, tilt; 20 mm, -10 mm; 0, -10 mm\n";
     static const char *const sets[] = {"tilt=0", "tilt=20 mm", "tilt=10 mm", "tilt=1 mm",
                                        "tilt=0.5 mm"};
+    static const double tilt[] = {0, 20, 10, 1, 0.5}; /* mm */
     for (size_t k = 0; k < COUNT_OF(sets); k++) {
         must_read(text, sets[k]);
+        /* The wall has no particles deeper than 2.7 mm: none in 14 columns from 7 mm on upwards,
+         * below level ground 14 times 4. */
+        const double deep = 14 * (0.5 * tilt[k] + 7 - 2.7 * hypot(1, tilt[k] / 20));
+        const int64_t kept = 800 - (k == 0 ? 14 * 4 : (int64_t)deep);
         /* Layers along the slope meet the fluid's lattice: where that leaves too little space,
          * fluid is left out, a tenth of a layer of 20 on average. */
-        TEST_ASSERT_INT64_WITHIN_MESSAGE(k == 0 ? 0 : 12, 800, total(), sets[k]);
+        TEST_ASSERT_INT64_WITHIN_MESSAGE(k == 0 ? 0 : 12, kept, total(), sets[k]);
         TEST_ASSERT_TRUE_MESSAGE(nearest() > (k == 0 ? 0.99 : 0.64), sets[k]);
     }
+}
+
+/* Walls have particles as deep as the kernel's reach of 2.7 mm, from all of their edges: in rows of
+ * 0.5, 1.5 and 2.5 mm, of a shape less a hole. The interior of a fluid stays. */
+static void test_walls_are_shells(void)
+{
+    static const char text[] =
+        "scheme = paper\ndp = 1 mm\nend_time = 1 s\n[numerics]\nh_over_dp = 1.35\n"
+        "[fluid w]\nsound_speed = 20\nshape = box 0, 0, 20 mm, 10 mm\n"
+        "[wall bed]\nshape = box 0, -30 mm, 40 mm, 0\nminus = box 15 mm, -20 mm, 25 mm, -10 mm\n";
+    must_read(text, NULL);
+    TEST_ASSERT_EQUAL_INT64(20 * 10, count(KIND_FLUID));
+    const struct scene_points *p = &scene.points[KIND_WALL];
+    TEST_ASSERT_TRUE(p->n > 0);
+    int at_hole = 0, at_edge = 0;
+    for (int64_t k = 0; k < p->n; k++) {
+        const double x = 1e3 * p->x[k], y = 1e3 * p->y[k];
+        const double edge = fmin(fmin(x, 40 - x), fmin(-y, 30 + y));
+        const double hole = hypot(fmax(0, fabs(x - 20) - 5), fmax(0, fabs(y + 15) - 5));
+        TEST_ASSERT_TRUE(edge < 2.7 || hole < 2.7);
+        at_edge += edge < 2.7;
+        at_hole += hole < 2.7;
+    }
+    TEST_ASSERT_EQUAL_INT(40 * 30 - 34 * 24, at_edge);
+    TEST_ASSERT_EQUAL_INT(4 * 3 * 10 + 4 * 6, at_hole); /* in a corner 6 of 9 are within reach */
 }
 
 static void test_slanted_band_has_its_area(void)
@@ -153,16 +183,16 @@ static void test_closed_polyline_and_circle(void)
 
 static const char gate[] =
     "dp = 1 mm\nend_time = 1 s\n[constants]\nx0 = 20 mm\n"
-    "[wall top]\nshape = box 10 mm, 30 mm, 40 mm, 50 mm\nshape = box 30 mm, 30 mm, 50 mm, 40 mm\n"
-    "[solid gate]\nshape = box x0, 0, x0 + 5 mm, 40 mm\nclamp = box x0, 30 mm, x0 + 5 mm, 40 mm\n"
+    "[wall top]\nshape = box 10 mm, 30 mm, 40 mm, 36 mm\nshape = box 30 mm, 30 mm, 50 mm, 34 mm\n"
+    "[solid gate]\nshape = box x0, 0, x0 + 5 mm, 33 mm\nclamp = box x0, 30 mm, x0 + 5 mm, 33 mm\n"
     "density = 1100\nyoung = 7.8 MPa\npoisson = 0.4\n";
 
 static void test_clamp_takes_the_place_of_the_wall(void)
 {
     must_read(gate, NULL);
     TEST_ASSERT_EQUAL_STRING("", warnings);
-    TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
-    TEST_ASSERT_EQUAL_INT64(30 * 20 + 10 * 10 - 5 * 10, count(KIND_WALL));
+    TEST_ASSERT_EQUAL_INT64(5 * 33, count(KIND_SOLID));
+    TEST_ASSERT_EQUAL_INT64(30 * 6 + 10 * 4 - 5 * 3, count(KIND_WALL));
     const struct scene_points *p = &scene.points[KIND_SOLID];
     int held = 0;
     for (int64_t k = 0; k < p->n; k++) {
@@ -170,7 +200,7 @@ static void test_clamp_takes_the_place_of_the_wall(void)
         TEST_ASSERT_EQUAL_INT(p->y[k] > 0.030, p->clamped[k]);
         TEST_ASSERT_TRUE(k == 0 || p->y[k] > p->y[k - 1] || p->x[k] > p->x[k - 1]);
     }
-    TEST_ASSERT_EQUAL_INT(50, held);
+    TEST_ASSERT_EQUAL_INT(15, held);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-3, p->y[1] - p->y[0]);
     TEST_ASSERT_TRUE(nearest() > 0.99);
 }
@@ -181,7 +211,7 @@ static void test_a_solid_off_the_lattice_keeps_its_corner(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "[solid"),
                              warnings); /* harmless; --explain says it */
     TEST_ASSERT_TRUE(scene.off_lattice);
-    TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
+    TEST_ASSERT_EQUAL_INT64(5 * 33, count(KIND_SOLID));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20.8e-3, scene.points[KIND_SOLID].x[0]);
     TEST_ASSERT_TRUE(nearest() > 0.69);
 }
@@ -293,6 +323,7 @@ int main(void)
     RUN_TEST(test_fluid_comes_row_by_row);
     RUN_TEST(test_shapes_that_abut);
     RUN_TEST(test_regions_that_abut_share_no_particle);
+    RUN_TEST(test_walls_are_shells);
     RUN_TEST(test_slanted_band_has_its_area);
     RUN_TEST(test_closed_polyline_and_circle);
     RUN_TEST(test_clamp_takes_the_place_of_the_wall);
