@@ -12,25 +12,25 @@
 /* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = CHECK_INTERVAL };
 
+/* n steps; implicit ones have explicit sub-steps while surfaces are near each other. */
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
     const struct integrator *const by = sim->integrator;
+    struct solid *const solid = &sim->solid;
+    sim->substeps = 1;
+    if (solid->implicit && solid->contact)
+        sim->substeps =
+            (int)max2(1, min2(ceil(dt / sim->dt_solid * (1 - 1e-9)), SUBSTEPS_MOST + 1));
+    const int all = n * sim->substeps;
+    sim->state.solid_substeps += all;
     if (!(sim->effects & FX_SOLID)) return;
-    if (by->solid_step && !sim->solid.implicit) {
+    if (by->solid_step && !solid->implicit) {
         for (int k = 0; k < n; k++) by->solid_step(sim, dt);
     } else {
-        implicit_advance(&sim->solid, &sim->kind[KIND_SOLID], dt, n, sim->coupling.centred);
-        sim->state.solid_evaluations += n;
+        implicit_advance(solid, &sim->kind[KIND_SOLID], dt / sim->substeps, all,
+                         sim->coupling.centred);
+        sim->state.solid_evaluations += all;
     }
-}
-
-/* One implicit step, or while surfaces are near each other explicit sub-steps. */
-static void advance_implicit(struct simulation *sim, double dt)
-{
-    const double needed = sim->solid.contact ? ceil(dt / sim->dt_solid * (1 - 1e-9)) : 1;
-    sim->substeps = (int)max2(1, min2(needed, SUBSTEPS_MOST + 1));
-    advance_lone(sim, dt / sim->substeps, sim->substeps);
-    sim->state.solid_substeps += sim->substeps - 1;
 }
 
 /* The part of a batch of steps of dt that comes next: up to the state before a time that is
@@ -62,10 +62,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
         if (k && sim->observer.context) solid_set_positions(&sim->kind[KIND_SOLID]);
         TRY(observe(sim, st->time + (part + 1e-6) * step, d));
         if (sim->effects & FX_RIGID) begin_rigid(sim, st->time, step, step);
-        if (sim->solid.implicit)
-            advance_implicit(sim, step);
-        else
-            advance_lone(sim, step, part);
+        advance_lone(sim, step, part);
         if (sim->effects & FX_RIGID) advance_rigid(sim, st->time, step, step);
         *cut += dt - step;
         st->time = start + ((k + part) * dt - *cut);
@@ -85,13 +82,6 @@ static void external_for_step(struct simulation *sim, double dt)
         particles->y[i] += half * particles->vy[i];
     }
     find_external(sim, KIND_SOLID, sim->state.time + half);
-}
-
-static void book_lone(struct simulation *sim, double dt, int n)
-{
-    timestep_count(sim, dt, n);
-    sim->state.solid_substeps += n;
-    if (!sim->solid.implicit) sim->substeps = 1;
 }
 
 /* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
@@ -131,6 +121,6 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     if (sim->effects & FX_BEAM) advance_beams(sim, begin, st->time - begin, st->time - begin);
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
-    book_lone(sim, dt, n);
+    timestep_count(sim, dt, n);
     return ERR_OK;
 }

@@ -106,34 +106,22 @@ double timestep_longest(const struct simulation *sim)
     return sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : fixed > 0 ? fixed : sim->dt_solid;
 }
 
-/* The step that the bounds allow now, s; INFINITY before the first step. */
-static double usual_step(const struct simulation *sim)
-{
-    double step = sim->state.dt > 0 ? sim->state.dt_max : (double)INFINITY;
-    for (int k = 0; k < BOUND_COUNT && sim->state.dt > 0; k++)
-        if (k != BOUND_solid) step = min2(step, sim->dt_bound[k]);
-    return step;
-}
-
 const char *timestep_shorter(const struct simulation *sim, double *half)
 {
-    static const enum bound of_cfl[] = {BOUND_force, BOUND_acoustic, BOUND_damper};
     const struct scene_numerics *const n = &sim->scene->numerics;
-    const double step = usual_step(sim),
-                 much = 1.8 * step; /* half of a bound must be below the step */
-    double fluid = (double)INFINITY;
-    for (size_t k = 0; k < COUNT_OF(of_cfl); k++) fluid = min2(fluid, sim->dt_bound[of_cfl[k]]);
-    const bool fixed = n->fixed_step > 0, lone = !(sim->effects & FX_FLUID);
-    const double solid = sim->dt_bound[BOUND_solid];
-    if (!fixed && (lone || solid < min2(fluid, much))) {
+    const double *const bound = sim->dt_bound, step = bound[timestep_binding(sim)];
+    const double fluid = min2(bound[BOUND_force], min2(bound[BOUND_acoustic], bound[BOUND_damper]));
+    const double much = 1.8 * step; /* half of a bound must be below the step */
+    const bool lone = !(sim->effects & FX_FLUID) && !(n->fixed_step > 0);
+    if (lone || bound[BOUND_solid] < min2(fluid, much)) {
         *half = 0.5 * n->solid_safety;
         return "solid_safety";
     }
-    if (!fixed && fluid < much) {
+    if (fluid < much) {
         *half = 0.5 * n->cfl;
         return "cfl";
     }
-    *half = 0.5 * (fixed ? n->fixed_step : step);
+    *half = 0.5 * step;
     return "fixed_step";
 }
 

@@ -13,7 +13,7 @@ double timestep_longest(const struct simulation *sim);
 enum bound timestep_binding(const struct simulation *sim);
 
 /* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step,
- * with half of the last step, if neither cfl nor solid_safety sets that step. */
+ * with half of the smallest bound, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *sim, double *half);
 
 /* Finds all bounds of the next step, s->dt_bound, from the fluid's last evaluation and the solid's
