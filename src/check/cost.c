@@ -88,24 +88,8 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
     }
 }
 
-static void warn_of_precision(const struct simulation *sim, struct diag *d)
-{
-    const struct scene *const scene = sim->scene;
-    const bool single = scene->numerics.solid_precision == SOLID_PRECISION_SINGLE &&
-                        scene->top.precision != PRECISION_DOUBLE && sim->effects & FX_SOLID;
-    const char *const name =
-        single ? solid_needs_double(&sim->solid, scene, &sim->kind[KIND_SOLID]) : NULL;
-    if (name)
-        warn_at(d, scene, scene_line(scene, SECTION_numerics, 0, "solid_precision"),
-                "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
-                "artificial_viscosity below %g: its stress may have an error of 1e-6 of Young's "
-                "modulus, and it may gain energy; use auto",
-                name, SOLID_DAMPED);
-}
-
 void check_simulation(const struct simulation *sim, struct diag *d)
 {
-    warn_of_precision(sim, d);
     warn_of_unstable_step(sim, d);
     warn_of_damping(sim, d);
     if (sim->effects & FX_FLUID) warn_of_bounds(sim, d);

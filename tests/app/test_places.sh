@@ -41,9 +41,6 @@ solid_h_over_dp = 1.1
 ${probe/0.05, 0.05/0.1031, 0.1031}"
 says 0 ':3: \[solid a\] hourglass_form = printed' "$body
 hourglass_form = printed"
-says 0 ':9: \[numerics\] solid_precision = single' "$body
-[numerics]
-solid_precision = single"
 says 1 ':9: probe_interval = 1e-15 s gives' "$body
 [output]
 probe_interval = 1e-15
