@@ -121,7 +121,6 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
 {
     const int binding = binding_bound(sim);
     const struct scene *const scene = sim->scene;
-    char memory[32];
     if (!(sim->effects & FX_FLUID))
         session_say(o, "bounds of the time step");
     else
@@ -145,16 +144,6 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
                     implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]),
                     implicit_across(&sim->solid, &sim->kind[KIND_SOLID]));
-    if (sim->solid.implicit) {
-        const struct implicit *const by = sim->solid.implicit;
-        text_of_bytes(8.0 * (double)(by->matrix.start[2 * by->n] + by->springs.start[by->n]),
-                      memory);
-        session_say(o, "  matrix of implicit steps: %lld unknowns, %s", 2 * (long long)by->n,
-                    memory);
-    }
-    if (sim->effects & FX_CONTACT)
-        session_say(o, "  without contact, the stable step of the solid would be %.4g s",
-                    sim->dt_lone_solid);
 }
 
 static void text_of_seconds(double seconds, char text[32])

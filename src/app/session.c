@@ -208,30 +208,23 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
     return ERR_OK;
 }
 
-/* How many threads were asked for, and by what name; 0: none, as many as are useful. */
-static int threads_asked(const struct sphfsi_options *o, int offered, const char **name)
-{
-    const char *const variable = getenv("OMP_NUM_THREADS");
-    *name = o->threads > 0 ? "threads" : "OMP_NUM_THREADS";
-    return o->threads > 0 ? o->threads : variable && *variable ? offered : 0;
-}
-
 /* The largest number of threads for a scene: what the options or OMP_NUM_THREADS ask for, reduced
  * with a warning to what the scene can use. Without either: `offered`, or fewer for few particles.
  */
 static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                           struct diag *d)
 {
-    const char *name;
+    const char *const variable = getenv("OMP_NUM_THREADS");
     const int64_t n = scene->points[KIND_FLUID].n + scene->points[KIND_SOLID].n;
-    const int asked = threads_asked(o, offered, &name), limit = thread_limit(n);
-    const int useful = thread_useful(n);
+    const int asked = o->threads > 0 ? o->threads : variable && *variable ? offered : 0;
+    const int limit = thread_limit(n), useful = thread_useful(n);
     if (asked == 0) return useful < offered ? useful : offered;
     if (asked <= limit) return asked;
     diag_warn(d,
               "%s = %d is too many: %lld particles on %d cores can use at most %d thread%s, so the "
               "run uses %d; give that number or fewer",
-              name, asked, (long long)n, thread_cores(), limit, limit == 1 ? "" : "s", limit);
+              o->threads > 0 ? "threads" : "OMP_NUM_THREADS", asked, (long long)n, thread_cores(),
+              limit, limit == 1 ? "" : "s", limit);
     return limit;
 }
 

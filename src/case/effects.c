@@ -164,16 +164,6 @@ const struct phase_info phase_table[PHASE_COUNT] = {
     [PHASE_output] = {"output", "probes, ledger, snapshots, checkpoints", FX_ALWAYS},
 };
 
-/* The name of an effect that a scene needs and this build excludes, or NULL. */
-static const char *effect_left_out(const struct scene *scene)
-{
-    struct effect_caller by;
-    for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_bits[k] == 0 && effect_called(scene, (enum effect)k, &by))
-            return effect_table[k].name;
-    return NULL;
-}
-
 /* --- checks --- */
 
 /* What goes together and what does not: the one calls for the other, which the case must name, or
@@ -269,12 +259,13 @@ static enum err check_owned(struct reader *r, const struct owned *row)
 
 enum err case_check_effects(struct reader *r)
 {
-    const char *const left_out = effect_left_out(r->scene);
-    if (left_out)
-        return bad_line(r, 1,
-                        "the case enables the effect %s, but this program was compiled without it; "
-                        "build it without -DSPHFSI_WITHOUT",
-                        left_out);
+    struct effect_caller by;
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        if (effect_bits[k] == 0 && effect_called(r->scene, (enum effect)k, &by))
+            return bad_line(r, 1,
+                            "the case enables the effect %s, but this program was compiled without "
+                            "it; build it without -DSPHFSI_WITHOUT",
+                            effect_table[k].name);
     for (size_t k = 0; k < COUNT_OF(rules); k++) TRY(case_go_on(r, check_rule(r, &rules[k])));
     for (size_t k = 0; k < COUNT_OF(owned); k++) TRY(case_go_on(r, check_owned(r, &owned[k])));
     return ERR_OK;

@@ -164,8 +164,6 @@ static bool parse_number(struct compiler *c, struct dim *dim)
     digits[n] = '\0';
     struct quantity q = {strtod(digits, &end), {DIM_PLAIN, {0, 0, 0}}};
     if (*end || end == digits) return fail(c, "`%s` is not a number", digits);
-    if (!isfinite(q.value))
-        return fail(c, "%s is too large; the largest number is 1.8e308", digits);
     c->rest = slice_after(c->rest, n);
     const int next = peek(c);
     c->why[0] = '\0';
@@ -179,7 +177,7 @@ static bool parse_number(struct compiler *c, struct dim *dim)
                     shown, word.at, digits);
     }
     if (!isfinite(q.value))
-        return fail(c, "%s with its unit is too large; the largest number is 1.8e308", digits);
+        return fail(c, "%s is too large; the largest number is 1.8e308", digits);
     *dim = q.dim;
     return operate(c, OP_NUMBER, q.value);
 }
