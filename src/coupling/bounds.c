@@ -11,13 +11,21 @@
  * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */
 #define ADDED_MASS 2
 
+/* T-35d: the fluid's density over that of a body, which has less mass where it is thinner than the
+ * layers of fluid on both sides. */
+static double added_mass(const struct coupling *coupling, const struct solid_body *body)
+{
+    const double layers = 2 * coupling->scene->top.dp;
+    return coupling->scene->rho0 / body->density * max2(1, layers / body->thickness);
+}
+
 double coupling_added_mass_step(const struct coupling *coupling, int *lightest)
 {
     const struct solid_body *const body = coupling->solid->body;
     *lightest = 0;
     for (int k = 1; k < coupling->solid->n_bodies; k++)
-        if (body[k].density < body[*lightest].density) *lightest = k;
-    const double b = 2 / (1 + ADDED_MASS * coupling->scene->rho0 / body[*lightest].density);
+        if (added_mass(coupling, &body[k]) > added_mass(coupling, &body[*lightest])) *lightest = k;
+    const double b = 2 / (1 + ADDED_MASS * added_mass(coupling, &body[*lightest]));
     return averaging_time(coupling) * b /
            ((1 + (acceleration_age(coupling) - 1) * b) * extrapolated_halves(coupling));
 }

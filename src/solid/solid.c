@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/box2.h"
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
@@ -49,6 +50,21 @@ static void join_bodies(struct solid *solid, const struct scene *scene)
             solid->body[k].mixed |= solid->body[j].bond == solid->body[k].bond &&
                                     solid->body[j].density * solid->body[j].viscosity !=
                                         solid->body[k].density * solid->body[k].viscosity;
+}
+
+static void find_thickness(struct solid *solid, const struct particles *particles)
+{
+    for (int k = 0; k < solid->n_bodies; k++) {
+        struct box2 box = box2_empty();
+        double area = 0;
+        for (int64_t i = 0; i < particles->n; i++) {
+            const struct solid_body *const body = &solid->body[particles->body[i]];
+            if (body->bond != solid->body[k].bond) continue;
+            box2_include(&box, particles->X[i], particles->Y[i]);
+            area += square(body->dp);
+        }
+        solid->body[k].thickness = area / max2(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+    }
 }
 
 /* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
@@ -119,6 +135,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
+    find_thickness(solid, particles);
     const int choice = scene->numerics.solid_precision;
     const bool in_double =
         scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit ||

@@ -20,6 +20,7 @@ struct solid_body {
     double mass_damping; /* beta of T-77, 1/s; 0: none */
     double gravity[2];
     int law, plane, gradient;
+    double thickness; /* of a slender body with those bonded to it: area over largest extent, m */
     int bond;       /* the same number for bodies joined to each other: that of the first of them */
     bool symmetric; /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */

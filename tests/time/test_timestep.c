@@ -218,6 +218,13 @@ static void test_added_mass_bound_by_hand(void)
     rig_open(&rig, text, "cork.density=100", NULL);
     const double dt = timestep_fluid_limit(&rig.sim), mean = lag - 0.5 * dt;
     assert_near(1e-12, 2.0 / 21, dt / (dt + mean), "weight");
+    /* A body of one spacing of the fluid is thinner than the layers of fluid on its sides: 0.02
+     * over its area of 1e-3 by the extent of 0.0975. */
+    snprintf(text, sizeof text, "%s%s", gate,
+             "[solid reed]\nlike = gate\nshape = box 0.2, 0.2, 0.21, 0.3\n"
+             "clamp = box 0.2, 0.2, 0.21, 0.21\ndensity = 200\ndp = 0.0025\n");
+    rig_open(&rig, text, "integrator=leapfrog", NULL);
+    assert_near(1e-9 * lag, lag / (5 * 1.95), timestep_fluid_limit(&rig.sim), "thin");
 }
 
 /* Times to be hit are hit to the bit, no step is longer than its bound, and the books agree. */
