@@ -10,12 +10,11 @@ struct tangent {
     double of[4][4];
 };
 
-/* T-92: dP = dF S + F (dS/dE : sym(F^T dF)). dS/dE is by differences, for all laws; `viscous`
- * adds to it what a damping_time does over the step, times the same tensor. */
+/* T-92: dP = dF S + F (dS/dE : sym(F^T dF)); `viscous` adds to dS/dE what a damping_time does over
+ * the step, times the same tensor. */
 static void find_tangents(const struct solid_body *body, struct vtensor2 U, double viscous,
                           int lanes, struct tangent *tangent)
 {
-    const double delta = 1e-6;
     const struct vtensor2 F = deformation(U), E = green_lagrange(U), S = stress_of_strain(body, E);
     const vreal zero = vset(0);
     const vreal strain[3][4] = {{F.xx, zero, F.yx, zero},
@@ -23,15 +22,12 @@ static void find_tangents(const struct solid_body *body, struct vtensor2 U, doub
                                 {F.xy, F.xx, F.yy, F.yx}};
     vreal D[3][3];
     for (int c = 0; c < 3; c++) {
-        const double x = c == 0 ? delta : 0, y = c == 1 ? delta : 0, both = c == 2 ? delta / 2 : 0;
-        const struct vtensor2 up =
-            stress_of_strain(body, (struct vtensor2){E.xx + x, E.xy + both, E.yx + both, E.yy + y});
-        const struct vtensor2 down =
-            stress_of_strain(body, (struct vtensor2){E.xx - x, E.xy - both, E.yx - both, E.yy - y});
-        const double per = (1 + viscous) / (2 * delta);
-        D[0][c] = (up.xx - down.xx) * per;
-        D[1][c] = (up.yy - down.yy) * per;
-        D[2][c] = (up.xy - down.xy) * per;
+        const vreal x = vset(c == 0), y = vset(c == 1), both = vset(0.5 * (c == 2));
+        const struct vtensor2 rate =
+            scale(vset(1 + viscous), stress_rate(body, E, S, (struct vtensor2){x, both, both, y}));
+        D[0][c] = rate.xx;
+        D[1][c] = rate.yy;
+        D[2][c] = rate.xy;
     }
     const vreal stress[2][2] = {{S.xx, S.xy}, {S.xy, S.yy}};
     for (int r = 0; r < 4; r++)

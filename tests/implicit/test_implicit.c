@@ -4,6 +4,7 @@
 #include "solid/hinges.h"
 #include "rig.h"
 #include "implicit/implicit.h"
+#include "implicit/stress.h"
 #include "time/energy.h"
 #include "unity.h"
 
@@ -129,6 +130,37 @@ static void test_tangent_is_the_difference_of_forces(void)
             assert_near(1e-8, dy[i], by->unknown[2 * by->order[i] + 1], "y");
         }
     }
+}
+
+/* The rates of all laws by hand against central differences, whose error is below 1e-9 of the
+ * modulus; at 40 % of strain and none. */
+static void test_stress_rates_are_differences_of_stress(void)
+{
+    const double small = 1e-6;
+    for (int k = 0; k < 6; k++)
+        for (int big = 0; big < 2; big++)
+            for (int c = 0; c < 3; c++) {
+                RIG_OPEN_SOLID(bar, laws[k / 2], planes[k % 2]);
+                const struct solid_body *const body = &rig.sim.solid.body[0];
+                const double at[4] = {0.4 * big, 0.1 * big, 0.1 * big, -0.2 * big},
+                             rate[4] = {c == 0, 0.5 * (c == 2), 0.5 * (c == 2), c == 1};
+                struct vtensor2 E[3];
+                for (int n = 0; n < 3; n++) {
+                    double e[4];
+                    for (int m = 0; m < 4; m++) e[m] = at[m] + (n - 1) * small * rate[m];
+                    E[n] = (struct vtensor2){vset(e[0]), vset(e[1]), vset(e[2]), vset(e[3])};
+                }
+                const struct vtensor2 low = stress_of_strain(body, E[0]),
+                                      high = stress_of_strain(body, E[2]);
+                const struct vtensor2 found =
+                    stress_rate(body, E[1], stress_of_strain(body, E[1]),
+                                (struct vtensor2){vset(rate[0]), vset(rate[1]), vset(rate[2]),
+                                                  vset(rate[3])});
+                const double per = 1 / (2 * small), limit = 2e-9 * body->young;
+                assert_near(limit, (high.xx[0] - low.xx[0]) * per, found.xx[0], laws[k / 2]);
+                assert_near(limit, (high.xy[0] - low.xy[0]) * per, found.xy[0], laws[k / 2]);
+                assert_near(limit, (high.yy[0] - low.yy[0]) * per, found.yy[0], laws[k / 2]);
+            }
 }
 
 /* --- what a step conserves --- */
@@ -457,6 +489,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_factors_solve);
+    RUN_TEST(test_stress_rates_are_differences_of_stress);
     RUN_TEST(test_tangent_is_the_difference_of_forces);
     RUN_TEST(test_free_bodies_keep_energy_and_momentum);
     RUN_TEST(test_long_steps_keep_the_period);
