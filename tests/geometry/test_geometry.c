@@ -249,6 +249,23 @@ static void test_off_lattice_edges_are_told(void)
     TEST_ASSERT_FALSE(scene.off_lattice);
 }
 
+/* Faces of a solid with a lattice of its own: only fluid that starts under pressure expands into
+ * the gap beside them. */
+static void test_wet_faces_off_the_lattice_are_told(void)
+{
+    static const char leaflet[] =
+        "dp = 1 mm\nend_time = 1 s\n[constants]\nx0 = 4 mm\n[fluid w]\nsound_speed = 20\n"
+        "shape = box 0, 0, 10 mm, 10 mm\nminus = box x0, 0, x0 + 2 mm, 10 mm\npressure = 50\n"
+        "[solid leaflet]\nshape = box x0, 0, x0 + 2 mm, 10 mm\nclamp = box x0, 0, x0 + 2 mm, 1 mm\n"
+        "density = 1100\nyoung = 7.8 MPa\npoisson = 0.4\ndp = 0.25 mm\n";
+    static const char told[] =
+        "[solid leaflet] edge at x = 0.0065 m is off the lattice of dp = 0.001";
+    must_read(leaflet, NULL);
+    TEST_ASSERT_NULL(strstr(warnings, "off the lattice"));
+    must_read(leaflet, "x0=4.5 mm");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, told), warnings);
+}
+
 static void test_thin_walls_and_slits_are_told(void)
 {
     must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
@@ -329,6 +346,7 @@ int main(void)
     RUN_TEST(test_clamp_takes_the_place_of_the_wall);
     RUN_TEST(test_a_solid_off_the_lattice_keeps_its_corner);
     RUN_TEST(test_off_lattice_edges_are_told);
+    RUN_TEST(test_wet_faces_off_the_lattice_are_told);
     RUN_TEST(test_thin_walls_and_slits_are_told);
     RUN_TEST(test_thin_outermost_walls_are_not);
     RUN_TEST(test_thin_solids_are_told);
