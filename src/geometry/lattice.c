@@ -15,19 +15,13 @@
 static const double same_direction = 1e-6, on_lattice = 1e-6;
 
 /* Sampling lines at right angles to an axis, per spacing, which find the edges along it. */
-enum { LINES_PER_DP = 4, MAX_SCAN_LINES = 20000, MAX_EDGES = 24, MAX_CROSSINGS = 1 << 30 };
+enum { LINES_PER_DP = 4, MAX_SCAN_LINES = 20000, MAX_EDGES = 24 };
 
 /* --- direction --- */
 
 struct direction {
     double angle, length;
 };
-
-static int by_angle(const void *a, const void *b)
-{
-    const double x = ((const struct direction *)a)->angle, y = ((const struct direction *)b)->angle;
-    return (x > y) - (x < y);
-}
 
 /* An edge's direction modulo a right angle, rad: above -PI/4, up to PI/4. */
 static struct direction direction_of(const double a[2], const double b[2])
@@ -66,7 +60,7 @@ static double main_direction(struct direction *all, int n)
 {
     double total = 0;
     for (int k = 0; k < n; k++) total += all[k].length;
-    qsort(all, (size_t)n, sizeof *all, by_angle);
+    qsort(all, (size_t)n, sizeof *all, geometry_ascending);
     for (int k = 0, end; k < n; k = end) {
         double length = 0, moment = 0;
         for (end = k; end < n && all[end].angle - all[k].angle <= same_direction; end++) {
@@ -86,12 +80,6 @@ struct crossing {
     double at, weight;
     bool clamp; /* of a clamp's end inside the body, otherwise of the body's own boundary */
 };
-
-static int by_place(const void *a, const void *b)
-{
-    const double x = ((const struct crossing *)a)->at, y = ((const struct crossing *)b)->at;
-    return (x > y) - (x < y);
-}
 
 static int by_weight(const void *a, const void *b)
 {
@@ -144,7 +132,7 @@ static void omit_hinges(struct outlines *clamp, const struct shape_list *list, d
 static int merge_edges(struct crossing *c, int n, double dp)
 {
     int kept = 0;
-    qsort(c, (size_t)n, sizeof *c, by_place);
+    qsort(c, (size_t)n, sizeof *c, geometry_ascending);
     for (int k = 0, end; k < n; k = end) {
         double weight = 0, moment = 0, spread = 0.02 * dp;
         const double first = c[k].at;
@@ -219,7 +207,7 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
         const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL, low + (k + 0.5) * step,
                                     dp, buffer, capacity, line);
         for (int j = 0; j < found; j++) {
-            if (!continues_edge(last, before, &line[j], dp) || to->n == MAX_CROSSINGS) continue;
+            if (!continues_edge(last, before, &line[j], dp)) continue;
             to->item = arena_grow(&sampler->temp, to->item, (size_t)to->n, sizeof *to->item,
                                   "sampling", sampler->diag);
             if (!to->item) return ERR_MEMORY;

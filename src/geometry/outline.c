@@ -190,7 +190,7 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
     return ERR_OK;
 }
 
-static int ascending(const void *a, const void *b)
+int geometry_ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -218,13 +218,7 @@ int outline_crossings(const struct outline *o, double y, double *from)
     }
     int n = 0;
     for (int k = 0; k < o->n; k++) n += edge_crossing(o, k, y, &from[n]);
-    if (n > 2)
-        qsort(from, (size_t)n, sizeof *from, ascending);
-    else if (n == 2 && from[0] > from[1]) {
-        const double first = from[0];
-        from[0] = from[1];
-        from[1] = first;
-    }
+    qsort(from, (size_t)n, sizeof *from, geometry_ascending);
     return n;
 }
 
@@ -367,7 +361,7 @@ enum err outlines_moments(const struct outlines *add, const struct outlines *min
     int n = add_heights(add, height);
     n += add_heights(minus, height + n);
     enum { MOST = 1 << 16 }; /* parts in which Gauss' rule is exact to round-off */
-    qsort(height, (size_t)n, sizeof *height, ascending);
+    qsort(height, (size_t)n, sizeof *height, geometry_ascending);
     *of = (struct moments){0};
     for (int k = 0; k + 1 < n; k++) {
         const double high = height[k + 1] - height[k];

@@ -22,6 +22,9 @@ struct outlines {
     struct box2 box; /* of all pieces */
 };
 
+/* For qsort: by the number that an item begins with. */
+int geometry_ascending(const void *a, const void *b);
+
 /* The area of a polygon, positive if its points turn counter-clockwise. */
 double polygon_area(int n, double (*const pt)[2]);
 

@@ -540,33 +540,23 @@ enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, str
     return check_state(sim, d);
 }
 
-static enum err check_kind(const struct simulation *sim, enum kind kind, struct diag *d)
-{
-    const struct particles *particles = &sim->kind[kind];
-    const int64_t cells = (int64_t)sim->cells.nx * sim->cells.ny;
-    for (int64_t i = 0; i < particles->n; i++) {
-        const int32_t cell = particles->cell[i];
-        if (cell < -1 || cell >= cells)
-            return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64
-                             " has cell number %d, but -1 (outside) to "
-                             "%" PRId64 " are valid; the file is damaged or not of this case",
-                             kind_names[kind], i, cell, cells - 1);
-        if (cell < 0) continue;
-        if (!cells_is_near(&sim->cells, cell, particles->x[i], particles->y[i]))
-            return diag_fail(
-                d, ERR_INPUT,
-                "checkpoint: %s particle %" PRId64
-                " at (%.6g, %.6g) m is too far from its cell, %d; the file is damaged or "
-                "not of this case",
-                kind_names[kind], i, particles->x[i], particles->y[i], cell);
-    }
-    return ERR_OK;
-}
-
 enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
 {
-    for (int k = 0; k < KIND_COUNT; k++) TRY(check_kind(sim, (enum kind)k, d));
+    const int64_t cells = (int64_t)sim->cells.nx * sim->cells.ny;
+    for (int k = 0; k < KIND_COUNT; k++)
+        for (int64_t i = 0; i < sim->kind[k].n; i++) {
+            const struct particles *const particles = &sim->kind[k];
+            const int32_t cell = particles->cell[i];
+            const bool known = cell >= -1 && cell < cells;
+            if (known &&
+                (cell < 0 || cells_is_near(&sim->cells, cell, particles->x[i], particles->y[i])))
+                continue;
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " at (%.6g, %.6g) m %s cell %d, of "
+                             "-1 (outside) to %" PRId64 "; the file is damaged or not of this case",
+                             kind_names[k], i, particles->x[i], particles->y[i],
+                             known ? "is too far from its" : "has no", cell, cells - 1);
+        }
     return ERR_OK;
 }
 

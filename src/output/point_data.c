@@ -21,15 +21,15 @@ double snapshot_value(enum data what, const struct simulation *sim, enum kind ki
     const struct particles *particles = &sim->kind[kind];
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;
+    const struct thin_line *const lines = sim->fluid.lines.line;
+    const int32_t line = what == D_POINTS ? fluid_line_of(&sim->fluid, kind, i) : 0;
     if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
         solid_cauchy(&sim->solid, particles, i, sigma, &det);
     switch (what) {
     case D_POINTS:
-        if (fluid_line_of(&sim->fluid, kind, i)) {
-            const struct thin_line *const line =
-                &sim->fluid.lines.line[fluid_line_of(&sim->fluid, kind, i) - 1];
+        if (line > 0) {
             double foot[2];
-            line_foot(line, i - line->first, foot);
+            line_foot(&lines[line - 1], i - lines[line - 1].first, foot);
             return vector_value(foot[0], foot[1], column);
         }
         return vector_value(particles->x[i], particles->y[i], column);

@@ -148,8 +148,8 @@ static void says_what_it_is(void)
 static void cells_of_another_grid_are_refused(void)
 {
     const int32_t wrong[] = {-2, 0, INT32_MAX};
-    const char *const why[] = {"has cell number -2", "is too far from its cell, 0",
-                               "has cell number 2147483647"};
+    const char *const why[] = {"has no cell -2", "is too far from its cell 0",
+                               "has no cell 2147483647"};
     for (int k = 0; k < 3; k++) {
         open_with(0, NULL);
         step(&first, 3);
