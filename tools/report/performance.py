@@ -71,9 +71,11 @@ def compare(rows, path):
 
 
 def sweep_rows(rows):
-    """ns per fluid particle and evaluation on one thread."""
+    """ns per fluid particle and evaluation on one thread, of the smallest and largest scene."""
     parts = ["sort", "packed", "wall", "fluid", "update", "all", "memory"]
-    for variant, n in dict.fromkeys(key[1:3] for key in rows if key[0] == "fluid"):
+    scenes = dict.fromkeys(key[1:3] for key in rows if key[0] == "fluid")
+    sizes = [n for _, n in scenes]
+    for variant, n in (scene for scene in scenes if scene[1] in (min(sizes), max(sizes))):
         yield [variant, n, *(f"{rows.get(('fluid', variant, n, 1, part), float('nan')):.1f}"
                              for part in parts)]
 
