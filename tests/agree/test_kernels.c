@@ -79,6 +79,13 @@ static const struct {
      {"water.laminar_viscosity=1e-3", "tank.slip=none"},
      "equal",
      FX_LAMINAR | FX_NO_SLIP},
+    {"stream",
+     "0",
+     "0.1",
+     {STANDARD, "water.laminar_viscosity=1e-3", "tank.slip=none", "water.shifting=2"},
+     "equal",
+     FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_LAMINAR | FX_NO_SLIP | FX_REPULSION |
+         FX_WALL_DAMPING | FX_SHIFTING},
     {"body_in_flow",
      "0",
      "0.1",
