@@ -144,6 +144,9 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
                     implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]),
                     implicit_across(&sim->solid, &sim->kind[KIND_SOLID]));
+    if (sim->solid.implicit && sim->effects & FX_CONTACT)
+        session_say(o, "  while surfaces are near each other: sub-steps, because the springs of "
+                       "contact are not in the matrix");
 }
 
 static void text_of_seconds(double seconds, char text[32])
