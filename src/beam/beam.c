@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * From [beam] sections to nodes and elements, and what output asks of them. */
-#include "beam/beam.h"
+#include "beam/contact.h"
 #include "base/elementary.h"
 
 #include "case/params.h"
@@ -221,7 +221,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     for (int k = 0; k < scene->n_load; k++) TRY(find_load(beams, k, temp, d));
     TRY(number_unknowns(beams, a, temp, d));
     set_start(beams);
-    return ERR_OK;
+    return beams_contact_create(beams, a, d);
 }
 
 enum err beams_create(struct beams *beams, struct arena *a, const struct scene *scene,

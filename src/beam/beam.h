@@ -39,6 +39,7 @@ struct beam_step {
     double force[3];              /* of the elements against the displacement, N/m and N */
     double fluid[3], resisted[3]; /* in fluid: its force, and its resistance (T-105) */
     double d[3];                  /* displacement; twice the tangent of half the rotation */
+    double touch[2];              /* of contact (T-106), N/m */
     double faster[3];             /* in fluid: its mean velocity less that of the step before */
 };
 
@@ -47,6 +48,7 @@ struct beam {
     const struct scene_beam *given;
     int first_node, end_node, first_element, end_element;
     double work;     /* of loads, clamps and hinges in the last step, J/m */
+    double passed;   /* work of rigid bodies that touch it, J/m */
     double received; /* work of the fluid in it, J/m */
 };
 
@@ -76,7 +78,10 @@ struct beams {
     double residual; /* over the largest force of a node */
     double ahead;    /* steps that the fluid is evaluated after the start of a step */
     bool alternates; /* the fluid has two solutions, which share the forces */
-    bool failed;     /* no solution, however short the step */
+    struct beam_contact *contact;
+    struct rigid *rigid; /* NULL: none */
+    bool crowded;        /* more places touch than the memory holds */
+    bool failed;         /* no solution, however short the step */
 };
 
 enum err beams_create(struct beams *beams, struct arena *a, const struct scene *scene,

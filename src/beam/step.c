@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of beams (T-104): the midpoint rule with forces of which the work is exactly the
  * change of energy, solved by Newton's method. */
+#include "beam/contact.h"
 #include "beam/wet.h"
 #include "base/elementary.h"
 #include "geometry/motion.h"
@@ -144,19 +145,22 @@ static struct largest find_residual(struct beams *beams, double dt)
 {
     struct largest top = {0};
     add_elements(beams, dt, &top);
+    beams_add_touches(beams);
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_step *const s = &beams->step[k];
         for (int c = 0; c < 3; c++) {
             if (node->row[c] < 0) continue;
             const double scale = c < 2 ? 1 : 1 / node->length, push = inertia(beams, k, c, dt);
-            const double off = s->load[c] + s->fluid[c] - s->force[c] - s->resisted[c] - push;
+            const double touch = c < 2 ? s->touch[c] : 0;
+            const double off =
+                s->load[c] + s->fluid[c] + touch - s->force[c] - s->resisted[c] - push;
             const double stiff =
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
             beams->unknown[node->row[c]] = off;
             envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
             top.off = max2(top.off, scale * fabs(off));
-            top.force = max2(top.force, scale * max2(fabs(s->load[c]), fabs(push)));
+            top.force = max2(top.force, scale * max2(fabs(s->load[c] + touch), fabs(push)));
             top.force = max2(top.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
             top.rounding = max2(top.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
         }
@@ -167,6 +171,7 @@ static struct largest find_residual(struct beams *beams, double dt)
 static void correct(struct beams *beams)
 {
     envelope_solve(&beams->matrix, beams->unknown);
+    beams_correct_touches(beams);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)
             if (beams->node[k].row[c] >= 0)
@@ -179,7 +184,8 @@ static bool solve(struct beams *beams, double dt)
     for (int n = 0; n <= ITERATIONS; n++) {
         const struct largest top = find_residual(beams, dt);
         beams->residual = top.force > 0 ? top.off / top.force : 0;
-        if (top.off <= TOLERANCE * top.force + ROUNDING * top.rounding) return true;
+        if (top.off <= TOLERANCE * top.force + ROUNDING * top.rounding && beams_keep_apart(beams))
+            return true;
         if (n == ITERATIONS || !isfinite(top.off) || envelope_factor(&beams->matrix) < 0)
             return false;
         correct(beams);
@@ -208,6 +214,7 @@ static void begin(struct beams *beams, double time, double dt)
             s->d[c] = c < 2 ? x[c] - s->x[c] : 2 * elementary_tan(0.5 * (x[c] - s->x[c]));
         }
     }
+    beams_find_touches(beams, time, dt);
 }
 
 /* What a node's clamp or hinge adds to the other forces, and the work of that and of loads. */
@@ -220,8 +227,8 @@ static double finish_held(struct beams *beams, int k, const double v[3], double 
     double work = 0;
     for (int c = 0; c < 3; c++) {
         if (node->row[c] >= 0) continue;
-        const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] +
-                             node->mass[c] * damping * s->d[c] / dt;
+        const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] -
+                             (c < 2 ? s->touch[c] : 0) + node->mass[c] * damping * s->d[c] / dt;
         now->v[c] = v[c];
         now->reaction[c] = node->mass[c] * (v[c] - s->v[c]) / dt + other;
         work += other * s->d[c] + 0.5 * node->mass[c] * (square(v[c]) - square(s->v[c]));
@@ -262,6 +269,7 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
+        beams_finish_touches(beams, time, dt);
         if (beams->line) beams_return_impulse(beams, times);
         return true;
     }
@@ -274,7 +282,8 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
 void beams_advance(struct beams *beams, double time, const struct beam_times *times)
 {
     beams->iterations = 0;
-    for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
+    for (int k = 0; k < beams->n; k++)
+        beams->beam[k].work = beams->beam[k].passed = beams->beam[k].received = 0;
     beams->failed |= !step(beams, time, times, HALVINGS);
 }
 

@@ -179,7 +179,8 @@ static enum err check_contact(struct reader *r, const void *section)
     const double max_gap = 4;
     double dp = scene->top.dp;
     char name[2][SCENE_TEXT];
-    if (scene->n_solid + scene->n_rigid == 0) return bad_section(r, "needs a [solid] or a [rigid]");
+    if (scene->n_solid + scene->n_rigid + scene->n_beam == 0)
+        return bad_section(r, "needs a [solid], a [rigid] or a [beam]");
     if (scene->n_rigid == 0 && c->restitution > 0)
         return bad_section(r, "has a `restitution`, which is that of a [rigid]; the rebound of a "
                               "[solid] follows from its stiffness");

@@ -211,7 +211,7 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
         warn_of_thin(check, region, NULL, across * dp);
 }
 
-/* Beams have no contact: where one begins in a body, or is drawn through it, it moves in it. */
+/* Contact keeps a beam on the side of a face where it begins. */
 static void warn_of_beam(struct check *check, const struct region *region,
                          const struct shape *shape)
 {
@@ -225,10 +225,11 @@ static void warn_of_beam(struct check *check, const struct region *region,
             const int other = drawn_at(check, x, y);
             if (other < 0) continue;
             const struct region *const its = &check->shapes.regions[other];
-            warn_at(check->diag, check->scene, shape->line,
-                    "[beam %s] lies in [%s %s], at (%.6g, %.6g) m: beams have no contact, so it "
-                    "passes through; end its line at the face of the body",
-                    region->name, its->word, its->name, x, y);
+            warn_at(
+                check->diag, check->scene, shape->line,
+                "[beam %s] lies in [%s %s], at (%.6g, %.6g) m: this part cannot leave the body; "
+                "end its line at the face of the body",
+                region->name, its->word, its->name, x, y);
             return;
         }
     }
@@ -239,18 +240,19 @@ static void warn_of_region(struct check *check, const struct region *region)
     if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
+        const bool beam =
+            region->kind == KIND_WALL && region->body >= scene_beam_wall(check->scene, 0);
         if (shape->thin && check->scene->n_fluid && check->scene->fluid[0].wall_repulsion == 0)
             warn_at(check->diag, check->scene, shape->line,
                     "single particles may pass through this line of [%s %s], which has no "
                     "thickness; wall_repulsion above 0 in [fluid %s] prevents that",
                     region->word, region->name, check->scene->fluid[0].common.name);
-        if (shape->thin && check->scene->n_rigid)
+        if (shape->thin && check->scene->n_rigid && !beam)
             warn_at(check->diag, check->scene, shape->line,
                     "rigid bodies do not touch this line of [%s %s] but pass through it, because "
                     "it has no thickness",
                     region->word, region->name);
-        if (region->kind == KIND_WALL && region->body >= scene_beam_wall(check->scene, 0))
-            warn_of_beam(check, region, shape);
+        if (beam) warn_of_beam(check, region, shape);
         bool layered = false; /* layers follow faces at any position */
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];

@@ -39,7 +39,7 @@ void advance_beams(struct simulation *sim, double time, double dt, double kick)
     beams_advance(&sim->beams, time, &times);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
-        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, 0);
+        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, b->passed);
     }
 }
 
@@ -115,8 +115,8 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
     if (sim->effects & FX_COUPLING) advance_structure(sim, dt, by->alternates ? dt : kick);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
+#include "beam/contact.h"
 #include "base/box2.h"
 #include "base/elementary.h"
 
@@ -314,7 +315,8 @@ static int64_t find_entered(const struct simulation *sim, int k)
     struct box2 box = box2_empty();
     for (int64_t i = b->first; i < b->end; i++) box2_include(&box, p->x[i], p->y[i]);
     for (int64_t j = 0; j < p->n; j++) {
-        const bool other = p->body[j] < scene_rigid_wall(sim->scene, 0) || p->body[j] > b->section;
+        const bool other = p->body[j] < scene_rigid_wall(sim->scene, 0) ||
+                           (p->body[j] > b->section && p->body[j] < scene_beam_wall(sim->scene, 0));
         const struct box2 place = {{p->x[j], p->y[j]}, {p->x[j], p->y[j]}};
         if (!other || !box2_near(&place, &box, inside)) continue;
         for (int64_t i = b->first; i < b->end; i++)
@@ -343,6 +345,33 @@ static void check_rigid(struct simulation *sim, struct diag *d)
     }
 }
 
+static void warn_of_crowded(struct simulation *sim, struct diag *d)
+{
+    if (sim->guard.warned_beams || !sim->beams.crowded) return;
+    sim->guard.warned_beams = true;
+    diag_warn(d,
+              "%s: beams touch at more than %d places, and pass through the others; use a larger "
+              "`element`",
+              time_text(sim).text, BEAM_TOUCHES);
+}
+
+/* A beam and a solid do not see each other. */
+static void check_beams_in_solids(struct simulation *sim, struct diag *d)
+{
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    int beam;
+    if (sim->guard.warned_beams || sim->state.steps % CHECK_INTERVAL) return;
+    const int64_t i = beams_find_solid(&sim->beams, solid, 0.5 * sim->solid.dp, &beam);
+    if (i < 0) return;
+    sim->guard.warned_beams = true;
+    diag_warn(
+        d,
+        "%s: [beam %s] has met [solid %s] near (%.6g, %.6g) m and passes through, since beams "
+        "and solids have no contact; make the solid a [rigid] or the beam a [solid]",
+        time_text(sim).text, sim->scene->beam[beam].common.name,
+        sim->scene->solid[solid->body[i]].common.name, solid->x[i], solid->y[i]);
+}
+
 static enum err check_beams(const struct simulation *sim, struct diag *d)
 {
     if (!sim->beams.failed) return ERR_OK;
@@ -356,6 +385,8 @@ static enum err check_beams(const struct simulation *sim, struct diag *d)
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
     if (sim->effects & FX_BEAM) TRY(check_beams(sim, d));
+    if (sim->effects & FX_BEAM) warn_of_crowded(sim, d);
+    if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
     if (sim->effects & FX_RIGID) check_rigid(sim, d);
     if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));

@@ -234,6 +234,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
+    if (sim->effects & FX_BEAM && sim->effects & FX_RIGID) sim->beams.rigid = &sim->rigid;
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
         TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines, &sim->kind[KIND_WALL],
                              sim->integrator->ahead, sim->integrator->alternates, d));

@@ -63,6 +63,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
         TRY(observe(sim, st->time + (part + 1e-6) * step, d));
         if (sim->effects & FX_RIGID) begin_rigid(sim, st->time, step, step);
         advance_lone(sim, step, part);
+        if (sim->effects & FX_BEAM) advance_beams(sim, st->time, step, step);
         if (sim->effects & FX_RIGID) advance_rigid(sim, st->time, step, step);
         *cut += dt - step;
         st->time = start + ((k + part) * dt - *cut);
@@ -118,7 +119,6 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     TRY(advance_batch(sim, near, dt, &n, &cut, d));
     if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
-    if (sim->effects & FX_BEAM) advance_beams(sim, begin, st->time - begin, st->time - begin);
     solid_set_positions(&sim->kind[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     timestep_count(sim, dt, n);

@@ -123,8 +123,8 @@ static void symplectic_step(struct simulation *sim, double t_limit)
 
     advance_fluid(sim, correct_rows, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
     timestep_book(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }

@@ -1,0 +1,443 @@
+/* SPDX-License-Identifier: MIT */
+#include "beam/contact.h"
+#include "base/elementary.h"
+#include "geometry/motion.h"
+#include "geometry/outline.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of the particle spacing: a distance that counts as kept. */
+#define KEPT 1e-9
+
+/* A face of a wall or rigid body at the start: a segment, or a circle if `radius` is above 0. */
+struct beam_face {
+    int wall;
+    double from[2], to[2], radius;
+};
+
+/* A place that may touch: parts of some nodes along the normal, from a face or a beam. */
+struct beam_touch {
+    int n, node[3], wall; /* wall: -1 with a beam */
+    double part[3], normal[2], at[2];
+    double gap;   /* if no node moves, m */
+    double moved; /* by the wall, along the normal, m */
+    double force; /* N/m */
+};
+
+struct beam_contact {
+    int n_faces, n_walls, n, most;
+    struct beam_face *face;
+    struct motion_state *begin, *end; /* [n_walls] of the step */
+    double *layer;                    /* [n][n_wall] that stays between surfaces; NAN: no contact */
+    struct beam_touch *touch;
+    double *column; /* [most][rows] displacement by a unit of force */
+    double *yields; /* [most][most] along the normals of others */
+    double *open;   /* [most] gap after the correction, m */
+    int64_t rows;
+};
+
+/* --- faces --- */
+
+static void add_face(struct beam_contact *contact, int wall, const double from[2],
+                     const double to[2], double radius)
+{
+    struct beam_face *const face = &contact->face[contact->n_faces++];
+    *face = (struct beam_face){.wall = wall, .radius = radius};
+    memcpy(face->from, from, sizeof face->from);
+    memcpy(face->to, to, sizeof face->to);
+}
+
+static void add_outlines(struct beam_contact *contact, int wall, const struct outlines *o)
+{
+    for (int k = 0; k < o->n; k++) {
+        const struct outline *const item = &o->item[k];
+        if (!item->n) add_face(contact, wall, item->centre, item->centre, item->radius);
+        for (int j = 0; j < item->n; j++)
+            add_face(contact, wall, item->pt[j], item->pt[j + 1 < item->n ? j + 1 : 0], 0);
+    }
+}
+
+static int count_faces(const struct outlines *o)
+{
+    int n = 0;
+    for (int k = 0; k < o->n; k++) n += o->item[k].n ? o->item[k].n : 1;
+    return n;
+}
+
+static enum err create_faces(struct beams *beams, struct arena *a, struct arena *temp,
+                             struct diag *d)
+{
+    const struct scene *const scene = beams->scene;
+    struct beam_contact *const contact = beams->contact;
+    const size_t n = (size_t)contact->n_walls;
+    struct outlines *const o = arena_alloc(temp, 2 * n, sizeof *o, "beams", d);
+    int most = 0;
+    if (!o) return ERR_MEMORY;
+    for (int w = 0; w < contact->n_walls; w++) {
+        TRY(outlines_of(&o[2 * w], scene, &scene->wall[w].shape, temp, d));
+        TRY(outlines_of(&o[2 * w + 1], scene, &scene->wall[w].minus, temp, d));
+        most += count_faces(&o[2 * w]) + count_faces(&o[2 * w + 1]);
+        for (int k = 0; k < scene->wall[w].shape.n; k++) most += scene->wall[w].shape.item[k].n;
+    }
+    contact->face = arena_alloc(a, (size_t)most, sizeof *contact->face, "beams", d);
+    if (!contact->face) return ERR_MEMORY;
+    for (int w = 0; w < contact->n_walls; w++) {
+        for (int side = 0; side < 2; side++) add_outlines(contact, w, &o[2 * w + side]);
+        for (int k = 0; k < scene->wall[w].shape.n; k++) {
+            const struct shape *const s = &scene->wall[w].shape.item[k];
+            for (int j = 0; s->thin && j + 1 < s->n; j++)
+                add_face(contact, w, s->pt[j], s->pt[j + 1], 0);
+        }
+    }
+    return ERR_OK;
+}
+
+static double half_of(const struct beams *beams, int beam)
+{
+    const double t = beams->beam[beam].given->thickness;
+    return isnan(t) ? 0 : 0.5 * t;
+}
+
+enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag *d)
+{
+    static const char what[] = "contact of beams";
+    const struct scene *const scene = beams->scene;
+    struct beam_contact *const contact = arena_alloc(a, 1, sizeof *contact, what, d);
+    beams->contact = contact;
+    if (!contact) return ERR_MEMORY;
+    contact->n_walls = scene_beam_wall(scene, 0);
+    contact->rows = beams->matrix.n;
+    contact->most = (int)min2(BEAM_TOUCHES, 3.0 * beams->n_nodes);
+    const size_t n = (size_t)contact->n_walls, most = (size_t)contact->most;
+    contact->begin = arena_alloc(a, n, sizeof *contact->begin, what, d);
+    contact->end = arena_alloc(a, n, sizeof *contact->end, what, d);
+    contact->layer = arena_alloc(a, (size_t)(beams->n * scene->n_wall), sizeof(double), what, d);
+    contact->touch = arena_alloc(a, most, sizeof *contact->touch, what, d);
+    contact->column = arena_alloc(a, most * (size_t)(contact->rows + ENVELOPE_ALIGN),
+                                  sizeof *contact->column, what, d);
+    contact->yields = arena_alloc(a, most * most, sizeof *contact->yields, what, d);
+    contact->open = arena_alloc(a, most, sizeof *contact->open, what, d);
+    if (!contact->begin || !contact->end || !contact->layer || !contact->touch ||
+        !contact->column || !contact->yields || !contact->open)
+        return ERR_MEMORY;
+    for (int k = 0; k < beams->n; k++)
+        for (int w = 0; w < scene->n_wall; w++) {
+            const struct scene_contact *const from =
+                scene_contact_of(scene, scene->n_solid + scene_beam_wall(scene, k),
+                                 scene->n_solid + w);
+            contact->layer[k * scene->n_wall + w] =
+                from ? scene_contact_gap(scene, from) : (double)NAN;
+        }
+    struct arena temp = {.limit = a->limit};
+    const enum err e = create_faces(beams, a, &temp, d);
+    arena_free(&temp);
+    return e;
+}
+
+/* --- touches --- */
+
+/* The nearest point of a segment. */
+static double foot_part(const double at[2], const double from[2], const double to[2])
+{
+    const double ex = to[0] - from[0], ey = to[1] - from[1], l2 = square(ex) + square(ey);
+    if (!(l2 > 0)) return 0;
+    return max2(0, min2(1, ((at[0] - from[0]) * ex + (at[1] - from[1]) * ey) / l2));
+}
+
+static double distance_to(const double at[2], const double from[2], const double to[2], double part,
+                          double radius, double normal[2])
+{
+    double way[2];
+    for (int c = 0; c < 2; c++) way[c] = at[c] - (from[c] + part * (to[c] - from[c]));
+    const double length = elementary_hypot(way[0], way[1]);
+    const double sign = length < radius ? -1 : 1;
+    for (int c = 0; c < 2; c++) normal[c] = length > 0 ? sign * way[c] / length : 0;
+    return sign * (length - radius);
+}
+
+static void node_now(const struct beams *beams, int k, double x[2])
+{
+    for (int c = 0; c < 2; c++) x[c] = beams->node[k].X[c] + beams->state[k].x[c];
+}
+
+/* T-106: the least distance. Surfaces that begin nearer than their layer keep none, and what
+ * begins nearer than the thickness keeps that distance. */
+static double least_distance(double thick, double layer, double at_start)
+{
+    return at_start < thick + layer ? min2(thick, at_start) : thick + layer;
+}
+
+/* The way of a touch's nodes along its normal. */
+static double along_touch(const struct beams *beams, const struct beam_touch *t)
+{
+    double sum = 0;
+    for (int k = 0; k < t->n; k++)
+        for (int c = 0; c < 2; c++) sum += t->part[k] * t->normal[c] * beams->step[t->node[k]].d[c];
+    return sum;
+}
+
+/* Adds a touch if the first guess brings it nearer than a tenth of a spacing. */
+static void add_touch(struct beams *beams, const struct beam_touch *t)
+{
+    struct beam_contact *const contact = beams->contact;
+    const double reach = 0.1 * beams->scene->top.dp;
+    bool held = true;
+    for (int k = 0; k < t->n; k++)
+        for (int c = 0; c < 2; c++) held &= beams->node[t->node[k]].row[c] < 0;
+    if (held || t->gap + min2(0, along_touch(beams, t)) > reach || t->gap > beams->scene->top.dp)
+        return;
+    if (t->normal[0] == 0 && t->normal[1] == 0) return;
+    beams->crowded |= contact->n == contact->most;
+    if (contact->n < contact->most) contact->touch[contact->n++] = *t;
+}
+
+/* A point of a wall where it is at the start and the end of the step. */
+static void place_wall(const struct beam_contact *contact, int wall, const double X[2],
+                       double now[2], double moved[2])
+{
+    const struct motion_point from = motion_of_point(&contact->begin[wall], X[0], X[1]),
+                              to = motion_of_point(&contact->end[wall], X[0], X[1]);
+    for (int c = 0; c < 2; c++) {
+        now[c] = from.x[c];
+        moved[c] = to.x[c] - from.x[c];
+    }
+}
+
+static void touch_face(struct beams *beams, int k, const struct beam_face *face)
+{
+    const struct beam_contact *const contact = beams->contact;
+    const int beam = beams->node[k].beam;
+    const double layer = contact->layer[beam * beams->scene->n_wall + face->wall];
+    double x[2], from[2], to[2], moved[2][2], start[2];
+    if (isnan(layer)) return;
+    node_now(beams, k, x);
+    place_wall(contact, face->wall, face->from, from, moved[0]);
+    place_wall(contact, face->wall, face->to, to, moved[1]);
+    const double part = foot_part(x, from, to);
+    struct beam_touch t = {.n = 1, .node = {k}, .part = {1}, .wall = face->wall};
+    const double distance = distance_to(x, from, to, part, face->radius, t.normal);
+    if (distance > half_of(beams, beam) + layer + beams->scene->top.dp) return;
+    const double *const X = beams->node[k].X;
+    const double at_start = distance_to(X, face->from, face->to, foot_part(X, face->from, face->to),
+                                        face->radius, start);
+    for (int c = 0; c < 2; c++) {
+        t.at[c] = x[c];
+        t.moved += t.normal[c] * ((1 - part) * moved[0][c] + part * moved[1][c]);
+    }
+    t.gap = max2(0, distance - least_distance(half_of(beams, beam), layer, at_start)) - t.moved;
+    add_touch(beams, &t);
+}
+
+/* A point with an element: of a wall, or node k of a beam. */
+static void touch_element(struct beams *beams, int element, int wall, const double X[2], int k)
+{
+    const struct beam_contact *const contact = beams->contact;
+    const int *const node = beams->element[element].node, beam = beams->node[node[0]].beam;
+    const int n_wall = beams->scene->n_wall,
+              other = k < 0 ? wall : scene_beam_wall(beams->scene, beams->node[k].beam);
+    const double layer = contact->layer[beam * n_wall + other];
+    const double thick = half_of(beams, beam) + (k < 0 ? 0 : half_of(beams, beams->node[k].beam));
+    double at[2], from[2], to[2], moved[2] = {0}, start[2], away[2];
+    if (isnan(layer) || node[0] == k || node[1] == k) return;
+    if (k < 0)
+        place_wall(contact, wall, X, at, moved);
+    else
+        node_now(beams, k, at);
+    node_now(beams, node[0], from);
+    node_now(beams, node[1], to);
+    const double part = foot_part(at, from, to);
+    const double distance = distance_to(at, from, to, part, 0, away);
+    if (distance > thick + layer + beams->scene->top.dp) return;
+    const double *const A = beams->node[node[0]].X, *const B = beams->node[node[1]].X;
+    const double at_start = distance_to(X, A, B, foot_part(X, A, B), 0, start);
+    struct beam_touch t = {.n = k < 0 ? 2 : 3,
+                           .node = {node[0], node[1], k < 0 ? 0 : k},
+                           .part = {1 - part, part, -1},
+                           .wall = wall,
+                           .normal = {-away[0], -away[1]},
+                           .at = {at[0], at[1]}};
+    for (int c = 0; c < 2; c++) t.moved += t.normal[c] * moved[c];
+    t.gap = max2(0, distance - least_distance(thick, layer, at_start)) - t.moved;
+    add_touch(beams, &t);
+}
+
+static struct box2 box_of(const struct beams *beams, int beam)
+{
+    struct box2 box = box2_empty();
+    for (int k = beams->beam[beam].first_node; k < beams->beam[beam].end_node; k++) {
+        double x[2];
+        node_now(beams, k, x);
+        box2_include(&box, x[0], x[1]);
+    }
+    return box;
+}
+
+/* Nodes of beam b with elements of beam a. */
+static void touch_beams(struct beams *beams, int a, int b)
+{
+    const struct scene *const scene = beams->scene;
+    const double layer = beams->contact->layer[a * scene->n_wall + scene_beam_wall(scene, b)];
+    const struct box2 of_a = box_of(beams, a), of_b = box_of(beams, b);
+    const double reach = half_of(beams, a) + half_of(beams, b) + layer + scene->top.dp;
+    if (isnan(layer) || !box2_near(&of_a, &of_b, reach)) return;
+    for (int k = beams->beam[b].first_node; k < beams->beam[b].end_node; k++)
+        for (int m = beams->beam[a].first_element; m < beams->beam[a].end_element; m++)
+            touch_element(beams, m, -1, beams->node[k].X, k);
+}
+
+void beams_find_touches(struct beams *beams, double time, double dt)
+{
+    struct beam_contact *const contact = beams->contact;
+    const struct scene *const scene = beams->scene;
+    for (int w = 0; w < contact->n_walls; w++) {
+        const char *const motion = scene->wall[w].motion;
+        const int mover = motion[0] ? scene_find_motion(scene, motion) : -1;
+        contact->begin[w] = motion_at(scene, mover, time);
+        contact->end[w] = motion_at(scene, mover, time + dt);
+    }
+    contact->n = 0;
+    for (int f = 0; f < contact->n_faces; f++) {
+        const struct beam_face *const face = &contact->face[f];
+        for (int k = 0; k < beams->n_nodes; k++) touch_face(beams, k, face);
+        for (int m = 0; m < beams->n_elements && face->radius == 0; m++)
+            touch_element(beams, m, face->wall, face->from, -1);
+    }
+    for (int a = 0; a < beams->n; a++)
+        for (int b = 0; b < beams->n; b++) touch_beams(beams, a, b);
+}
+
+/* --- forces --- */
+
+void beams_add_touches(struct beams *beams)
+{
+    const struct beam_contact *const contact = beams->contact;
+    for (int k = 0; k < beams->n_nodes; k++)
+        memset(beams->step[k].touch, 0, sizeof beams->step[k].touch);
+    for (int j = 0; j < contact->n; j++) {
+        const struct beam_touch *const t = &contact->touch[j];
+        for (int k = 0; k < t->n; k++)
+            for (int c = 0; c < 2; c++)
+                beams->step[t->node[k]].touch[c] += t->part[k] * t->normal[c] * t->force;
+    }
+}
+
+bool beams_keep_apart(const struct beams *beams)
+{
+    const struct beam_contact *const contact = beams->contact;
+    const double kept = KEPT * beams->scene->top.dp;
+    for (int j = 0; j < contact->n; j++)
+        if (contact->touch[j].gap + along_touch(beams, &contact->touch[j]) < -kept) return false;
+    return true;
+}
+
+/* A touch along the unknowns: what a vector of these is to it. */
+static double along_unknowns(const struct beams *beams, const struct beam_touch *t,
+                             const double *vector)
+{
+    double sum = 0;
+    for (int k = 0; k < t->n; k++)
+        for (int c = 0; c < 2; c++) {
+            const int64_t row = beams->node[t->node[k]].row[c];
+            if (row >= 0) sum += t->part[k] * t->normal[c] * vector[row];
+        }
+    return sum;
+}
+
+static double *column_of(const struct beam_contact *contact, int j)
+{
+    return contact->column + (size_t)j * (size_t)(contact->rows + ENVELOPE_ALIGN);
+}
+
+static void find_yields(struct beams *beams)
+{
+    struct beam_contact *const contact = beams->contact;
+    for (int j = 0; j < contact->n; j++) {
+        const struct beam_touch *const t = &contact->touch[j];
+        double *const column = column_of(contact, j);
+        memset(column, 0, (size_t)(contact->rows + ENVELOPE_ALIGN) * sizeof *column);
+        for (int k = 0; k < t->n; k++)
+            for (int c = 0; c < 2; c++) {
+                const int64_t row = beams->node[t->node[k]].row[c];
+                if (row >= 0) column[row] += t->part[k] * t->normal[c];
+            }
+        envelope_solve(&beams->matrix, column);
+        for (int i = 0; i < contact->n; i++)
+            contact->yields[(size_t)i * (size_t)contact->most + (size_t)j] =
+                along_unknowns(beams, &contact->touch[i], column);
+    }
+}
+
+/* Projected Gauss-Seidel, in the order of the touches: no force pulls. */
+void beams_correct_touches(struct beams *beams)
+{
+    enum { TURNS = 1000 };
+    struct beam_contact *const contact = beams->contact;
+    double largest = (double)INFINITY;
+    if (contact->n == 0) return;
+    find_yields(beams);
+    for (int j = 0; j < contact->n; j++)
+        contact->open[j] = contact->touch[j].gap + along_touch(beams, &contact->touch[j]) +
+                           along_unknowns(beams, &contact->touch[j], beams->unknown);
+    for (int turn = 0; turn < TURNS && largest > 0.1 * KEPT * beams->scene->top.dp; turn++) {
+        largest = 0;
+        for (int j = 0; j < contact->n; j++) {
+            struct beam_touch *const t = &contact->touch[j];
+            const double own = contact->yields[(size_t)j * (size_t)contact->most + (size_t)j];
+            const double force = own > 0 ? max2(0, t->force - contact->open[j] / own) : 0,
+                         more = force - t->force;
+            t->force = force;
+            largest = max2(largest, fabs(more) * own);
+            for (int i = 0; i < contact->n && more != 0; i++)
+                contact->open[i] +=
+                    more * contact->yields[(size_t)i * (size_t)contact->most + (size_t)j];
+            for (int64_t r = 0; r < contact->rows && more != 0; r++)
+                beams->unknown[r] += more * column_of(contact, j)[r];
+        }
+    }
+}
+
+void beams_finish_touches(struct beams *beams, double time, double dt)
+{
+    const struct beam_contact *const contact = beams->contact;
+    const struct scene *const scene = beams->scene;
+    const int rigid_wall = scene_rigid_wall(scene, 0);
+    bool pushed = false;
+    if (beams->rigid) rigid_clear_push(beams->rigid);
+    for (int j = 0; j < contact->n; j++) {
+        const struct beam_touch *const t = &contact->touch[j];
+        struct beam *const beam = &beams->beam[beams->node[t->node[0]].beam];
+        if (!(t->force > 0) || t->wall < 0) continue;
+        if (t->wall < rigid_wall) {
+            beam->work += t->force * t->moved;
+            continue;
+        }
+        const double force[2] = {-t->force * t->normal[0], -t->force * t->normal[1]};
+        rigid_push(beams->rigid, t->wall - rigid_wall, &contact->begin[t->wall], t->at, force);
+        beam->passed += t->force * t->moved;
+        pushed = true;
+    }
+    if (pushed) rigid_kick(beams->rigid, time, dt);
+}
+
+int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,
+                         int *beam)
+{
+    for (*beam = 0; *beam < beams->n; ++*beam) {
+        const struct beam *const b = &beams->beam[*beam];
+        const struct box2 box = box_of(beams, *beam);
+        const double most = reach + half_of(beams, *beam);
+        for (int64_t i = 0; i < solid->n; i++) {
+            const double at[2] = {solid->x[i], solid->y[i]};
+            const struct box2 place = {{at[0], at[1]}, {at[0], at[1]}};
+            if (!box2_near(&place, &box, most)) continue;
+            for (int m = b->first_element; m < b->end_element; m++) {
+                double from[2], to[2], normal[2];
+                node_now(beams, beams->element[m].node[0], from);
+                node_now(beams, beams->element[m].node[1], to);
+                if (distance_to(at, from, to, foot_part(at, from, to), 0, normal) < most) return i;
+            }
+        }
+    }
+    return -1;
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT
+ * Contact of beams (T-106): with walls, posts, other beams and rigid bodies, dry and in water. */
+#include "rig.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+static double height(int node)
+{
+    return rig.sim.beams.node[node].X[1] + rig.sim.beams.state[node].x[1];
+}
+
+/* No node of a beam is lower than the thickness allows. Contact gives no energy. Normals
+ * turn within a step, which costs a tenth of the thickness. */
+static void falls(const char *text, double lowest, double time)
+{
+    rig_open(&rig, text, NULL);
+    double before = INFINITY;
+    for (int n = 1; n <= 40; n++) {
+        rig_run(&rig, time * n / 40);
+        for (int k = 0; k < rig.sim.beams.n_nodes; k++)
+            assert_at_most(-lowest + 1e-3, -height(k), "depth of a node");
+        const struct ledger row = simulation_ledger(&rig.sim);
+        const double energy = row.kinetic + row.potential + row.elastic;
+        assert_at_most(before + 1e-3 * fabs(energy), energy, "energy");
+        before = energy;
+    }
+}
+
+#define DRY "dp = 4 cm\nend_time = 1\ngravity = 0, -9.81\n"
+#define FLOOR "[wall floor]\nshape = box -1, -0.1, 1, 0\n"
+#define STRIP(name, line) \
+    "[beam " name "]\nshape = polyline: " line "\ndensity = 2000\nyoung = 1e7\nthickness = 1 cm\n"
+
+static void test_a_beam_lands_on_a_floor(void)
+{
+    falls(DRY FLOOR STRIP("a", "-0.3, 0.1; 0.3, 0.2"), 0.005, 0.4);
+}
+
+static void test_a_beam_lands_on_a_post(void)
+{
+    falls(DRY FLOOR
+          "[wall post]\nshape = box -0.02, 0, 0.02, 0.1\n" STRIP("a", "-0.29, 0.2; 0.31, 0.2"),
+          0.005, 0.4);
+    /* The post is between two nodes, and holds the beam up there. */
+    assert_at_most(-0.1, -height(7), "height at the post");
+}
+
+/* The upper one comes to rest on the lower one, which is held at both ends. */
+static void test_a_beam_lands_on_another(void)
+{
+    falls(DRY
+          "[beam low]\nshape = polyline: -0.3, 0; 0.3, 0\nclamp = -0.3, 0\nclamp = 0.3, 0\n"
+          "density = 2000\nyoung = 1e9\nthickness = 1 cm\n" STRIP("top", "-0.1, 0.1; 0.12, 0.1"),
+          -0.05, 0.4);
+    const int middle = rig.sim.beams.beam[1].first_node + 3;
+    assert_at_most(0, -height(middle), "height of the upper beam");
+}
+
+/* A hinged strip that falls by a half turn meets its neighbour, and itself. */
+static void test_a_beam_meets_itself(void)
+{
+    falls(DRY STRIP("a", "0, 0; 0.5, 0; 0.5, 0.06; 0.02, 0.06") "clamp = 0, 0\nclamp = 0.48, 0\n",
+          -0.06, 0.5);
+    for (int k = 15; k < rig.sim.beams.n_nodes; k++) {
+        const double x = rig.sim.beams.node[k].X[0] + rig.sim.beams.state[k].x[0];
+        int below = 0;
+        while (below < 11 && rig.sim.beams.node[below + 1].X[0] < x) below++;
+        const double part = (x - rig.sim.beams.node[below].X[0]) * 26;
+        const double low = height(below) + part * (height(below + 1) - height(below));
+        assert_at_most(height(k) - 0.009, low, "height of the lower part");
+    }
+}
+
+/* A box of 20 kg/m falls on a beam, which holds it. The reaction on the box is that of the step
+ * before it, so energy is not exact. */
+static void test_a_rigid_body_lands_on_a_beam(void)
+{
+    rig_open(&rig,
+             DRY "[beam a]\nshape = polyline: -0.5, 0; 0.5, 0\nclamp = -0.5, 0\nclamp = 0.5, 0\n"
+                 "density = 2000\nyoung = 1e9\nthickness = 2 cm\n"
+                 "[rigid box]\nshape = box -0.1, 0.06, 0.1, 0.16\ndensity = 1000\n",
+             NULL);
+    const double start = simulation_ledger(&rig.sim).potential;
+    for (int n = 1; n <= 40; n++) {
+        rig_run(&rig, 0.01 * n);
+        const struct ledger row = simulation_ledger(&rig.sim);
+        assert_at_most(0.065, -rig.sim.rigid.state[0].x[1], "the box falls");
+        assert_at_most(1.001 * start, row.kinetic + row.potential + row.elastic, "energy");
+    }
+}
+
+/* A dam break carries a loose strip against the far wall. */
+static void test_water_does_not_push_a_beam_through_a_wall(void)
+{
+    rig_open(&rig,
+             "dp = 2 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.3, 0.3\nsound_speed = 30\nsurface = 0.3\n"
+             "[wall tank]\nshape = polyline: 0, 0.6; 0, 0; 0.7, 0; 0.7, 0.6\n"
+             "[beam a]\nshape = polyline: 0.36, 0.03; 0.36, 0.3\ndensity = 1500\nyoung = 1e8\n"
+             "thickness = 4 mm\n",
+             NULL);
+    for (int n = 1; n <= 16; n++) {
+        rig_run(&rig, 0.05 * n);
+        for (int k = 0; k < rig.sim.beams.n_nodes; k++) {
+            assert_at_most(0, -height(k), "depth of a node");
+            assert_at_most(0.7, rig.sim.beams.node[k].X[0] + rig.sim.beams.state[k].x[0], "x");
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_beam_lands_on_a_floor);
+    RUN_TEST(test_a_beam_lands_on_a_post);
+    RUN_TEST(test_a_beam_lands_on_another);
+    RUN_TEST(test_a_beam_meets_itself);
+    RUN_TEST(test_a_rigid_body_lands_on_a_beam);
+    RUN_TEST(test_water_does_not_push_a_beam_through_a_wall);
+    return UNITY_END();
+}
