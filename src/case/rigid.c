@@ -69,31 +69,46 @@ enum err case_place_bodies(struct reader *r)
     return ERR_OK;
 }
 
-/* A hinge is in place or on a wall that is no rigid body. */
+/* Each hinge is in place, on a wall or on another rigid body. */
+static enum err check_hinges(struct reader *r, const struct scene_rigid *rigid)
+{
+    const int walls = scene_rigid_wall(r->scene, 0);
+    int fixed = 0;
+    for (int k = 0; k < rigid->hinge.n; k++) {
+        const struct hinge_point *const hinge = &rigid->hinge.item[k];
+        const int wall = scene_find_wall(r->scene, hinge->other);
+        const bool bad =
+            wall < 0 || wall >= walls + r->scene->n_rigid || wall - walls == rigid->common.index;
+        if (*hinge->other && bad)
+            return bad_line(r, hinge->line,
+                            "[rigid %s] hinge: %s is no [wall] and no other [rigid]",
+                            rigid->common.name, hinge->other);
+        fixed += wall < walls || !*hinge->other;
+        if (fixed > 1)
+            return bad_line(r, hinge->line,
+                            "[rigid %s] has a second `hinge` in place or on a [wall], which would "
+                            "hold it still; leave it out",
+                            rigid->common.name);
+    }
+    return ERR_OK;
+}
+
 static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
 {
-    const double of_hinge = rigid->hinge_stiffness + rigid->hinge_damping + rigid->hinge_friction;
+    const double moments = rigid->hinge_stiffness + rigid->hinge_damping + rigid->hinge_friction;
     const bool guided = rigid->guide[0] != 0 || rigid->guide[1] != 0;
     if (rigid->hinge.n == 0)
-        return of_hinge > 0
-                   ? bad_section(r, "gives stiffness, damping or friction of a hinge, but no "
-                                    "`hinge`")
+        return moments > 0 || *rigid->hinge_motion
+                   ? bad_section(r, "gives stiffness, damping, friction or motion of a hinge, but "
+                                    "no `hinge`")
                    : ERR_OK;
-    const char *const other = rigid->hinge.item[0].other;
-    const int wall = scene_find_wall(r->scene, other);
-    if (rigid->hinge.n > 1)
-        return bad_line(r, rigid->hinge.item[1].line,
-                        "[rigid %s] has a second `hinge`, which would hold it still; leave it out",
-                        rigid->common.name);
     if (guided || !rigid->turns)
         return bad_section(r, "has both `hinge` and `%s`; leave one out",
                            guided ? "guide" : "turns = off");
-    if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
-        return bad_line(r, rigid->hinge.item[0].line,
-                        "[rigid %s] hinge: %s is no [wall]; a rigid body is hinged to a place or a "
-                        "[wall], and a stiff [spring] joins it to another",
-                        rigid->common.name, other);
-    return ERR_OK;
+    if (*rigid->hinge_motion && moments > 0)
+        return bad_section(r, "has a `hinge_motion`, which gives the angle, and a stiffness, "
+                              "damping or friction of the hinge; leave one out");
+    return check_hinges(r, rigid);
 }
 
 enum err case_check_rigid(struct reader *r, const void *section)

@@ -56,9 +56,11 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
         if (strcmp(scene->solid[k].clamp_motion, motion->common.name) == 0) return;
     for (int k = 0; k < scene->n_beam; k++)
         if (strcmp(scene->beam[k].motion, motion->common.name) == 0) return;
+    for (int k = 0; k < scene->n_rigid; k++)
+        if (strcmp(scene->rigid[k].hinge_motion, motion->common.name) == 0) return;
     warn_at(check->diag, check->scene, motion->common.line,
-            "[motion %s] moves nothing: name it by `motion` of a [wall] or [beam], or by "
-            "`clamp_motion` of a [solid]",
+            "[motion %s] moves nothing: name it by `motion` of a [wall] or [beam], by "
+            "`clamp_motion` of a [solid] or by `hinge_motion` of a [rigid]",
             motion->common.name);
 }
 

@@ -245,64 +245,9 @@ enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag 
 
 /* --- impulses --- */
 
-/* An impact is over before the fluid resists. */
-static const double (*yields_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
+static struct rigid_row row_of(const struct rigid_touch *t, int across)
 {
-    return stage == RIGID_IMPACT ? eq->alone : eq->yields;
-}
-
-/* A pair of bodies and what a unit of an impulse between them is to each. */
-struct row {
-    const int *body;
-    const double (*along)[3];
-};
-
-/* Relative velocity along a row: of displacements without the velocities before. */
-static double rate_of(const struct rigid *rigid, struct row row, enum rigid_stage stage)
-{
-    double rate = 0;
-    for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        const struct rigid_equations *const eq = &rigid->eq[row.body[side]];
-        for (int c = 0; c < 3; c++) {
-            const double impact = eq->before[c] + (stage == RIGID_STEP ? eq->touch[0][c] : 0);
-            const double start =
-                stage == RIGID_PUSH ? 0 : impact + (stage == RIGID_STEP ? eq->change[c] : 0);
-            rate += row.along[side][c] * (start + eq->touch[stage][c]);
-        }
-    }
-    return rate;
-}
-
-/* What a unit of impulse adds to it. */
-static double per_impulse(const struct rigid *rigid, struct row row, enum rigid_stage stage)
-{
-    double sum = 0;
-    for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        const double(*const yields)[3] = yields_in(&rigid->eq[row.body[side]], stage);
-        for (int c = 0; c < 3; c++)
-            for (int e = 0; e < 3; e++)
-                sum += row.along[side][c] * yields[c][e] * row.along[side][e];
-    }
-    return sum;
-}
-
-static void add_impulse(struct rigid *rigid, struct row row, enum rigid_stage stage, double more)
-{
-    for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        struct rigid_equations *const eq = &rigid->eq[row.body[side]];
-        const double(*const yields)[3] = yields_in(eq, stage);
-        for (int c = 0; c < 3; c++)
-            for (int e = 0; e < 3; e++)
-                eq->touch[stage][c] += yields[c][e] * row.along[side][e] * more;
-    }
-}
-
-static struct row row_of(const struct rigid_touch *t, int across)
-{
-    return (struct row){t->body, t->along[across]};
+    return (struct rigid_row){t->body, t->along[across]};
 }
 
 /* T-102, T-102b: changes the impulse along the normal, or by friction across it, to what its own
@@ -310,22 +255,23 @@ static struct row row_of(const struct rigid_touch *t, int across)
 static double relax_touch(struct rigid *rigid, struct rigid_touch *t, enum rigid_stage stage,
                           int across, double dt)
 {
-    const struct row row = row_of(t, across);
-    const double a = per_impulse(rigid, row, stage);
+    const struct rigid_row row = row_of(t, across);
+    const double a = rigid_row_yields(rigid, row, stage);
     if (!(a > 0)) return 0;
     const double gap = stage == RIGID_PUSH ? t->gap : max2(t->gap, 0);
     const double least = across ? 0 : stage == RIGID_IMPACT ? max2(t->leave, -gap / dt) : -gap / dt;
     const double wall = stage == RIGID_PUSH ? 0 : t->wall_speed[across];
-    const double rate = rate_of(rigid, row, stage) + wall - least;
+    const double rate = rigid_row_rate(rigid, row, stage) + wall - least;
     const double most = t->law->friction * t->impulse[stage][0];
     double *const impulse = &t->impulse[stage][across], before = *impulse;
     *impulse = across ? max2(-most, min2(most, before - rate / a)) : max2(0, before - rate / a);
-    add_impulse(rigid, row, stage, *impulse - before);
+    rigid_row_push(rigid, row, stage, *impulse - before);
     return fabs(*impulse - before) * a;
 }
 
-/* Projected Gauss-Seidel, in the order of the touches. */
-static void find_impulses(struct rigid *rigid, enum rigid_stage stage, double dt)
+/* Projected Gauss-Seidel, in the order of the touches and hinges. */
+static void find_impulses(struct rigid *rigid, enum rigid_stage stage,
+                          const struct rigid_step *step)
 {
     struct rigid_contact *const contact = rigid->contact;
     double largest = 1, first = 0;
@@ -333,10 +279,11 @@ static void find_impulses(struct rigid *rigid, enum rigid_stage stage, double dt
         largest = 0;
         for (int j = 0; j < contact->n; j++) {
             struct rigid_touch *const t = &contact->touch[j];
-            largest = max2(largest, relax_touch(rigid, t, stage, 0, dt));
+            largest = max2(largest, relax_touch(rigid, t, stage, 0, step->dt));
             if (t->law->friction > 0 && stage != RIGID_PUSH)
-                largest = max2(largest, relax_touch(rigid, t, stage, 1, dt));
+                largest = max2(largest, relax_touch(rigid, t, stage, 1, step->dt));
         }
+        largest = max2(largest, rigid_hinges_relax(rigid, stage, step));
         if (turn == 0) first = largest;
     }
 }
@@ -346,7 +293,7 @@ static void find_rebounds(const struct rigid *rigid, double dt)
 {
     for (int j = 0; j < rigid->contact->n; j++) {
         struct rigid_touch *const t = &rigid->contact->touch[j];
-        const double rate = rate_of(rigid, row_of(t, 0), RIGID_IMPACT) + t->wall_speed[0];
+        const double rate = rigid_row_rate(rigid, row_of(t, 0), RIGID_IMPACT) + t->wall_speed[0];
         const bool meets = rate + max2(t->gap, 0) / dt < 0 && t->law->restitution > 0;
         t->leave = meets ? -t->law->restitution * rate : -(double)INFINITY;
     }
@@ -358,7 +305,7 @@ static double impulse_of(const struct rigid_touch *t, int across)
     return t->impulse[RIGID_IMPACT][across] + t->impulse[RIGID_STEP][across];
 }
 
-void rigid_touch(struct rigid *rigid, double time, double dt)
+void rigid_touch(struct rigid *rigid, double time, const struct rigid_step *step)
 {
     struct rigid_contact *const contact = rigid->contact;
     for (int k = 0; k < rigid->n; k++) memset(rigid->eq[k].touch, 0, sizeof rigid->eq[k].touch);
@@ -369,15 +316,17 @@ void rigid_touch(struct rigid *rigid, double time, double dt)
             contact->now = &contact->law[k * rigid->scene->n_wall + w];
             if (!isnan(contact->now->layer)) approach_pair(rigid, k, w);
         }
-    find_rebounds(rigid, dt);
+    find_rebounds(rigid, step->dt);
+    rigid_hinges_begin(rigid, time);
     for (int stage = 0; stage < RIGID_STAGES; stage++)
-        find_impulses(rigid, (enum rigid_stage)stage, dt);
+        find_impulses(rigid, (enum rigid_stage)stage, step);
     for (int k = 0; k < rigid->n; k++)
         for (int c = 0; c < 3; c++) {
             rigid->eq[k].change[c] +=
                 rigid->eq[k].touch[RIGID_IMPACT][c] + rigid->eq[k].touch[RIGID_STEP][c];
             rigid->eq[k].faster[c] += rigid->eq[k].touch[RIGID_STEP][c];
         }
+    rigid_hinges_load(rigid);
     for (int j = 0; j < 2 * contact->n; j++) {
         const struct rigid_touch *const t = &contact->touch[j / 2];
         for (int side = 0; side < 2; side++)

@@ -20,7 +20,7 @@ struct freedom {
 static struct motion_point hinge_at(const struct rigid *rigid, const struct rigid_body *body,
                                     double time)
 {
-    const double *const at = body->given->hinge.item[0].at;
+    const double *const at = body->fixed->at;
     const struct motion_state m = motion_at(rigid->scene, body->hinge_motion, time);
     return motion_of_point(&m, at[0], at[1]);
 }
@@ -28,7 +28,7 @@ static struct motion_point hinge_at(const struct rigid *rigid, const struct rigi
 /* The arm from the hinge to the centre of mass. */
 static void hinge_arm(const struct rigid_body *body, double angle, double arm[2])
 {
-    const double *const at = body->given->hinge.item[0].at;
+    const double *const at = body->fixed->at;
     const double x = body->centre[0] - at[0], y = body->centre[1] - at[1];
     const double c = elementary_cos(angle), s = elementary_sin(angle);
     arm[0] = c * x - s * y;
@@ -40,7 +40,7 @@ static struct freedom freedom_of(const struct rigid *rigid, int k, double time)
     const struct rigid_body *const body = &rigid->body[k];
     const double *const along = body->given->guide, size = elementary_hypot(along[0], along[1]);
     struct freedom f = {.n = 0};
-    if (body->given->hinge.n) {
+    if (body->fixed) {
         const struct motion_point at = hinge_at(rigid, body, time);
         double arm[2];
         hinge_arm(body, rigid->state[k].x[2], arm);
@@ -60,17 +60,23 @@ static struct freedom freedom_of(const struct rigid *rigid, int k, double time)
     return f;
 }
 
+void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[3])
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    const struct motion_point at = hinge_at(rigid, body, time);
+    double arm[2];
+    hinge_arm(body, x[2], arm);
+    for (int c = 0; c < 2; c++) x[c] = at.x[c] + arm[c] - body->centre[c];
+}
+
 void rigid_hold(struct rigid *rigid, int k, double time)
 {
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct freedom f = freedom_of(rigid, k, time);
     double v[3];
-    if (body->given->hinge.n) {
-        const struct motion_point at = hinge_at(rigid, body, time);
-        double arm[2];
-        hinge_arm(body, s->x[2], arm);
-        for (int c = 0; c < 2; c++) s->x[c] = at.x[c] + arm[c] - body->centre[c];
+    if (body->fixed) {
+        rigid_follow_hinge(rigid, k, time, s->x);
         for (int c = 0; c < 3; c++) v[c] = f.base[c] + f.B[c][0] * s->v[2];
     } else if (f.n == 3) {
         return;
@@ -83,12 +89,6 @@ void rigid_hold(struct rigid *rigid, int k, double time)
         }
     }
     memcpy(s->v, v, sizeof v);
-}
-
-/* Dry friction takes off what it can of the turning, and does not reverse it. */
-static double with_friction(double rate, double most)
-{
-    return rate > most ? rate - most : rate < -most ? rate + most : 0;
 }
 
 /* The change of velocity by a unit of each impulse: B S^-1 B^T. */
@@ -111,17 +111,21 @@ static void find_yields(const struct freedom *f, double A[3][3], double yields[3
     }
 }
 
+void rigid_find_alone(struct rigid *rigid, int k, double time)
+{
+    const double *const mass = rigid->body[k].mass;
+    const struct freedom f = freedom_of(rigid, k, time);
+    double alone[3][3] = {{mass[0]}, {0, mass[1]}, {0, 0, mass[2]}};
+    find_yields(&f, alone, rigid->eq[k].alone);
+}
+
 void rigid_solve(struct rigid *rigid, int k, double end, double kick)
 {
     struct rigid_equations *const eq = &rigid->eq[k];
     const struct rigid_body *const body = &rigid->body[k];
     const struct rigid_state *const s = &rigid->state[k];
     const struct freedom f = freedom_of(rigid, k, end);
-    const double c_hinge = body->given->hinge_damping;
-    double A[3][3], right[3], S[3][3] = {{0}}, q[3], friction = 0;
-    double alone[3][3] = {{body->mass[0]}, {0, body->mass[1]}, {0, 0, body->mass[2]}};
-    eq->impulse[2] -= kick * (body->given->hinge_stiffness * s->x[2] + c_hinge * s->v[2]);
-    eq->springs[2][2] += 0.5 * kick * c_hinge;
+    double A[3][3], right[3], S[3][3] = {{0}}, q[3];
     for (int c = 0; c < 3; c++) {
         right[c] = eq->impulse[c] - kick * body->mass[c] * s->a[c];
         for (int e = 0; e < 3; e++) {
@@ -140,10 +144,8 @@ void rigid_solve(struct rigid *rigid, int k, double end, double kick)
         }
     }
     find_yields(&f, A, eq->yields);
-    find_yields(&f, alone, eq->alone);
-    if (f.n) friction = kick * body->given->hinge_friction / S[0][0];
+    rigid_find_alone(rigid, k, end);
     if (f.n) (void)cholesky_solve(S[0], f.n, 3, 0, q);
-    if (friction > 0) q[0] = with_friction(q[0], friction);
     for (int c = 0; c < 3; c++) {
         eq->change[c] = f.base[c] - s->v[c];
         for (int j = 0; j < f.n; j++) eq->change[c] += f.B[c][j] * q[j];
@@ -163,6 +165,73 @@ void rigid_find_reaction(struct rigid *rigid, int k, double kick)
             needed += eq->fluid[c][e] * eq->faster[e] + eq->springs[c][e] * eq->change[e];
         rigid->state[k].reaction[c] = free ? 0 : needed / kick;
     }
+}
+
+/* --- impulses between two bodies --- */
+
+/* An impact is over before the fluid resists. */
+static const double (*yields_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
+{
+    return stage == RIGID_IMPACT ? eq->alone : eq->yields;
+}
+
+double rigid_row_change(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+{
+    double rate = 0;
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 3 && row.body[side] >= 0; c++)
+            rate += row.along[side][c] * rigid->eq[row.body[side]].touch[stage][c];
+    return rate;
+}
+
+double rigid_row_rate(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+{
+    double rate = 0;
+    for (int side = 0; side < 2; side++) {
+        if (row.body[side] < 0) continue;
+        const struct rigid_equations *const eq = &rigid->eq[row.body[side]];
+        for (int c = 0; c < 3; c++) {
+            const double impact = eq->before[c] + (stage == RIGID_STEP ? eq->touch[0][c] : 0);
+            const double start =
+                stage == RIGID_PUSH ? 0 : impact + (stage == RIGID_STEP ? eq->change[c] : 0);
+            rate += row.along[side][c] * (start + eq->touch[stage][c]);
+        }
+    }
+    return rate;
+}
+
+double rigid_row_yields(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+{
+    double sum = 0;
+    for (int side = 0; side < 2; side++) {
+        if (row.body[side] < 0) continue;
+        const double(*const yields)[3] = yields_in(&rigid->eq[row.body[side]], stage);
+        for (int c = 0; c < 3; c++)
+            for (int e = 0; e < 3; e++)
+                sum += row.along[side][c] * yields[c][e] * row.along[side][e];
+    }
+    return sum;
+}
+
+void rigid_row_push(struct rigid *rigid, struct rigid_row row, enum rigid_stage stage,
+                    double impulse)
+{
+    for (int side = 0; side < 2; side++) {
+        if (row.body[side] < 0) continue;
+        struct rigid_equations *const eq = &rigid->eq[row.body[side]];
+        const double(*const yields)[3] = yields_in(eq, stage);
+        for (int c = 0; c < 3; c++)
+            for (int e = 0; e < 3; e++)
+                eq->touch[stage][c] += yields[c][e] * row.along[side][e] * impulse;
+    }
+}
+
+double rigid_way(const struct rigid *rigid, int k, int c, double late)
+{
+    const struct rigid_equations *const eq = &rigid->eq[k];
+    const double v =
+        eq->before[c] + eq->change[c] + eq->touch[RIGID_IMPACT][c] + eq->touch[RIGID_STEP][c];
+    return late * (v - eq->pushed[c]) + rigid->body[k].moved[c];
 }
 
 /* --- springs --- */
@@ -248,7 +317,6 @@ void rigid_find_loads(struct rigid *rigid)
         memset(body->load, 0, sizeof body->load);
         memset(body->stiffness, 0, sizeof body->stiffness);
         memset(body->damping, 0, sizeof body->damping);
-        body->stiffness[2][2] = body->given->hinge_stiffness;
     }
     for (int k = 0; k < rigid->n_springs; k++) {
         struct rigid_spring *const spring = &rigid->spring[k];

@@ -7,13 +7,6 @@
 #include "geometry/motion.h"
 #include "rigid/forces.h"
 
-/* The motion of the wall that a body is hinged to; -1: none. */
-static int hinge_motion(const struct scene *scene, const struct scene_rigid *rigid)
-{
-    const int wall = rigid->hinge.n ? scene_find_wall(scene, rigid->hinge.item[0].other) : -1;
-    return wall >= 0 ? scene_find_motion(scene, scene->wall[wall].motion) : -1;
-}
-
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
                       const struct wall_motion *motion, struct particles *walls, bool centred,
                       struct diag *d)
@@ -34,11 +27,12 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
         for (int b = 0; b < motion->n; b++)
             if (motion->body[b].section == scene_rigid_wall(scene, k))
                 rigid->body[k].wall = &motion->body[b];
-        rigid->body[k].hinge_motion = hinge_motion(scene, &scene->rigid[k]);
         rigid->state[k] = (struct rigid_state){
             .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
-        rigid_hold(rigid, k, 0);
     }
+    TRY(rigid_hinges_create(rigid, a, d));
+    for (int k = 0; k < rigid->n; k++) rigid_hold(rigid, k, 0);
+    rigid_hinges_hold(rigid, 0, 0);
     TRY(rigid_contact_create(rigid, a, d));
     return rigid_springs_create(rigid, a, d);
 }
@@ -182,13 +176,12 @@ static void add_pushed(struct rigid *rigid, int k)
     }
 }
 
-static void move_body(struct rigid *rigid, int k, double now, double dt, double late, double kick,
-                      double end)
+static void move_body(struct rigid *rigid, int k, double now, const struct rigid_step *step)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double part = part_of(rigid, kick), weight = kick / (kick + rigid->mean_time);
+    const double kick = step->kick, part = part_of(rigid, kick);
     rigid_find_reaction(rigid, k, kick);
     body->work = body->passed = 0;
     body->driven = kick * rigid_hinge_power(rigid, k, now);
@@ -201,10 +194,19 @@ static void move_body(struct rigid *rigid, int k, double now, double dt, double 
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
         s->v[c] = eq->before[c] + change;
-        s->x[c] +=
-            late * (s->v[c] - eq->pushed[c]) + body->moved[c] + dt * eq->touch[RIGID_PUSH][c];
+        s->x[c] += step->late * (s->v[c] - eq->pushed[c]) + body->moved[c] +
+                   step->dt * eq->touch[RIGID_PUSH][c];
     }
-    rigid_hold(rigid, k, end);
+    rigid_hold(rigid, k, rigid->end);
+}
+
+/* What follows from the velocity at the end of the step. */
+static void end_body(struct rigid *rigid, int k, double kick)
+{
+    struct rigid_body *const body = &rigid->body[k];
+    struct rigid_state *const s = &rigid->state[k];
+    const struct rigid_equations *const eq = &rigid->eq[k];
+    const double weight = kick / (kick + rigid->mean_time);
     for (int c = 0; c < 3; c++) {
         const double impact = eq->touch[RIGID_IMPACT][c] / kick, push = eq->pushed[c] / kick;
         /* An impact is no acceleration that the fluid could expect to go on. */
@@ -216,7 +218,7 @@ static void move_body(struct rigid *rigid, int k, double now, double dt, double 
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);
     }
-    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part, eq->faster);
+    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part_of(rigid, kick), eq->faster);
 }
 
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick)
@@ -238,10 +240,14 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
 
 void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
 {
-    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late;
+    const struct rigid_step step = {dt, kick, .late = rigid->centred ? 0.5 * dt : dt};
+    const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) add_pushed(rigid, k);
-    rigid_touch(rigid, now, dt);
-    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, dt, late, kick, rigid->end);
+    rigid_touch(rigid, now, &step);
+    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, &step);
+    if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);
+    for (int k = 0; k < rigid->n; k++) end_body(rigid, k, kick);
+    rigid_hinges_work(rigid);
     rigid_pass_work(rigid, kick);
     rigid_contact_work(rigid);
 }
@@ -300,7 +306,6 @@ struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt)
         e.potential -=
             body->given->gravity ? body->mass[c] * g[c] * (body->centre[c] + s->x[c]) : 0;
     }
-    e.elastic =
-        0.5 * body->given->hinge_stiffness * square(s->x[2]) + rigid_spring_energy(rigid, k);
+    e.elastic = rigid_hinge_energy(rigid, k) + rigid_spring_energy(rigid, k);
     return e;
 }

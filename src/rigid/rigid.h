@@ -23,7 +23,8 @@ struct rigid_body {
     const struct moving_wall *wall;        /* its particles */
     double mass[3];                        /* kg/m, kg/m, kg m */
     double centre[2];                      /* of mass at the start, m */
-    int hinge_motion;                      /* of the wall that it is hinged to; -1: in place */
+    const struct hinge_point *fixed;       /* a hinge in place or on a wall; NULL: none */
+    int hinge_motion;                      /* of this wall; -1: in place */
     double load[3];                        /* of springs in the coming step, N/m and N */
     double stiffness[3][3], damping[3][3]; /* of springs to a place */
     double mean[3];                        /* velocity over the last step, m/s and 1/s */
@@ -49,6 +50,8 @@ struct rigid {
     struct rigid_spring *spring;
     struct rigid_equations *eq; /* [n] of a step (rigid/forces.h) */
     struct rigid_contact *contact;
+    int n_hinges;
+    struct rigid_hinge *hinge; /* of all bodies, in their order */
     const struct scene *scene;
     struct particles *walls;
     double impedance; /* rho0 c0; 0: no fluid */
@@ -92,6 +95,9 @@ void rigid_kick(struct rigid *rigid, double time, double dt);
 
 /* The force of a spring at its end `to`, and where that is. */
 void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);
+
+/* Whether a hinge joins two bodies: they may overlap there. */
+bool rigid_share_hinge(const struct rigid *rigid, int one, int other);
 
 /* Energy and momentum of a body, per depth; `waiting`: the work that the fluid has still to
  * receive. */

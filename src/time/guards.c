@@ -315,8 +315,11 @@ static int64_t find_entered(const struct simulation *sim, int k)
     struct box2 box = box2_empty();
     for (int64_t i = b->first; i < b->end; i++) box2_include(&box, p->x[i], p->y[i]);
     for (int64_t j = 0; j < p->n; j++) {
-        const bool other = p->body[j] < scene_rigid_wall(sim->scene, 0) ||
-                           (p->body[j] > b->section && p->body[j] < scene_beam_wall(sim->scene, 0));
+        const int walls = scene_rigid_wall(sim->scene, 0);
+        const bool behind = p->body[j] > b->section &&
+                            p->body[j] < scene_beam_wall(sim->scene, 0) &&
+                            !rigid_share_hinge(&sim->rigid, k, p->body[j] - walls);
+        const bool other = p->body[j] < walls || behind;
         const struct box2 place = {{p->x[j], p->y[j]}, {p->x[j], p->y[j]}};
         if (!other || !box2_near(&place, &box, inside)) continue;
         for (int64_t i = b->first; i < b->end; i++)

@@ -317,8 +317,10 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE BOX "hinge_friction = 1\n", "but no `hinge`");
     rig_refuses(FREE BOX "hinge = 0, 0\nhinge = 1, 1\n", "second `hinge`");
     rig_refuses(FREE BOX "hinge = 0, 0\nguide = 1, 0\n", "leave one out");
-    rig_refuses(FREE BOX "[rigid b]\nshape = box 2, 0, 3, 1\ndensity = 1\nhinge = 0, 0, a\n",
-                "a is no [wall]");
+    rig_refuses(FREE BOX "[solid b]\nshape = box 2, 0, 3, 1\ndensity = 1\nyoung = 1e6\n"
+                         "poisson = 0.3\n[rigid c]\nshape = box 4, 0, 5, 1\ndensity = 1\n"
+                         "hinge = 0, 0, b\n",
+                "b is no [wall] and no other [rigid]");
     rig_refuses(FREE BOX "[spring s]\nbody = b\nstiffness = 1\nto = 1, 1\n",
                 "there is no [rigid] of that name");
     rig_refuses(FREE BOX "[spring s]\nbody = a\nother = a\nstiffness = 1\nto = 1, 1\n",
