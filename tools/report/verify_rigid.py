@@ -13,6 +13,7 @@ figures are kept in docs/results/rigid_verification.json."""
 import math
 
 from common import OUT, np, run_figures, run_tool
+from sphfsi.waves import separate
 
 REPORT = OUT / "rigid_verification.md"
 G, RHO = 9.81, 1000.0
@@ -98,18 +99,11 @@ def measure_waves(runs):
     p, kd, depth = runs[0].table(), runs[0].constants["kd"], 0.4
     period, k = runs[0].end_time / 12, kd / depth
     late = p["time_s"] > runs[0].end_time - 3 * period
-    turns = 2 * math.pi * p["time_s"][late] / period
-    basis = np.stack([f(n * turns) for n in (1, 2) for f in (np.cos, np.sin)], axis=1)
-    basis = np.column_stack([basis, np.ones_like(turns)])
-    gauges = []
-    for name in ("near_level_m", "far_level_m"):
-        c, s, *_ = np.linalg.lstsq(basis, p[name][late], rcond=None)[0]
-        gauges.append(c - 1j * s)
-    phase = 2 * math.pi * np.array([1, 1.25])
-    there, back = abs(np.linalg.solve(np.exp(1j * np.outer(phase, (-1, 1))), gauges))
+    waves = separate(p["time_s"][late], [p[f"{name}_level_m"][late] for name in ("near", "far")],
+                     [2 * math.pi / k, 2.5 * math.pi / k], depth, period)
     height = runs[0].constants["steep"] * 2 * math.pi / k
-    return [("height, % too large", 100 * (2 * float(there) / height - 1), 2),
-            ("height that comes back, %", 100 * float(back / there), 3)]
+    return [("height, % too large", 100 * (waves.incident / height - 1), 2),
+            ("height that comes back, %", 100 * waves.reflection, 3)]
 
 
 def measure_draft(runs):
