@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Rigid bodies, waves and damping zones against theory (make verify-rigid, minutes on one core): a
-cylinder that heaves, a wedge that enters water, waves of a piston that leave, a floating box, a
-body as dense as water.
+cylinder that heaves, a box that rolls, a wedge that enters water, waves of a piston that leave, a
+floating box, a body as dense as water.
 
 examples:
   tools/report/verify_rigid.py               writes docs/results/rigid_verification.md
@@ -64,6 +64,48 @@ def heave(times, radius):
     return 1 + np.concatenate([[0], np.cumsum((v[1:] + v[:-1]) / 2 * np.diff(times))])
 
 
+def roll_coefficients(width, draft, omega, panels=20):
+    """Added inertia and damping of a box that rolls about the middle of its waterline in deep
+    water: sources on the hull with the potential of Frank (1967)."""
+    corners = np.array([-width / 2, -width / 2 - 1j * draft, width / 2 - 1j * draft, width / 2])
+    part = (1 - np.cos(np.pi * np.arange(panels) / panels)) / 2
+    sides = [a + (b - a) * part for a, b in zip(corners, corners[1:])]
+    ends = np.concatenate([*sides, corners[-1:]])
+    a, b, k = ends[:-1], ends[1:], omega**2 / G
+    middle, length, normal = (a + b) / 2, abs(b - a), -1j * (b - a) / abs(b - a)
+    own, n = np.eye(len(middle), dtype=bool), normal[:, None]
+    potential = np.where(own, length * (np.log(length / 2) - 1), 0j)
+    speed = np.where(own, math.pi, 0j)
+    for s, weight in zip(*np.polynomial.legendre.leggauss(4)):
+        source = middle + s * (b - a) / 2
+        to, image = middle[:, None] - source, middle[:, None] - np.conj(source)
+        near = np.where(own, 1, to)
+        at = k * (image.imag + 1j * abs(image.real))
+        wave, turn = np.exp(at), k * (n.imag + 1j * n.real * np.where(image.real < 0, -1, 1))
+        both, slope = exp_e1(at) + 1j * math.pi * wave, exp_e1(at) - 1 / at + 1j * math.pi * wave
+        potential += weight * length / 2 * (
+            np.log(abs(near)) - np.log(abs(image)) - 2 * (both.real - 1j * math.pi * wave.real))
+        speed += weight * length / 2 * (
+            np.where(own, 0, (n / near).real) - (n / image).real
+            - 2 * ((slope * turn).real - 1j * math.pi * (wave * turn).real))
+    motion = (np.conj(middle) * normal).imag
+    moment = RHO * (potential @ np.linalg.solve(speed, motion) * motion * length).sum()
+    return -moment.real, omega * moment.imag
+
+
+def roll(times, width, spin):
+    """Angle of a box twice as wide as high and half as dense as water, on a hinge at its centre,
+    after a spin at the start: the Fourier integral of the linear equation of motion."""
+    draft, some = width / 4, np.linspace(0.5, 16, 60)
+    found = np.array([roll_coefficients(width, draft, omega) for omega in some]).T
+    omega = np.linspace(0.05, 16, 4000)
+    added, damping = (np.interp(omega, some, column) for column in found)
+    inertia = RHO / 2 * width * 2 * draft * (width**2 + 4 * draft**2) / 12
+    stiffness = RHO * G * (width**3 / 12 - width * draft**2 / 2)
+    angle = inertia * spin / (stiffness - omega**2 * (inertia + added) + 1j * omega * damping)
+    return 2 / math.pi * np.trapezoid(angle.real * np.cos(np.outer(times, omega)), omega, axis=1)
+
+
 def extrema(times, values):
     """Times and values where the curve turns, by a parabola through three rows."""
     k = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
@@ -81,6 +123,17 @@ def measure_heave(runs):
              100 * (period / wanted_period - 1), 2),
             *((f"{name}, % of the start, too high", 100 * (found[k] - wanted[k]), 5)
               for k, name in enumerate(("first trough", "first crest", "second trough")))]
+
+
+def measure_roll(runs):
+    """Theory has no vortices, which take more than the waves: its damping is no reference."""
+    p, spin = runs[0].table(), runs[0].constants["turning"]
+    when, found = extrema(p["time_s"], p["box_angle_rad"])
+    wanted_when, wanted = extrema(p["time_s"], roll(p["time_s"], 0.4, spin))
+    return [("period between the first two crests, % too long",
+             100 * ((when[2] - when[0]) / (wanted_when[2] - wanted_when[0]) - 1), 2),
+            ("second crest over the first", found[2] / found[0], None),
+            ("the same without vortices, theory", wanted[2] / wanted[0], None)]
 
 
 def measure_wedge(runs):
@@ -107,10 +160,10 @@ def measure_waves(runs):
 
 
 def measure_draft(runs):
-    """Mean of the last half, while it heaves, against what Archimedes says."""
+    """Mean of the last half, from rest, against what Archimedes says."""
     p = runs[0].table()
     height = p["box_cy_m"][p["time_s"] > runs[0].end_time / 2].mean()
-    return [("draft, % too large", 100 * float(0.61 - height) / 0.15, 0.5)]
+    return [("draft, % too large", 100 * float(0.6 - height) / 0.16, 0.5)]
 
 
 def measure_neutral(runs):
@@ -123,14 +176,17 @@ def measure_neutral(runs):
 SCENES = {
     **{f"heave of a cylinder, {n} spacings in the radius":
        ("rigid_heave", [[f"across={n}"]], measure_heave) for n in (10, 20)},
+    "roll of a box, 20 spacings in its width": ("rigid_roll", [["turning=0.6"]], measure_roll),
     **{f"wedge, {n} spacings in the last depth":
        ("rigid_wedge", [[f"across={n}"]], measure_wedge) for n in (10, 20)},
     **{f"waves of a piston, kd = {kd:g}, {n} spacings in the depth":
        ("wave_piston", [[f"across={n}", f"kd={kd}", f"steep={steep}"]], measure_waves)
        for kd, n, steep in ((0.5, 20, 0.01), (1, 20, 0.03), (1.5, 20, 0.03), (1.5, 40, 0.03),
                             (3, 40, 0.03))},
-    "floating box, 20 spacings across": ("floating_box", [["end_time=16 s"]], measure_draft),
-    "body as dense as water, 10 spacings across": ("rigid_neutral", [[]], measure_neutral)}
+    "floating box, 20 spacings across":
+    ("floating_box", [["end_time=8 s", "lift=0", "height=0.32 m"]], measure_draft),
+    "body as dense as the water around it, 10 spacings across":
+        ("rigid_neutral", [[]], measure_neutral)}
 
 
 if __name__ == "__main__":
