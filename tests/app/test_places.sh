@@ -35,10 +35,6 @@ says 1 ':8: \[load l\] contains no particle' "$body
 body = a
 shape = box 3, 3, 4, 4
 force = 1, 1"
-says 1 ':10: \[probe z\] point = 0.1031, 0.1031 is 0.0115 m from' "$body
-[numerics]
-solid_h_over_dp = 1.1
-${probe/0.05, 0.05/0.1031, 0.1031}"
 says 0 ':3: \[solid a\] hourglass_form = printed' "$body
 hourglass_form = printed"
 says 1 ':9: probe_interval = 1e-15 s gives' "$body
