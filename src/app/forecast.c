@@ -12,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { FIRST_STEPS = 20, EVALUATIONS_MEASURED = 5 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured
@@ -167,26 +166,6 @@ static enum err measure_rows(struct unit_costs *c, const struct trial *plain,
     return ERR_OK;
 }
 
-/* The time of all snapshots by that of the second one in a temporary folder: from then on each is
- * written to two files. Where there is no such folder they count nothing. */
-static void measure_snapshots(struct unit_costs *c, struct simulation *sim)
-{
-    char folder[] = "/tmp/sphfsi-XXXXXX";
-    struct snapshots file;
-    struct diag ignored = {.code = ERR_OK};
-    if (!mkdtemp(folder)) return;
-    if (!snapshots_create(&file, folder, sim->scene, SPHFSI_VERSION, &ignored) &&
-        !snapshots_write(&file, sim, &ignored)) {
-        const double begin = thread_clock(), interval = sim->scene->output.snapshot_interval;
-        if (!snapshots_write(&file, sim, &ignored))
-            c->snapshots =
-                (thread_clock() - begin) * (1 + floor(sim->scene->top.end_time / interval));
-        unlink(file.path);
-        snapshots_close(&file);
-    }
-    rmdir(folder);
-}
-
 /* Each particle somewhere in its own square of dp: the R2 sequence (Roberts 2018) has no order that
  * a lattice has. */
 static enum err disorder(struct simulation *sim, struct diag *d)
@@ -223,7 +202,8 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
     TRY(measure_steps(c, &trial, sim, d));
     const struct fluid_extremes extremes = sim->fluid.extremes; /* for the step that is expected */
     TRY(measure_rows(c, &trial, sim, d));
-    measure_snapshots(c, sim);
+    c->snapshots = snapshots_seconds(sim) *
+                   (1 + floor(sim->scene->top.end_time / sim->scene->output.snapshot_interval));
     if (sim->kind[KIND_FLUID].n) measure_disorder(c, sim);
     sim->fluid.extremes = extremes;
     return ERR_OK;
