@@ -111,6 +111,29 @@ static int mover_of(const struct scene *scene, const struct scene_beam *beam, co
     return scene_find_motion(scene, wall >= 0 ? scene->wall[wall].motion : beam->motion);
 }
 
+/* Joins a node to one of another beam, unless that is joined to it. */
+static enum err join(struct beams *beams, int k, const struct hinge_point *at, bool turns,
+                     struct diag *d)
+{
+    struct beam_node *const node = &beams->node[k];
+    const struct beam_place place =
+        beam_find(beams, scene_find_beam(beams->scene, at->other), node->X);
+    const struct beam_element *const e = &beams->element[place.element];
+    const int to = e->node[place.part > 0.5];
+    const double *const X = beams->node[to].X;
+    const double apart = elementary_hypot(X[0] - node->X[0], X[1] - node->X[1]);
+    if (apart > 1e-6 * e->length)
+        return fail_at(d, beams->scene, at->line,
+                       "[beam %s] %s = %g, %g, %s: the nearest nodes of both beams are %.3g m "
+                       "apart; give both lines a point there",
+                       beams->beam[node->beam].given->common.name, turns ? "hinge" : "clamp",
+                       at->at[0], at->at[1], at->other, apart);
+    if (beams->node[to].joined == k) return ERR_OK;
+    node->joined = to;
+    node->turns = turns;
+    return ERR_OK;
+}
+
 /* Holds the node nearest to each point: its displacements, with clamps its rotation, too. */
 static enum err hold(struct beams *beams, int beam, const struct hinge_list *list, bool turns,
                      struct diag *d)
@@ -126,6 +149,10 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
                            given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
                            place.distance);
         struct beam_node *const node = &beams->node[e->node[place.part > 0.5]];
+        if (scene_find_beam(beams->scene, at->other) >= 0) {
+            TRY(join(beams, e->node[place.part > 0.5], at, turns, d));
+            continue;
+        }
         for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
         node->mover = mover_of(beams->scene, given, at->other);
     }
@@ -165,13 +192,31 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
 
 /* --- unknowns --- */
 
+/* Joined nodes have the unknowns of the last node of their chain. */
+static void share_rows(struct beams *beams)
+{
+    for (int k = 0; k < beams->n_nodes; k++)
+        for (int c = 0; c < 3; c++) {
+            int to = k, turn = 0;
+            while (beams->node[to].joined >= 0 && c < (beams->node[to].turns ? 2 : 3) &&
+                   turn++ < beams->n)
+                to = beams->node[to].joined;
+            beams->node[k].row[c] = beams->node[to].row[c];
+            beams->node[k].mover = to != k && c == 0 ? beams->node[to].mover : beams->node[k].mover;
+        }
+}
+
 static enum err number_unknowns(struct beams *beams, struct arena *a, struct arena *temp,
                                 struct diag *d)
 {
     int64_t n = 0;
     for (int k = 0; k < beams->n_nodes; k++)
-        for (int c = 0; c < 3; c++)
-            if (beams->node[k].row[c] >= 0) beams->node[k].row[c] = n++;
+        for (int c = 0; c < 3; c++) {
+            const struct beam_node *const node = &beams->node[k];
+            const bool shared = node->joined >= 0 && c < (node->turns ? 2 : 3);
+            if (node->row[c] >= 0 && !shared) beams->node[k].row[c] = n++;
+        }
+    share_rows(beams);
     int64_t *const first = arena_alloc(temp, (size_t)n, sizeof *first, what, d);
     beams->unknown = arena_alloc(a, (size_t)n + ENVELOPE_ALIGN, sizeof *beams->unknown, what, d);
     if (!first || !beams->unknown) return ERR_MEMORY;
@@ -212,7 +257,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     if (!beams->node || !beams->state || !beams->step || !beams->element || !beams->start ||
         !beams->load)
         return ERR_MEMORY;
-    for (size_t k = 0; k < n; k++) beams->node[k].mover = -1;
+    for (size_t k = 0; k < n; k++) beams->node[k].mover = beams->node[k].joined = -1;
     place_nodes(beams);
     for (int k = 0; k < beams->n; k++) {
         TRY(hold(beams, k, &beams->beam[k].given->hinge, true, d));

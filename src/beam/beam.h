@@ -30,6 +30,8 @@ struct beam_node {
     double length;  /* of the line that it represents, m */
     int64_t row[3]; /* of the unknowns; -1: held */
     int mover;      /* motion of its clamp or hinge; -1: in place */
+    int joined;     /* node of another beam that has its place; -1: none */
+    bool turns;     /* joined by a hinge */
 };
 
 /* In a step: see beam_advance. */

@@ -146,6 +146,7 @@ static struct largest find_residual(struct beams *beams, double dt)
     struct largest top = {0};
     add_elements(beams, dt, &top);
     beams_add_touches(beams);
+    memset(beams->unknown, 0, (size_t)beams->matrix.n * sizeof *beams->unknown);
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_step *const s = &beams->step[k];
@@ -157,14 +158,19 @@ static struct largest find_residual(struct beams *beams, double dt)
                 s->load[c] + s->fluid[c] + touch - s->force[c] - s->resisted[c] - push;
             const double stiff =
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
-            beams->unknown[node->row[c]] = off;
+            beams->unknown[node->row[c]] += off;
             envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
-            top.off = max2(top.off, scale * fabs(off));
             top.force = max2(top.force, scale * max2(fabs(s->load[c] + touch), fabs(push)));
             top.force = max2(top.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
             top.rounding = max2(top.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
         }
     }
+    for (int k = 0; k < beams->n_nodes; k++)
+        for (int c = 0; c < 3; c++) {
+            const int64_t row = beams->node[k].row[c];
+            const double scale = c < 2 ? 1 : 1 / beams->node[k].length;
+            if (row >= 0) top.off = max2(top.off, scale * fabs(beams->unknown[row]));
+        }
     return top;
 }
 
@@ -323,7 +329,7 @@ static int64_t count_below(struct beams *beams, double omega2)
 double beams_longest_step(struct beams *beams)
 {
     enum { PARTS = 100 };
-    const int64_t free = count_free(beams);
+    bool joined = false;
     const double *const g = beams->scene->top.gravity;
     double high = 0, length = 0;
     find_start(beams);
@@ -334,6 +340,8 @@ double beams_longest_step(struct beams *beams)
         length += e->length;
     }
     double low = ROUNDING * high;
+    for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined >= 0;
+    const int64_t free = joined ? count_below(beams, low) : count_free(beams);
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
         *(count_below(beams, middle) > free ? &high : &low) = middle;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Conditions on a [beam] section: one line, stiffness and mass from one source each, supports. */
 #include "case/case.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,6 +19,50 @@ static enum err check_line(struct reader *r, const struct scene_beam *beam)
                         "`polyline: X, Y; X, Y` or `arc: X, Y, R, A, B`, and the thickness as a "
                         "key of its own",
                         beam->common.name);
+    return ERR_OK;
+}
+
+static double turn(const double a[2], const double b[2], const double c[2])
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Whether segments from a to b and from p to q cross, or the second goes back along the first. */
+static bool segments_meet(const double a[2], const double b[2], const double p[2],
+                          const double q[2])
+{
+    const double back = (b[0] - a[0]) * (q[0] - p[0]) + (b[1] - a[1]) * (q[1] - p[1]);
+    if (b[0] == p[0] && b[1] == p[1]) return back < 0 && fabs(turn(a, b, q)) < 1e-6 * fabs(back);
+    return turn(a, b, p) * turn(a, b, q) < 0 && turn(p, q, a) * turn(p, q, b) < 0;
+}
+
+/* A line that does not meet itself, longer than it is thick, in elements that a run can bear. */
+static enum err check_extent(struct reader *r, const struct scene_beam *beam)
+{
+    enum { ELEMENTS = 10000 }; /* pairs of them are compared in each step */
+    const struct shape *const line = beam->shape.item;
+    double length = 0, parts = 0;
+    for (int i = 0; i + 1 < line->n; i++) {
+        const double *const a = line->pt[i], *const b = line->pt[i + 1];
+        length += elementary_hypot(b[0] - a[0], b[1] - a[1]);
+        parts += scene_beam_parts(r->scene, beam, a, b);
+        for (int j = i + 1; j + 1 < line->n; j++)
+            if (segments_meet(a, b, line->pt[j], line->pt[j + 1]))
+                return bad_line(r, line->line,
+                                "[beam %s] crosses itself or turns back on itself near (%.6g, "
+                                "%.6g) m; move the points of its line apart",
+                                beam->common.name, line->pt[j][0], line->pt[j][1]);
+    }
+    if (beam->thickness > length)
+        return bad_section(r,
+                           "has a `thickness` of %g m and is %g m long; a body that is thicker "
+                           "than long is a [solid]",
+                           beam->thickness, length);
+    if (parts > ELEMENTS)
+        return bad_section(r,
+                           "has %.0f elements; at most %d are possible: set `element` to %.2g m "
+                           "or more",
+                           parts, ELEMENTS, 1.01 * length / ELEMENTS);
     return ERR_OK;
 }
 
@@ -46,10 +91,14 @@ static enum err check_supports(struct reader *r, const struct scene_beam *beam,
     for (int k = 0; k < list->n; k++) {
         const char *const other = list->item[k].other;
         const int wall = *other ? scene_find_wall(r->scene, other) : 0;
+        const bool joined = scene_find_beam(r->scene, other) >= 0;
+        if (joined && strcmp(other, beam->common.name) != 0) continue;
         if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
-            return bad_line(r, list->item[k].line,
-                            "[beam %s] %s: %s is no [wall]; a beam is held in place or by a [wall]",
-                            beam->common.name, key, other);
+            return bad_line(
+                r, list->item[k].line,
+                "[beam %s] %s: %s is no [wall] and no other [beam]; a beam is held in place, "
+                "by a [wall] or by another [beam]",
+                beam->common.name, key, other);
     }
     return ERR_OK;
 }
@@ -83,6 +132,7 @@ enum err case_check_beam(struct reader *r, const void *section)
     if (*beam->motion && beam->clamp.n + beam->hinge.n == 0)
         return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves");
     TRY(check_line(r, beam));
+    if (beam->shape.n) TRY(check_extent(r, beam));
     TRY(check_values(r, beam));
     TRY(check_supports(r, beam, &beam->clamp, "clamp"));
     return check_supports(r, beam, &beam->hinge, "hinge");

@@ -22,6 +22,11 @@ static enum err check_name(struct reader *r, const struct param *param, const ch
             nearest_offer(&near, name, other->name);
         }
     const bool two = also != param->kind;
+    if (param->section == SECTION_probe && scene_find_beam(r->scene, name) >= 0)
+        return bad_key(r, param->key, name,
+                       "[beam %s] has no such quantity; a beam has displacement, velocity, "
+                       "acceleration, energy, force, reaction and section_force",
+                       name);
     return bad_key(r, param->key, name, "there is no [%s%s%s] of that name%s",
                    section_table[param->kind].word, two ? "] or [" : "",
                    two ? section_table[also].word : "", nearest_hint(&near));

@@ -185,8 +185,12 @@ static const struct rule {
     {EFFECT_DAMPING_ZONE, NEEDS, EFFECT_FLUID, "it damps the fluid"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX, "a rigid body moves while rest is sought"},
-    {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX, "a beam moves while rest is sought"},
-    {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC, "a beam does not pass through periodic sides"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX,
+     "a beam moves while rest is sought; leave [relax] out and let `mass_damping` of the [beam] "
+     "and `artificial_viscosity` bring it to rest"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC,
+     "a beam does not pass through periodic sides; use walls or a longer [domain] without "
+     "`periodic`"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary is no state of rest"},
     {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
 };

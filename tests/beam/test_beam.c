@@ -192,12 +192,49 @@ static void test_a_moving_clamp_does_work(void)
     assert_near(1e-8, 0, row.dissipated, "energy");
 }
 
+#define HALVES                                                          \
+    "dp = 5 cm\nend_time = 100\n"                                       \
+    "[beam a]\nshape = polyline: 0, 0; 0.5, 0\naxial_stiffness = 1e6\n" \
+    "bending_stiffness = 1\nmass = 1\n" STATIC "clamp = 0, 0\n"         \
+    "[beam b]\nshape = polyline: 0.5, 0; 1, 0\naxial_stiffness = 1e6\n" \
+    "bending_stiffness = 1\nmass = 1\n" STATIC
+
+/* Two halves joined by a clamp bend as one beam; a hinge passes no moment. */
+static void test_beams_are_joined(void)
+{
+    rig_open(&rig, HALVES "clamp = 0.5, 0, a\n[load f]\nbody = b\nforce = 0, -5\n" AT_END,
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 20);
+    assert_near(2e-3 * 0.71379, 0.71379, -end()->x[1], "deflection");
+    rig_open(&rig,
+             HALVES "hinge = 0.5, 0, a\nclamp = 1, 0\n[load f]\nbody = a\nforce = 0, -0.001\n"
+                    "shape = box 0.49, -0.01, 0.51, 0.01\nhistory = min(t/5, 1)\n",
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 40);
+    const int middle = rig.sim.beams.beam[0].end_node - 1;
+    /* Two cantilevers, each with half of the force. */
+    assert_near(2e-7, 5e-4 * 0.125 / 3, -state(middle)->x[1], "deflection at the hinge");
+    assert_near(1e-12, state(middle)->x[1], state(middle + 1)->x[1], "both ends");
+    assert_near(2e-7, -state(middle)->x[2], state(middle + 1)->x[2], "angles");
+}
+
 static void test_bad_input_is_refused(void)
 {
 #define LINE "dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
     rig_refuses(LINE "young = 1e6\nthickness = 1 mm\n", "has no mass");
     rig_refuses(LINE "young = 1e6\nmass = 1\n", "lacks `thickness`");
     rig_refuses(LINE "mass = 1\nbending_stiffness = 1\n", "lacks `axial_stiffness`");
+    rig_refuses(BEAM("element = 1 um\n"), "has 1000000 elements; at most 10000");
+    rig_refuses(BEAM("thickness = 2\n"), "is a [solid]");
+    rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0; 0.5, 0\n"
+                "mass = 1\naxial_stiffness = 1\nbending_stiffness = 1\n",
+                "turns back on itself");
+    rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0; 1, 1; 0.5, -1\n"
+                "mass = 1\naxial_stiffness = 1\nbending_stiffness = 1\n",
+                "crosses itself");
+    rig_refuses(BEAM("[probe p]\nquantity = stress\nbody = b\npoint = 1, 0\n"),
+                "[beam b] has no such quantity");
+    rig_refuses(HALVES "clamp = 0.53, 0, a\n", "give both lines a point there");
     rig_refuses(BEAM("hinge = 0.5, 0.2\n"), "hinge = 0.5, 0.2 is 0.2 m from the beam");
     rig_refuses(BEAM("motion = m\n[motion m]\n"), "neither `clamp` nor `hinge`");
     rig_refuses(BEAM("[load f]\nbody = b\nforce = 0, 1\nshape = box 2, 2, 3, 3\n"),
@@ -205,9 +242,16 @@ static void test_bad_input_is_refused(void)
     rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = box 0, 0, 1, 1\nmass = 1\n"
                 "axial_stiffness = 1\nbending_stiffness = 1\n",
                 "a beam is a line");
-    rig_refuses(BEAM("[beam c]\nshape = polyline: 0, 1; 1, 1\nmass = 1\naxial_stiffness = 1\n"
-                     "bending_stiffness = 1\nclamp = 0, 1, b\n"),
-                "clamp: b is no [wall]");
+    static const char *const held[][2] = {{"clamp = 0, 1, b\n", "are 1 m apart"},
+                                          {"clamp = 0, 1, c\n", "clamp: c is no [wall]"}};
+    for (size_t k = 0; k < COUNT_OF(held); k++) {
+        char text[400];
+        snprintf(text, sizeof text, "%s%s",
+                 BEAM("[beam c]\nshape = polyline: 0, 1; 1, 1\nmass = 1\naxial_stiffness = 1\n"
+                      "bending_stiffness = 1\n"),
+                 held[k][0]);
+        rig_refuses(text, held[k][1]);
+    }
 }
 
 int main(void)
@@ -220,6 +264,7 @@ int main(void)
     RUN_TEST(test_a_free_beam_keeps_its_momenta);
     RUN_TEST(test_a_hinged_beam_is_a_pendulum);
     RUN_TEST(test_a_moving_clamp_does_work);
+    RUN_TEST(test_beams_are_joined);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
