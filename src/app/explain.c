@@ -144,6 +144,14 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
                     implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]),
                     implicit_across(&sim->solid, &sim->kind[KIND_SOLID]));
+    if (sim->solid.implicit) {
+        const struct implicit *const by = sim->solid.implicit;
+        char memory[32];
+        text_of_bytes(8.0 * (double)(by->matrix.start[2 * by->n] + by->springs.start[by->n]),
+                      memory);
+        session_say(o, "  matrix of implicit steps: %lld unknowns, %s", 2 * (long long)by->n,
+                    memory);
+    }
     if (sim->solid.implicit && sim->effects & FX_CONTACT)
         session_say(o, "  while surfaces are near each other: sub-steps, because the springs of "
                        "contact are not in the matrix");
