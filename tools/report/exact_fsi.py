@@ -264,19 +264,19 @@ def tables(kind, studies):
 
 
 def report(studies):
-    words, least_words = [], []
+    words, counts = [], []
     for kind, asked in ASKED.items():
         slopes = [slope for (of, *_), found in studies.items() for *_, slope in found if of == kind]
         words.append(f"{kind.capitalize()}: orders of {min(slopes):.2f} to {max(slopes):.2f}, "
                      f"asked: {asked:g}; {sum(slope >= 0.95 * asked for slope in slopes)} of "
                      f"{len(slopes)} are within 5 % of that or above.")
     for name, problem in PROBLEMS.items():
-        numbers = ", ".join(f"{least(problem, r)} for r = {r:g}" for r in DENSITIES
-                            if r >= problem.lightest["time"])
-        least_words.append(f"`{name}`, L/dp = {problem.at}: {numbers}")
+        counts.append([f"`{name}`", problem.at,
+                       *(least(problem, r) if r >= problem.lightest["time"] else ""
+                         for r in DENSITIES)])
     return {"answer": " ".join(words), "version": program_version(),
             "space": tables("space", studies), "time": tables("time", studies), "finest": FINEST,
-            "least": "; ".join(least_words)}
+            "least": table(["n", "L/dp", *(f"r = {r:g}" for r in DENSITIES)], counts)}
 
 
 def main():
