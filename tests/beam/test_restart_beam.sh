@@ -46,7 +46,7 @@ END
 restarts "$dir/beam.cfg" "$dir/all" 0.23
 expect 1 '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' \
     "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off"
-expect 1 'there is no \[solid\] of that name' \
+expect 1 '\[beam bar\] has no such quantity; a beam has displacement' \
     "$dir/beam.cfg" --set tip.quantity=strain --out "$dir/off"
 
 cat >"$dir/wet.cfg" <<'END'
