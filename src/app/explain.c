@@ -201,10 +201,12 @@ static void say_cost(const struct simulation *sim, const struct unit_costs *c,
         session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
 
-static enum err say_trial(struct simulation *sim, const struct sphfsi_options *o, struct diag *d)
+static enum err say_trial(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
+    struct simulation *const sim = &session->simulation;
     struct unit_costs c;
     const enum err e = forecast_measure(&c, sim, d);
+    c.opening = session->opening;
     check_simulation(sim, d); /* bounds of the step are known now */
     TRY(e);
     say_bounds(sim, o);
@@ -233,7 +235,7 @@ static enum err explain_text(struct session *session, const struct sphfsi_option
                 scheme, integrator, precision,
                 sim->kind[KIND_FLUID].n > 0 ? sim->fluid.kernel->name : "none",
                 sim->solid.sweeps ? sim->solid.sweeps->name : "none");
-    return say_trial(sim, o, d);
+    return say_trial(session, o, d);
 }
 
 /* --- the same as JSON --- */
@@ -322,6 +324,7 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
     report_effects(j, sim);
     write_fields(j, sim);
     const enum err e = forecast_measure(&c, sim, d);
+    c.opening = session->opening;
     check_simulation(sim, d);
     TRY(e);
     write_bounds(j, sim);

@@ -240,7 +240,7 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     if (n_solid > 0) f.substeps = f.steps * (substeps ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
     f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows +
-                c->snapshots;
+                c->snapshots + c->opening;
     f.memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
     f.disk = disk_bytes(sim);
     return f;

@@ -6,7 +6,7 @@
 
 #include "app/session.h"
 
-/* Wall time of a step on this machine with the threads of the session, s. */
+/* Wall times on this machine with the threads of the session, s. */
 struct unit_costs {
     double fluid;                       /* per fluid particle and evaluation, walls included */
     double solid;                       /* per solid particle and step */
@@ -14,6 +14,7 @@ struct unit_costs {
     double phase_fraction[PHASE_COUNT]; /* of the time of a step */
     double rows;                        /* of probes and ledger over the whole run */
     double snapshots;                   /* all of the run */
+    double opening;                     /* of the session, which the caller knows */
 };
 
 struct forecast {

@@ -280,6 +280,7 @@ static void name_case(const struct scene *scene, struct diag *d)
 enum err session_open(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     const int offered = thread_count();
+    const double begin = thread_clock();
     TRY(read_case(session, o, d));
     thread_use(choose_threads(&session->scene, o, offered, d));
     const enum err e = simulation_create(&session->simulation, &session->scene, d);
@@ -288,6 +289,7 @@ enum err session_open(struct session *session, const struct sphfsi_options *o, s
         scene_free(&session->scene);
         return e;
     }
+    session->opening = thread_clock() - begin;
     const enum err counted = check_steps(session, d);
     if (counted) session_close(session);
     return counted;

@@ -34,6 +34,7 @@ enum sphfsi_status call_null_argument(const char *name, const char *what);
 struct session {
     struct scene scene;
     struct simulation simulation;
+    double opening; /* CPU time of this thread to open it, s */
 };
 
 /* Reads the case, sets default intervals of [output], applies --until; then the number of threads
