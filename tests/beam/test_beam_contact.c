@@ -17,8 +17,8 @@ static double height(int node)
     return rig.sim.beams.node[node].X[1] + rig.sim.beams.state[node].x[1];
 }
 
-/* No node of a beam is lower than the thickness allows. Contact gives no energy. Normals
- * turn within a step, which costs a tenth of the thickness. */
+/* No node of a beam is lower than the thickness allows, and contact gives no energy. T-106 is
+ * solved to 1e-9 dp; measured are 3e-13 m and 5e-12 of the energy. */
 static void falls(const char *text, double lowest, double time)
 {
     rig_open(&rig, text, NULL);
@@ -26,10 +26,10 @@ static void falls(const char *text, double lowest, double time)
     for (int n = 1; n <= 40; n++) {
         rig_run(&rig, time * n / 40);
         for (int k = 0; k < rig.sim.beams.n_nodes; k++)
-            assert_at_most(-lowest + 1e-3, -height(k), "depth of a node");
+            assert_at_most(-lowest + 6e-13, -height(k), "depth of a node");
         const struct ledger row = simulation_ledger(&rig.sim);
         const double energy = row.kinetic + row.potential + row.elastic;
-        assert_at_most(before + 1e-3 * fabs(energy), energy, "energy");
+        assert_at_most(before + 1e-11 * fabs(energy), energy, "energy");
         before = energy;
     }
 }
@@ -64,7 +64,8 @@ static void test_a_beam_lands_on_another(void)
     assert_at_most(0, -height(middle), "height of the upper beam");
 }
 
-/* A hinged strip that falls by a half turn meets its neighbour, and itself. */
+/* A hinged strip that falls by a half turn meets its neighbour, and itself. Where a normal turns
+ * within a step, the condition on displacements is of first order: of 10 mm, 9.96 remain. */
 static void test_a_beam_meets_itself(void)
 {
     falls(DRY STRIP("a", "0, 0; 0.5, 0; 0.5, 0.06; 0.02, 0.06") "clamp = 0, 0\nclamp = 0.48, 0\n",
@@ -75,12 +76,12 @@ static void test_a_beam_meets_itself(void)
         while (below < 11 && rig.sim.beams.node[below + 1].X[0] < x) below++;
         const double part = (x - rig.sim.beams.node[below].X[0]) * 26;
         const double low = height(below) + part * (height(below + 1) - height(below));
-        assert_at_most(height(k) - 0.009, low, "height of the lower part");
+        assert_at_most(height(k) - 0.00992, low, "height of the lower part");
     }
 }
 
 /* A box of 20 kg/m falls on a beam, which holds it. The reaction on the box is that of the step
- * before it, so energy is not exact. */
+ * before it, so a gain over the start is possible; none was measured. */
 static void test_a_rigid_body_lands_on_a_beam(void)
 {
     rig_open(&rig,
@@ -93,7 +94,7 @@ static void test_a_rigid_body_lands_on_a_beam(void)
         rig_run(&rig, 0.01 * n);
         const struct ledger row = simulation_ledger(&rig.sim);
         assert_at_most(0.065, -rig.sim.rigid.state[0].x[1], "the box falls");
-        assert_at_most(1.001 * start, row.kinetic + row.potential + row.elastic, "energy");
+        assert_at_most((1 + 1e-9) * start, row.kinetic + row.potential + row.elastic, "energy");
     }
 }
 
