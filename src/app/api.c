@@ -231,6 +231,11 @@ static bool has_file_field(const struct simulation *sim, enum kind kind, enum da
     case D_VON_MISES:
     case D_DET_F: return solid;
     case D_DISPLACEMENT: return solid || particles->X;
+    case D_THICKNESS:
+    case D_AXIAL_FORCE:
+    case D_SHEAR_FORCE:
+    case D_MOMENT:
+    case D_CURVATURE: return kind == KIND_WALL && sim->beams.n > 0;
     default: return false; /* an array of the particles has the name */
     }
 }

@@ -106,14 +106,34 @@ static int64_t put_particles(const struct drawing *g, enum kind kind, int body, 
     return n;
 }
 
-/* The number of a body stands at the middle one of its particles. */
+/* The thin lines of a wall, or the line of a beam, with or without fluid. Extends a box by them;
+ * returns the middle point of the last, NULL: none. Draws them, unless there is no colour. */
+static const double *put_lines(const struct drawing *g, int wall, const char *colour,
+                               struct box2 *box)
+{
+    const int beam = wall - scene_beam_wall(g->scene, 0);
+    const struct shape_list *const list =
+        beam < 0 ? &g->scene->wall[wall].shape : &g->scene->beam[beam].shape;
+    const double *middle = NULL;
+    for (int k = 0; k < list->n; k++) {
+        const struct shape *const line = &list->item[k];
+        if (beam < 0 && !line->thin) continue;
+        if (colour) put_path(g, "body", line->n, (const double(*)[2])line->pt, colour);
+        for (int j = 0; j < line->n; j++) box2_include(box, line->pt[j][0], line->pt[j][1]);
+        middle = line->pt[line->n / 2];
+    }
+    return middle;
+}
+
+/* The number of a body stands at the middle one of its particles, or else of its line. */
 static void put_body_legend(struct drawing *g, const struct scene_points *p, int body,
-                            const char *text)
+                            const double *middle, const char *text)
 {
     int64_t n = 0, k = 0;
     for (int64_t i = 0; i < p->n; i++) n += p->body[i] == body;
     for (int64_t before = n / 2; n && (p->body[k] != body || before-- > 0);) k++;
-    put_legend(g, n ? px(g, p->x[k]) : -99, n ? py(g, p->y[k]) + 4 : 0, text);
+    const double x = n ? p->x[k] : middle ? middle[0] : 0, y = n ? p->y[k] : middle ? middle[1] : 0;
+    put_legend(g, n || middle ? px(g, x) : -99, n || middle ? py(g, y) + 4 : 0, text);
 }
 
 static void put_hinges(const struct drawing *g, const struct hinge_list *list)
@@ -126,15 +146,15 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     const struct scene *const scene = g->scene;
     const struct scene_section_common *const common = section_at(scene, sections[kind], body);
     const struct scene_solid *const solid = kind == KIND_SOLID ? &scene->solid[body] : NULL;
+    const struct scene_beam *const beam = &scene->beam[common->index];
     const char *const motion = kind == KIND_WALL ? scene->wall[body].motion : "";
     const char *const colour = motion[0] ? moving : fills[kind];
     struct box2 box = box2_empty();
     char text[400], more[240] = "";
     const int64_t n = put_particles(g, kind, body, false, colour, &box);
     const int64_t held = put_particles(g, kind, body, true, clamped, &box);
-    for (int k = 0; k < scene->n_line; k++)
-        if (kind == KIND_WALL && scene->line[k].wall == body)
-            put_path(g, "body", scene->line[k].n, (const double(*)[2])scene->line[k].pt, colour);
+    const double *middle = NULL; /* of its last thin line */
+    if (kind == KIND_WALL) middle = put_lines(g, body, colour, &box);
     if (solid) put_hinges(g, &solid->hinge);
     if (common->section == SECTION_rigid) put_hinges(g, &scene->rigid[common->index].hinge);
     if (kind == KIND_FLUID)
@@ -142,6 +162,9 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     else if (common->section == SECTION_rigid)
         snprintf(more, sizeof more, "%.4g kg/m, moves freely",
                  scene->rigid_mass[common->index].mass);
+    else if (common->section == SECTION_beam)
+        snprintf(more, sizeof more, "%g m thick, %g kg/m^3, E %.4g Pa, nu %g", beam->thickness,
+                 beam->density, beam->young, beam->poisson);
     else if (solid)
         snprintf(more, sizeof more, "%g kg/m^3, E %.4g Pa, nu %g; %lld clamped (dark)%s%.64s",
                  solid->density, solid->young, solid->poisson, (long long)held,
@@ -151,7 +174,7 @@ static void put_body(struct drawing *g, enum kind kind, int body)
     snprintf(text, sizeof text, "%s %s: %.4g x %.4g m, %lld particles; %s",
              section_table[common->section].word, common->name, max2(0, box.high[0] - box.low[0]),
              max2(0, box.high[1] - box.low[1]), (long long)(n + held), more);
-    put_body_legend(g, &scene->points[kind], body, text);
+    put_body_legend(g, &scene->points[kind], body, middle, text);
 }
 
 /* --- what has one or two points: probes, springs, zones of damping --- */
@@ -226,6 +249,7 @@ static void find_view(struct drawing *g)
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int64_t i = 0; i < scene->points[kind].n; i++)
             box2_include(&g->view, scene->points[kind].x[i], scene->points[kind].y[i]);
+    for (int k = 0; k < scene->n_wall; k++) put_lines(g, k, NULL, &g->view);
     for (int k = 0; k < scene->n_probe; k++)
         for (int n = points_of_probe(&scene->probe[k]); n > 0; n--) {
             const double *const at = n == 2 ? scene->probe[k].to : scene->probe[k].point;
@@ -244,18 +268,19 @@ static void put_head(const struct drawing *g)
                       scene->n_spring + scene->n_damping;
     const int width = LEFT + DRAWING + RIGHT;
     const double height = py(g, g->view.low[1]) + FOOT + lines * LINE + 20;
-    char text[300];
+    char text[300], domain[120] = "";
+    if (scene->domain_lower[0] <= scene->domain_upper[0]) /* else there are only beams */
+        snprintf(domain, sizeof domain, "; domain (%.4g, %.4g) to (%.4g, %.4g)",
+                 scene->domain_lower[0], scene->domain_lower[1], scene->domain_upper[0],
+                 scene->domain_upper[1]);
     fprintf(g->file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\">\n"
             "%s<rect width=\"%d\" height=\"%.0f\" fill=\"#fff\"/>\n",
             width, height, style, width, height);
     put_text(g, LEFT, 22, "title", scene->top.title[0] ? scene->top.title : scene->path);
-    snprintf(text, sizeof text,
-             "Lengths in m; dp %g m, h %g m, gravity (%g, %g) m/s^2, %g s; domain (%.4g, %.4g) to "
-             "(%.4g, %.4g)",
+    snprintf(text, sizeof text, "Lengths in m; dp %g m, h %g m, gravity (%g, %g) m/s^2, %g s%s",
              scene->top.dp, scene->h, scene->top.gravity[0], scene->top.gravity[1],
-             scene->top.end_time, scene->domain_lower[0], scene->domain_lower[1],
-             scene->domain_upper[0], scene->domain_upper[1]);
+             scene->top.end_time, domain);
     put_text(g, LEFT, 42, "", text);
 }
 

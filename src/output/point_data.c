@@ -15,6 +15,21 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
+/* Of the beam that a dummy of a line is of, at the place that the dummy lies behind. */
+static double beam_value(enum data what, const struct simulation *sim, const struct thin_line *line,
+                         int64_t i)
+{
+    const int beam = line->scene->wall - scene_beam_wall(sim->scene, 0);
+    const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
+    double section[4]; /* in the order of the data from the axial force on */
+    if (beam < 0) return 0;
+    if (what == D_THICKNESS) return sim->scene->beam[beam].thickness;
+    const struct beam_place place = {sim->beams.beam[beam].first_element + dummy->part,
+                                     dummy->along, 0};
+    beam_section(&sim->beams, &place, section);
+    return section[what - D_AXIAL_FORCE];
+}
+
 double snapshot_value(enum data what, const struct simulation *sim, enum kind kind, int64_t i,
                       int column)
 {
@@ -22,9 +37,11 @@ double snapshot_value(enum data what, const struct simulation *sim, enum kind ki
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;
     const struct thin_line *const lines = sim->fluid.lines.line;
-    const int32_t line = what == D_POINTS ? fluid_line_of(&sim->fluid, kind, i) : 0;
+    const bool of_beam = what >= D_THICKNESS && what <= D_CURVATURE;
+    const int32_t line = what == D_POINTS || of_beam ? fluid_line_of(&sim->fluid, kind, i) : 0;
     if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
         solid_cauchy(&sim->solid, particles, i, sigma, &det);
+    if (of_beam) return line > 0 ? beam_value(what, sim, &lines[line - 1], i) : 0;
     switch (what) {
     case D_POINTS:
         if (line > 0) {

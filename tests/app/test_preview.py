@@ -54,6 +54,15 @@ quantity = flux
 point = 0.1, 0
 to = 0.15, 0.1
 """
+BEAM = """dp = 10 mm
+end_time = 1
+[beam plate]
+shape = polyline: 0, 0; 0.3, 0; 0.4, 0.3
+clamp = 0, 0
+density = 2000
+young = 1 GPa
+thickness = 4 mm
+"""
 COLOURS = {"fluid": "#56B4E9", "wall": "#999999", "moving": "#CC79A7", "solid": "#E69F00",
            "clamp": "#D55E00"}
 
@@ -171,13 +180,27 @@ def check(picture):
                for t in picture.texts())
 
 
+def check_beam(picture):
+    """A beam without fluid has its line, and no particles."""
+    pixel = 1 / picture.scale
+    lines = [p.get("d") for p in picture.root.iter(NAME + "path")
+             if p.get("class") == "body" and "L" in p.get("d")]
+    assert len(lines) == 1, lines
+    places = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
+    near(sum(places, ()), (0, 0, 0.3, 0, 0.4, 0.3), pixel)
+    assert picture.listed("beam plate") == ("beam plate: 0.4 x 0.3 m, 0 particles; 0.004 m thick, "
+                                            "2000 kg/m^3, E 1e+09 Pa, nu 0")
+    assert not any(word in text.text for text in picture.texts() for word in ("inf", "nan"))
+
+
 def main():
     with tempfile.TemporaryDirectory() as top:
         case, picture = Path(top) / "scene.cfg", Path(top) / "scene.svg"
-        case.write_text(CASE)
-        subprocess.run([SPHFSI, "--preview", str(case), "--out", str(picture)], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        check(Picture(picture))
+        for text, check_it in ((CASE, check), (BEAM, check_beam)):
+            case.write_text(text)
+            subprocess.run([SPHFSI, "--preview", str(case), "--out", str(picture)], check=True,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            check_it(Picture(picture))
     return 0
 
 

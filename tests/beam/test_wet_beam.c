@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Beams in fluid: a plate below a column of water, a light one, momentum that is exchanged, and
  * water on both sides. */
+#include "output/point_data.h"
 #include "rig.h"
 #include "time/energy.h"
 #include "unity.h"
@@ -82,11 +83,37 @@ static void test_a_violent_exchange_gains_little(void)
     }
 }
 
+/* A beam that is bent to a curvature of k: each dummy of its line has the moment E' t^3/12 k. */
+static void test_snapshots_have_what_is_in_the_section(void)
+{
+    const double k = 1e-5, t = 0.05;
+    rig_open(&rig, COLUMN, "b.density=1000", NULL);
+    for (int n = 0; n < rig.sim.beams.n_nodes; n++) {
+        const double x = rig.sim.beams.node[n].X[0];
+        rig.sim.beams.state[n].x[1] = k * x * x / 2;
+        rig.sim.beams.state[n].x[2] = k * x;
+    }
+    const struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    const struct thin_line *const line = rig.sim.beams.line[0];
+    for (int64_t i = 0; i < walls->n; i++) {
+        const int on = i >= line->first && i < line->first + line->scene->n_dummies;
+        double value[D_COUNT];
+        for (int what = D_THICKNESS; what <= D_CURVATURE; what++)
+            value[what] = snapshot_value((enum data)what, &rig.sim, KIND_WALL, i, 0);
+        TEST_ASSERT_EQUAL_DOUBLE(on * t, value[D_THICKNESS]);
+        assert_near(1e-6 * k, on * k, value[D_CURVATURE], "curvature");
+        assert_near(1e-6 * 1e9 * t * t * t / 12 * k, on * 1e9 * t * t * t / 12 * k, value[D_MOMENT],
+                    "moment");
+        assert_near(1e-6 * 1e9 * t * k, 0, value[D_SHEAR_FORCE], "shear force");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_plate_carries_the_water);
     RUN_TEST(test_momentum_is_exchanged);
+    RUN_TEST(test_snapshots_have_what_is_in_the_section);
     RUN_TEST(test_a_violent_exchange_gains_little);
     return UNITY_END();
 }

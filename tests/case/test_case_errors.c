@@ -300,7 +300,7 @@ static const struct {
     {TOP SOLID "[output]\nsnapshot_fields = velocity presure\n", NULL,
      "bad.cfg:8: [output] snapshot_fields: there is no field `presure`; did you mean `pressure`? "
      "Allowed: all, or any of velocity density pressure kind id body stress von_mises displacement "
-     "det_F"},
+     "det_F thickness axial_force shear_force moment curvature"},
     {TOP SOLID FLUID "[probe F]\nquantity = force\nbody = aa\n", NULL,
      "bad.cfg:13: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,

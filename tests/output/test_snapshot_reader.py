@@ -77,6 +77,20 @@ def check_numbers(path):
     assert not data["stress"].any() and not data["displacement"].any()
 
 
+def check_beam(folder):
+    """Fields of beams are there if the case has one, and zero elsewhere."""
+    run(folder, "--until", "0.02", case="cases/templates/thin_plate.cfg")
+    with h5py.File(folder / "fields.vtkhdf", "r") as file:
+        root = file["VTKHDF"]
+        n = root["NumberOfPoints"][0]
+        x, data = root["Points"][:n], root["PointData"]
+        plate = data["thickness"][:n] > 0
+        assert plate.any() and np.allclose(x[plate, 0], 1.1)
+        assert np.allclose(data["thickness"][:n][plate], 4e-3)
+        for name in ("axial_force", "shear_force", "moment", "curvature"):
+            assert not data[name][:n][~plate].any(), name
+
+
 def check_restart(folder, whole):
     """Ended between two snapshots and continued: the same snapshots, without that of the end."""
     run(folder, "--until", "0.012")
@@ -184,6 +198,7 @@ def main():
             check_times(times, folder / "whole")
             check_numbers(path)
             check_restart(folder / "cut", path)
+            check_beam(folder / "beam")
             check_repacked(folder / "packed", path)
             check_dropped(folder / "dropped")
             check_killed(folder / "killed")
