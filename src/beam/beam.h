@@ -50,7 +50,6 @@ struct beam {
     const struct scene_beam *given;
     int first_node, end_node, first_element, end_element;
     double work;     /* of loads, clamps and hinges in the last step, J/m */
-    double passed;   /* work of rigid bodies that touch it, J/m */
     double received; /* work of the fluid in it, J/m */
 };
 
@@ -83,6 +82,7 @@ struct beams {
     struct beam_contact *contact;
     struct rigid *rigid; /* NULL: none */
     bool crowded;        /* more places touch than the memory holds */
+    bool pushed;         /* a beam has pushed a rigid body; the account resets it */
     bool failed;         /* no solution, however short the step */
 };
 

@@ -414,10 +414,10 @@ void beams_finish_touches(struct beams *beams, double time, double dt)
         }
         const double force[2] = {-t->force * t->normal[0], -t->force * t->normal[1]};
         rigid_push(beams->rigid, t->wall - rigid_wall, &contact->begin[t->wall], t->at, force);
-        beam->passed += t->force * t->moved;
         pushed = true;
     }
     if (pushed) rigid_kick(beams->rigid, time, dt);
+    beams->pushed |= pushed;
 }
 
 int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,

@@ -288,8 +288,7 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
 void beams_advance(struct beams *beams, double time, const struct beam_times *times)
 {
     beams->iterations = 0;
-    for (int k = 0; k < beams->n; k++)
-        beams->beam[k].work = beams->beam[k].passed = beams->beam[k].received = 0;
+    for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
     beams->failed |= !step(beams, time, times, HALVINGS);
 }
 

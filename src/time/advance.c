@@ -39,7 +39,7 @@ void advance_beams(struct simulation *sim, double time, double dt, double kick)
     beams_advance(&sim->beams, time, &times);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
-        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, b->passed);
+        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, 0);
     }
 }
 

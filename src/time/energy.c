@@ -321,6 +321,15 @@ static void join_bodies(struct simulation *sim)
         unite(&sim->state.energy, first, energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k)));
 }
 
+/* Beams are one system of equations, from the start. Rigid bodies from the section `from` on belong
+ * to them once a beam has pushed one: the work of these forces is within the region. */
+static void join_beams(struct simulation *sim, int from)
+{
+    const int first = scene_beam_wall(sim->scene, 0);
+    for (int k = from; k < sim->scene->n_wall && sim->beams.n; k++)
+        unite(&sim->state.energy, energy_entry(KIND_WALL, first), energy_entry(KIND_WALL, k));
+}
+
 /* Sections whose boxes are within the kernel's reach of each other belong together from now on; all
  * sections do in a domain that is periodic or has open boundaries. */
 static void join_neighbours(struct simulation *sim)
@@ -364,7 +373,8 @@ void energy_after_step(struct simulation *sim)
         e->noted = e->supplied;
     }
     if (sim->contact.touched) join_bodies(sim); /* they may part before the test */
-    sim->contact.touched = false;
+    if (sim->beams.pushed) join_beams(sim, scene_rigid_wall(sim->scene, 0));
+    sim->contact.touched = sim->beams.pushed = false;
 }
 
 /* --- terms --- */
@@ -411,6 +421,7 @@ void energy_begin(struct simulation *sim)
         const int wall = energy_entry(KIND_WALL, sim->wall_motion.body[k].section);
         account->entry[wall].region = wall;
     }
+    join_beams(sim, scene_beam_wall(sim->scene, 0));
     join_neighbours(sim);
     if (of[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(sim);
 }

@@ -76,4 +76,25 @@ END
 for integrator in symplectic verlet leapfrog; do
     restarts "$dir/wet.cfg" "$dir/wet-$integrator" 0.05 --set integrator=$integrator
 done
+
+# A block bounces on a beam. What the beam returns is no gain of energy, which would stop the run.
+cat >"$dir/block.cfg" <<'END'
+dp = 1 cm
+end_time = 0.16
+gravity = 0, -9.81
+[beam plate]
+shape = polyline: 0, 0; 0.3, 0
+thickness = 4 mm
+density = 1000
+young = 1e8
+clamp = 0, 0
+clamp = 0.3, 0
+[rigid block]
+shape = box 0.12, 0.05, 0.18, 0.1
+density = 500
+[probe block]
+quantity = pose
+body = block
+END
+restarts "$dir/block.cfg" "$dir/block" 0.12
 [ $failures = 0 ]
