@@ -166,7 +166,8 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
 }
 
 /* Whether a particle of a wall or rigid body is out of reach of all that touches its surface: of
- * fluid on any side, and of solids. So thick walls are shells. */
+ * fluid on any side, and of solids. So thick walls are shells. The edges of all sections count: a
+ * clamp that moves leaves a hollow in the wall that it replaces. */
 static bool is_deep(const struct sampler *sampler, const struct samples *samples, int64_t k)
 {
     const struct region *const mine = &sampler->regions[samples->region[k]];
@@ -174,8 +175,11 @@ static bool is_deep(const struct sampler *sampler, const struct samples *samples
     double at[2];
     if (mine->kind != KIND_WALL) return false;
     lattice_place(&mine->lattice, samples->x[k], samples->y[k], at);
-    return !outlines_edge_within(&mine->add, at[0], at[1], reach) &&
-           !outlines_edge_within(&mine->minus, at[0], at[1], reach);
+    for (int r = 0; r < sampler->n_regions; r++)
+        if (outlines_edge_within(&sampler->regions[r].add, at[0], at[1], reach) ||
+            outlines_edge_within(&sampler->regions[r].minus, at[0], at[1], reach))
+            return false;
+    return true;
 }
 
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples)

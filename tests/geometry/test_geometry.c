@@ -154,6 +154,22 @@ static void test_walls_are_shells(void)
     TEST_ASSERT_EQUAL_INT(4 * 3 * 10 + 4 * 6, at_hole); /* in a corner 6 of 9 are within reach */
 }
 
+/* A clamp that moves leaves a hollow in the wall: its faces have particles, wherever they are. */
+static void test_the_place_of_a_clamp_has_faces(void)
+{
+    static const char text[] =
+        "scheme = paper\ndp = 1 mm\nend_time = 1 s\n[numerics]\nh_over_dp = 1.35\n"
+        "[wall bed]\nshape = box 0, -30 mm, 40 mm, 0\n"
+        "[solid plug]\nshape = box 15 mm, -20 mm, 25 mm, 10 mm\nclamp = box 15 mm, -20 mm, "
+        "25 mm, 0\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n";
+    must_read(text, NULL);
+    const struct scene_points *p = &scene.points[KIND_WALL];
+    int below = 0;
+    for (int64_t k = 0; k < p->n; k++)
+        below += fabs(1e3 * p->x[k] - 20) < 5 && fabs(1e3 * p->y[k] + 21.35) < 1.35;
+    TEST_ASSERT_EQUAL_INT(10 * 3, below);
+}
+
 static void test_slanted_band_has_its_area(void)
 {
     static const char band[] =
@@ -341,6 +357,7 @@ int main(void)
     RUN_TEST(test_shapes_that_abut);
     RUN_TEST(test_regions_that_abut_share_no_particle);
     RUN_TEST(test_walls_are_shells);
+    RUN_TEST(test_the_place_of_a_clamp_has_faces);
     RUN_TEST(test_slanted_band_has_its_area);
     RUN_TEST(test_closed_polyline_and_circle);
     RUN_TEST(test_clamp_takes_the_place_of_the_wall);
