@@ -113,9 +113,11 @@ static void same_snapshots(const char *a, const char *b, const char *what)
         const size_t width = (size_t)snapshot_file_width((enum data)k);
         const size_t bytes = (size_t)rows[0][k] * width * 8;
         void *const x = malloc(bytes + 1), *const y = malloc(bytes + 1);
-        TEST_ASSERT_TRUE(snapshot_file_first(file[0], (enum data)k, rows[0][k], x));
-        TEST_ASSERT_TRUE(snapshot_file_first(file[1], (enum data)k, rows[1][k], y));
-        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(x, y, bytes, what);
+        const bool there = snapshot_file_first(file[0], (enum data)k, rows[0][k], x);
+        TEST_ASSERT_TRUE(there == snapshot_file_first(file[1], (enum data)k, rows[1][k], y));
+        /* The scenes have no beams. */
+        TEST_ASSERT_TRUE(there == !(k >= D_THICKNESS && k <= D_CURVATURE));
+        if (there) TEST_ASSERT_EQUAL_MEMORY_MESSAGE(x, y, bytes, what);
         free(x);
         free(y);
     }
