@@ -168,7 +168,7 @@ static double least_distance(double thick, double layer, double at_start)
     return at_start < thick + layer ? min2(thick, at_start) : thick + layer;
 }
 
-/* The way of a touch's nodes along its normal. */
+/* Displacement of a touch's nodes along its normal. */
 static double along_touch(const struct beams *beams, const struct beam_touch *t)
 {
     double sum = 0;

@@ -105,6 +105,17 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
     if (guided || !rigid->turns)
         return bad_section(r, "has both `hinge` and `%s`; leave one out",
                            guided ? "guide" : "turns = off");
+    const int driven = scene_find_motion(r->scene, rigid->hinge_motion);
+    if (*rigid->hinge_motion && rigid->hinge.n > 1)
+        return bad_section(r,
+                           "has a `hinge_motion` and %d hinges; leave one, or put the others "
+                           "on the other bodies",
+                           rigid->hinge.n);
+    if (driven >= 0 && !scene_motion_turns(&r->scene->motion[driven]))
+        return bad_section(r,
+                           "has the `hinge_motion` %s, which has no angle: its kind must be "
+                           "rotation, or expression with `turn`",
+                           rigid->hinge_motion);
     if (*rigid->hinge_motion && moments > 0)
         return bad_section(r, "has a `hinge_motion`, which gives the angle, and a stiffness, "
                               "damping or friction of the hinge; leave one out");

@@ -30,6 +30,11 @@ int scene_find_motion(const struct scene *scene, const char *name)
     return find_section(scene, SECTION_motion, name);
 }
 
+bool scene_motion_turns(const struct scene_motion *motion)
+{
+    return motion->kind == MOTION_ROTATION || motion->turn.e[0];
+}
+
 int scene_find_solid(const struct scene *scene, const char *name)
 {
     return find_section(scene, SECTION_solid, name);

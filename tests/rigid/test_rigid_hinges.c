@@ -204,8 +204,14 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE BOX "hinge = 0, 0, a\n", "is no [wall] and no other [rigid]");
     rig_refuses(FREE BOX "hinge_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `hinge`");
     rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\nhinge_friction = 1\n"
-                         "[motion m]\nvelocity = 1, 0\n",
+                         "[motion m]\nkind = rotation\nangle = 1\n",
                 "leave one out");
+    rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\n[motion m]\nvelocity = 1, 0\n",
+                "has the `hinge_motion` m, which has no angle");
+    rig_refuses(FREE BOX "hinge = 0, 0\nhinge = 0.5, 0, b\nhinge_motion = m\n"
+                         "[rigid b]\nshape = box 2, 0, 3, 1\ndensity = 1\n"
+                         "[motion m]\nkind = rotation\nangle = 1\n",
+                "has a `hinge_motion` and 2 hinges");
 }
 
 int main(void)
