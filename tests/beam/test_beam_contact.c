@@ -35,18 +35,18 @@ static void falls(const char *text, double lowest, double time)
 }
 
 #define DRY "dp = 4 cm\nend_time = 1\ngravity = 0, -9.81\n"
-#define FLOOR "[wall floor]\nshape = box -1, -0.1, 1, 0\n"
+#define BED "[wall bed]\nshape = box -1, -0.1, 1, 0\n"
 #define STRIP(name, line) \
     "[beam " name "]\nshape = polyline: " line "\ndensity = 2000\nyoung = 1e7\nthickness = 1 cm\n"
 
-static void test_a_beam_lands_on_a_floor(void)
+static void test_a_beam_lands_on_a_bed(void)
 {
-    falls(DRY FLOOR STRIP("a", "-0.3, 0.1; 0.3, 0.2"), 0.005, 0.4);
+    falls(DRY BED STRIP("a", "-0.3, 0.1; 0.3, 0.2"), 0.005, 0.4);
 }
 
 static void test_a_beam_lands_on_a_post(void)
 {
-    falls(DRY FLOOR
+    falls(DRY BED
           "[wall post]\nshape = box -0.02, 0, 0.02, 0.1\n" STRIP("a", "-0.29, 0.2; 0.31, 0.2"),
           0.005, 0.4);
     /* The post is between two nodes, and holds the beam up there. */
@@ -120,7 +120,7 @@ static void test_water_does_not_push_a_beam_through_a_wall(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_a_beam_lands_on_a_floor);
+    RUN_TEST(test_a_beam_lands_on_a_bed);
     RUN_TEST(test_a_beam_lands_on_a_post);
     RUN_TEST(test_a_beam_lands_on_another);
     RUN_TEST(test_a_beam_meets_itself);

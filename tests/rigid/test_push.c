@@ -57,11 +57,11 @@ static void test_a_block_hits_a_free_box(void)
     }
 }
 
-/* A block falls on a box that stands on the floor, and rests there. */
+/* A block falls on a box that stands on the bed, and rests there. */
 static void test_a_block_rests_on_a_box(void)
 {
     rig_open(&rig,
-             "gravity = 0, -9.81\n" FREE "[wall floor]\nshape = box -0.5, -0.04, 0.5, 0\n"
+             "gravity = 0, -9.81\n" FREE "[wall bed]\nshape = box -0.5, -0.04, 0.5, 0\n"
              "[rigid r]\nshape = box -0.06, 0, 0.06, 0.06\nmass = 0.5\n"
              "[solid s]\nshape = box -0.03, 0.07, 0.03, 0.13\n" BLOCK,
              NULL);
@@ -91,7 +91,7 @@ static void test_a_light_box_is_pushed_away(void)
 static void test_friction_drags_a_bar(void)
 {
     rig_open(&rig,
-             "gravity = 0, -9.81\n" FREE "[wall floor]\nshape = box -0.5, -0.04, 1, 0\n"
+             "gravity = 0, -9.81\n" FREE "[wall bed]\nshape = box -0.5, -0.04, 1, 0\n"
              "[rigid r]\nshape = box 0, 0, 0.4, 0.04\nmass = 3.6\n"
              "[solid s]\nshape = box 0, 0.04, 0.06, 0.1\nvelocity = 0.5, 0\n" BLOCK
              "[contact c]\nbetween = s, r\nfriction = 0.5\n",

@@ -65,7 +65,7 @@ static void test_a_belt_takes_a_box_along(void)
              "[contact c]\nbetween = a, belt\nfriction = 0.2\n",
              NULL);
     rig_run(&rig, 0.2);
-    assert_near(1e-6, 0.4, state()->v[0], "vx on the way");
+    assert_near(1e-6, 0.4, state()->v[0], "vx in flight");
     rig_run(&rig, 0.6);
     assert_near(1e-6, 0.5, state()->v[0], "vx");
     assert_near(1e-3, 0.0625 + 0.35 * 0.5, state()->x[0], "x");
@@ -108,9 +108,9 @@ static void test_a_spinning_disc_hits_another(void)
 static void test_a_disc_bounces(void)
 {
     rig_open(&rig,
-             "gravity = 0, -10\n" FREE "[wall floor]\nshape = box -1, -0.12, 1, 0\n"
+             "gravity = 0, -10\n" FREE "[wall bed]\nshape = box -1, -0.12, 1, 0\n"
              "[rigid a]\nshape = circle 0, 0.95, 0.15\nmass = 3\n"
-             "[contact c]\nbetween = a, floor\nrestitution = 0.5\n",
+             "[contact c]\nbetween = a, bed\nrestitution = 0.5\n",
              NULL);
     rig_run(&rig, 0.6);
     assert_near(2e-3, -0.6, state()->x[1], "y at its top");
@@ -123,9 +123,9 @@ static void test_a_disc_bounces(void)
 static void test_contact_of_a_pair_may_be_off(void)
 {
     rig_open(&rig,
-             "gravity = 0, -10\n" FREE "[wall floor]\nshape = box -1, -0.12, 1, 0\n"
+             "gravity = 0, -10\n" FREE "[wall bed]\nshape = box -1, -0.12, 1, 0\n"
              "[rigid a]\nshape = box 0, 0, 0.3, 0.3\nmass = 3\n"
-             "[contact c]\nbetween = a, floor\nenabled = off\n",
+             "[contact c]\nbetween = a, bed\nenabled = off\n",
              NULL);
     rig_run(&rig, 0.3);
     assert_near(1e-9, -0.45, state()->x[1], "y");
