@@ -229,6 +229,20 @@ static void touch_face(struct beams *beams, int k, const struct beam_face *face)
     add_touch(beams, &t);
 }
 
+/* Whether a node is nearer along the beam of an element than half of a circle of this diameter: a
+ * bend as sharp as the thickness allows keeps them apart, and a wider one brings them nearer. */
+static bool in_bend(const struct beams *beams, int element, int k, double diameter)
+{
+    const struct beam *const beam = &beams->beam[beams->node[k].beam];
+    const int at = beam->first_element + k - beam->first_node, /* the element that begins at k */
+        from = at > element ? element + 1 : at, to = at > element ? at : element;
+    double along = 0;
+    if (element < beam->first_element || element >= beam->end_element) return false;
+    for (int m = from; m < to && along < 0.5 * PI * diameter; m++)
+        along += beams->element[m].length;
+    return along < 0.5 * PI * diameter;
+}
+
 /* A point with an element: of a wall, or node k of a beam. */
 static void touch_element(struct beams *beams, int element, int wall, const double X[2], int k)
 {
@@ -249,6 +263,7 @@ static void touch_element(struct beams *beams, int element, int wall, const doub
     const double part = foot_part(at, from, to);
     const double distance = distance_to(at, from, to, part, 0, away);
     if (distance > thick + layer + beams->scene->top.dp) return;
+    if (k >= 0 && in_bend(beams, element, k, thick + layer)) return;
     const double *const A = beams->node[node[0]].X, *const B = beams->node[node[1]].X;
     const double at_start = distance_to(X, A, B, foot_part(X, A, B), 0, start);
     struct beam_touch t = {.n = k < 0 ? 2 : 3,

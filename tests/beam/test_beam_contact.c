@@ -80,6 +80,21 @@ static void test_a_beam_meets_itself(void)
     }
 }
 
+/* Thicker than its elements are long, a beam bends as the elastica does, without contact with
+ * itself. */
+static void test_a_thick_beam_does_not_touch_its_neighbours(void)
+{
+    rig_open(&rig,
+             "dp = 5 cm\nend_time = 100\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
+             "axial_stiffness = 1e6\nbending_stiffness = 1\nmass = 1\nthickness = 12 cm\n"
+             "mass_damping = 20\ndamping_time = 0.05\nclamp = 0, 0\n"
+             "[load f]\nbody = b\nforce = 0, -5\nshape = box 0.99, -0.01, 1.01, 0.01\n"
+             "history = min(t/5, 1)\n",
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 20);
+    assert_near(2e-3 * 0.71379, 0.71379, -rig.sim.beams.state[20].x[1], "deflection");
+}
+
 /* A box of 20 kg/m falls on a beam, which holds it. The reaction on the box is that of the step
  * before it, so a gain over the start is possible; none was measured. */
 static void test_a_rigid_body_lands_on_a_beam(void)
@@ -124,6 +139,7 @@ int main(void)
     RUN_TEST(test_a_beam_lands_on_a_post);
     RUN_TEST(test_a_beam_lands_on_another);
     RUN_TEST(test_a_beam_meets_itself);
+    RUN_TEST(test_a_thick_beam_does_not_touch_its_neighbours);
     RUN_TEST(test_a_rigid_body_lands_on_a_beam);
     RUN_TEST(test_water_does_not_push_a_beam_through_a_wall);
     return UNITY_END();
