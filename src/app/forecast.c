@@ -116,6 +116,7 @@ static enum err measure_steps(struct unit_costs *c, struct trial *trial, struct 
                               struct diag *d)
 {
     const double end = sim->scene->top.end_time;
+    sim->state.seeks_rest = 0; /* [relax] is not measured */
     /* The first steps include the first touch of memory and the first sort, and find the bounds of
      * the time step. A guard that stops the run in them is reported. */
     const double start = thread_clock();

@@ -51,7 +51,7 @@ static const double progress_seconds = 0.25;
 /* Whether a restart continues files of rows: a run stopped while it seeks rest has none. */
 static bool continues_rows(const struct run *r)
 {
-    return r->options->restart && !relax_due(r->sim);
+    return r->options->restart && !r->sim->state.seeks_rest;
 }
 
 /* A run begins with a snapshot, and without a checkpoint: that state is the case, or the checkpoint
@@ -208,7 +208,7 @@ static enum err between_steps(struct run *r)
         TRY(write_checkpoint(r));
         r->sim->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
-    if (relax_due(r->sim))
+    if (r->sim->state.seeks_rest)
         show_search(r);
     else
         show_progress(r, false);
@@ -216,16 +216,16 @@ static enum err between_steps(struct run *r)
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,
                      "stopped by signal %d at %.6g s; --restart continues from %s",
-                     (int)request->stop, r->sim->state.time, r->checkpoint);
+                     (int)request->stop, simulation_time(r->sim), r->checkpoint);
 }
 
 /* T-78. The rows begin with the state that is found. */
 static enum err relax(struct run *r)
 {
     char found[RELAX_TEXT];
-    if (!relax_due(r->sim)) return ERR_OK;
+    if (!r->sim->state.seeks_rest) return ERR_OK;
     session_say(r->options, "seeking a state of rest before t = 0");
-    while (relax_due(r->sim)) {
+    while (r->sim->state.seeks_rest) {
         TRY(relax_step(r->sim, r->diag));
         TRY(between_steps(r));
     }
@@ -382,7 +382,7 @@ static enum err replace_case(struct run *r, const char *part)
 static enum err start_fresh(struct run *r)
 {
     TRY(snapshots_create(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, r->diag));
-    TRY(rows_start(&r->rows, r->dir.path, r->sim->state.time, r->diag));
+    TRY(rows_start(&r->rows, r->dir.path, simulation_time(r->sim), r->diag));
     for (int k = 0; k < OUT_COUNT; k++) r->written[k] = -1;
     r->record.first = simulation_ledger(r->sim);
     return ERR_OK;
@@ -432,13 +432,13 @@ static enum err load_checkpoint(struct run *r)
              : checkpoint_apply(&r->image, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
     const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : CHECK_INTERVAL);
-    if (r->sim->state.time - last >= r->session.scene.top.end_time)
+    if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,
             "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
             what, r->restarted_from, r->sim->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
-                r->sim->state.time, (long long)r->sim->state.steps);
+                simulation_time(r->sim), (long long)r->sim->state.steps);
     return ERR_OK;
 }
 
@@ -456,7 +456,7 @@ static enum err begin_run(struct run *r)
     }
     TRY(replace_case(r, part));
     TRY(continues_rows(r) ? start_restart(r) : start_fresh(r));
-    const double time = r->sim->state.time;
+    const double time = simulation_time(r->sim);
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
     r->record.restarted_from = r->options->fork ? "" : r->restarted_from;

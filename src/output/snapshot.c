@@ -55,7 +55,7 @@ static void values_of(const void *context, enum data what, int column, int64_t n
     int64_t *integer = values;
     if (what < D_POINTS) {
         if (what == D_TIME)
-            *real = sim->state.time;
+            *real = simulation_time(sim);
         else
             *integer = step_value(what, source);
         return;

@@ -90,7 +90,8 @@ static double add_solids(struct simulation *sim, struct energies *solid)
         if (!(det >= lowest)) lowest = det; /* also one that is not a number */
     }
     if (sim->effects & FX_CONTACT)
-        solid->row.contact = contact_energy(&sim->contact, particles, sim->state.time);
+        solid->row.contact =
+            contact_energy(&sim->contact, particles, scene_time(sim, sim->state.time));
     return lowest;
 }
 
@@ -265,7 +266,7 @@ void energy_of_body(struct simulation *sim, int wall, double received, double dr
 static double gravity_work(struct simulation *sim)
 {
     double g[2], work = 0;
-    scene_gravity_at(sim->scene, sim->state.time - 0.5 * sim->state.dt, g);
+    scene_gravity_at(sim->scene, scene_time(sim, sim->state.time - 0.5 * sim->state.dt), g);
     for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - sim->scene->top.gravity[c]);
     const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
                                                                       &sim->kind[KIND_SOLID];

@@ -13,7 +13,7 @@
 void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], time);
+    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], scene_time(sim, time));
     for (int k = 0; k < sim->wall_motion.n; k++)
         for (int j = 0; j < sim->fluid.lines.n; j++) {
             struct thin_line *const line = &sim->fluid.lines.line[j];
@@ -31,7 +31,8 @@ void find_external(struct simulation *sim, enum kind kind, double time)
     const size_t bytes = (size_t)sim->kind[kind].n * sizeof *external->ax;
     memset(external->ax, 0, bytes);
     memset(external->ay, 0, bytes);
-    external->at(external->context, time, &sim->kind[kind], external->ax, external->ay);
+    external->at(external->context, max2(0, scene_time(sim, time)), &sim->kind[kind], external->ax,
+                 external->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
@@ -68,7 +69,8 @@ void evaluate_fluid(struct simulation *sim, double time)
     sim->state.evaluations++;
     if (sim->evaluated) return;
     if (sim->effects & FX_MOTION) move_walls(sim, time);
-    if (sim->gravity_varies) scene_gravity_at(sim->scene, time, sim->fluid.k.gravity);
+    if (sim->gravity_varies)
+        scene_gravity_at(sim->scene, scene_time(sim, time), sim->fluid.k.gravity);
     if (sim->effects & FX_OPEN) {
         const double start = wall_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */

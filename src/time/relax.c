@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The search for a state of rest (T-78) by kinetic damping: where the kinetic energy has passed a
- * maximum, all velocities are set to zero. Forces are those at t = 0, because each step begins
- * before that and the clock is set back after it. */
+ * maximum, all velocities are set to zero. Its steps are those of a run, with forces at t = 0. */
 #include "time/relax.h"
 #include "base/box2.h"
 #include "base/elementary.h"
@@ -14,13 +13,7 @@
 #include "implicit/equilibrium.h"
 #include "time/advance.h"
 #include "time/simulation.h"
-#include "time/timestep.h"
 #include "time/energy.h"
-
-bool relax_due(const struct simulation *sim)
-{
-    return sim->effects & FX_RELAX && !sim->state.relaxed && sim->state.time == 0;
-}
 
 static double kinetic_energy(const struct simulation *sim)
 {
@@ -67,39 +60,46 @@ static void stop(struct simulation *sim)
     sim->evaluated = false;
 }
 
-/* The run begins with what has been found. */
-static void begin_run(struct simulation *sim)
+void relax_end(struct simulation *sim)
 {
-    struct state *const st = &sim->state;
+    const struct state found = sim->state;
     stop(sim);
-    st->relaxed = 1;
-    st->lost_energy = st->periodic_energy = st->wall_work = st->exchanged = 0;
-    st->dens_low = st->dens_high = st->speed_high = 0;
-    st->gain = st->gain_share = st->gain_since = 0;
-    st->det_low = 1;
+    sim->state = (struct state){
+        .sorts = found.sorts,
+        .particle_steps = found.particle_steps,
+        .lost = found.lost,
+        .det_low = 1,
+        .solid_stiffening = found.solid_stiffening,
+        .solid_slowing = found.solid_slowing,
+        .substeps_held = found.substeps_held,
+        .exchange_time = found.exchange_time,
+        .relax_time = found.time,
+        .relax_quiet = found.relax_quiet,
+        .relax_swings = found.relax_swings,
+    };
+    solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], 0);
     energy_begin(sim);
 }
 
 /* T-78: judges the motion after a step of the search. */
-static void judge(struct simulation *sim, double elapsed)
+static void judge(struct simulation *sim)
 {
     struct state *const st = &sim->state;
     const double energy = kinetic_energy(sim), before = st->relax_energy;
-    st->relax_time += elapsed;
     st->relax_energy = energy;
     st->relax_most = max2(st->relax_most, energy);
     const double tolerated = square(sim->scene->relax.tolerance) * st->relax_most;
-    if (energy > tolerated) st->relax_quiet = st->relax_time;
+    if (energy > tolerated) st->relax_quiet = st->time;
     if (before > tolerated && energy < before) {
         stop(sim);
         st->relax_left = before;
         st->relax_swings++;
-        st->relax_longest = max2(st->relax_longest, st->relax_time - st->relax_swing);
-        st->relax_swing = st->relax_quiet = st->relax_time;
+        st->relax_longest = max2(st->relax_longest, st->time - st->relax_swing);
+        st->relax_swing = st->relax_quiet = st->time;
     }
-    const double still = st->relax_time - st->relax_quiet;
     const bool never = st->relax_most == 0;
-    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) begin_run(sim);
+    const double still = st->time - st->relax_quiet;
+    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) relax_end(sim);
 }
 
 /* The largest distance between walls and bodies at the start, m. */
@@ -176,53 +176,47 @@ static enum err find_equilibrium(struct simulation *sim, struct diag *d)
     sim->guard.case_at_fault = false;
     if (!sim->rest.found) return ERR_OK;
     solid_set_positions(particles);
-    begin_run(sim);
+    relax_end(sim);
     return ERR_OK;
 }
 
-enum err relax_step(struct simulation *sim, struct diag *d)
+/* Whether the search has taken so long that it finds no rest: ERR_GUARD. */
+static enum err check_limit(const struct simulation *sim, struct diag *d)
 {
-    enum { BATCH = 16 }; /* steps of a solid alone in a call */
-    struct state *const st = &sim->state;
-    const double fixed = sim->scene->numerics.fixed_step;
-    if (!(sim->effects & FX_FLUID) && st->relax_time == 0) TRY(find_equilibrium(sim, d));
-    if (st->relaxed) return ERR_OK;
-    const double limit =
-        sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : BATCH * sim->dt_solid;
-    const double begin = -1.01 * max2(limit, BATCH * fixed);
-    st->time = begin;
-    if (sim->effects & FX_CLAMP_MOTION)
-        solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], begin);
-    if (sim->effects & FX_MOTION) move_walls(sim, begin);
-    const enum err e = simulation_step(sim, begin + 1e6 * limit, d);
-    const double elapsed = st->time - begin;
-    st->time = 0;
-    st->substeps_needed = max2(st->substeps_needed, 0);
-    st->gain_since = max2(st->gain_since, 0);
-    TRY(e);
-    sim->guard.case_at_fault = true; /* for what follows */
-    TRY(check_fall(sim, d));
-    TRY(check_held_fluid(sim, d));
-    judge(sim, elapsed);
-    const double longest = st->relax_longest, most = sim->scene->relax.limit * longest;
-    const bool goes_on = st->relaxed || st->relax_swings == 0 || st->relax_time < most;
-    sim->guard.case_at_fault = !goes_on;
-    if (goes_on) return ERR_OK;
+    const struct state *const st = &sim->state;
+    const double longest = st->relax_longest, limit = sim->scene->relax.limit;
+    if (st->relax_swings == 0 || st->time < limit * longest) return ERR_OK;
     return diag_fail(
         d, ERR_GUARD,
         "[relax]: no state of rest within %.3g s (`limit` = %g times the longest time of %.3g s "
         "between two stops): the speed is still %.2g of its largest value; a larger tolerance or "
-        "limit, "
-        "`mass_damping` in a [solid]%s may help",
-        st->relax_time, sim->scene->relax.limit, longest, sqrt(st->relax_left / st->relax_most),
+        "limit, `mass_damping` in a [solid]%s may help",
+        st->time, limit, longest, sqrt(st->relax_left / st->relax_most),
         sim->effects & FX_FLUID && sim->scene->top.scheme == SCHEME_PAPER
             ? " or `scheme = standard`, which keeps water still,"
             : "");
 }
 
+enum err relax_step(struct simulation *sim, struct diag *d)
+{
+    const bool first = sim->state.time == 0;
+    if (first && !(sim->effects & FX_FLUID)) TRY(find_equilibrium(sim, d));
+    if (!sim->state.seeks_rest) return ERR_OK;
+    if (first) /* clamps at rest */
+        solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], scene_time(sim, 0));
+    TRY(simulation_step(sim, (double)INFINITY, d));
+    sim->guard.case_at_fault = true; /* for what follows */
+    TRY(check_fall(sim, d));
+    TRY(check_held_fluid(sim, d));
+    judge(sim);
+    if (sim->state.seeks_rest) TRY(check_limit(sim, d));
+    sim->guard.case_at_fault = false;
+    return ERR_OK;
+}
+
 enum err relax_to_rest(struct simulation *sim, struct diag *d)
 {
-    while (relax_due(sim)) TRY(relax_step(sim, d));
+    while (sim->state.seeks_rest) TRY(relax_step(sim, d));
     return ERR_OK;
 }
 
@@ -233,7 +227,7 @@ void relax_progress(const struct simulation *sim, char text[RELAX_TEXT])
     snprintf(text, RELAX_TEXT,
              "seeking rest: after %.3g s and %lld stops the speed is %.2g of its largest value, "
              "tolerance = %g",
-             st->relax_time, (long long)st->relax_swings, share, sim->scene->relax.tolerance);
+             st->time, (long long)st->relax_swings, share, sim->scene->relax.tolerance);
 }
 
 void relax_text(const struct simulation *sim, char text[RELAX_TEXT])

@@ -5,12 +5,13 @@
 
 #include "time/state.h"
 
-/* Whether the scene asks for a state of rest that has not been found yet. */
-bool relax_due(const struct simulation *sim);
-
-/* A step of the search; the clock stays at 0. Without motion for long enough the search is over and
- * the account of energy begins anew. ERR_GUARD: a guard, or no rest within relax.limit. */
+/* A step of the search, whose clock is the state's time. Without motion for long enough the search
+ * is over. ERR_GUARD: a guard, or no rest within relax.limit. */
 enum err relax_step(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Ends the search: the run begins with the present positions at rest; time, counts of steps and the
+ * account of energy begin anew. */
+void relax_end(struct simulation *sim);
 
 /* All steps of the search. */
 enum err relax_to_rest(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;

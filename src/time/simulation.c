@@ -22,6 +22,7 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     sim->scene = scene;
     sim->effects = effects_of_scene(scene);
     sim->integrator = integrators[scene->top.integrator];
+    sim->state.seeks_rest = (sim->effects & FX_RELAX) != 0;
     team_begin(&sim->team, thread_count());
     const enum err e = initial_state(sim, d);
     if (e) {
@@ -81,7 +82,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     const double speed2_before = sim->extremes.speed2;
     double clock = wall_clock();
     if (sim->effects & FX_FLUID) {
-        timestep_watch_contact(sim, sim->state.time, 1);
+        timestep_watch_contact(sim, sim->solid.time, 1);
         phase_add(sim, PHASE_solid, clock);
         sim->integrator->step(sim, t_limit);
     } else {
@@ -115,7 +116,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
 
 static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
 {
-    sim->solid.time = sim->state.time;
+    sim->solid.time = scene_time(sim, sim->state.time);
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     if (sim->effects & FX_FLUID) TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
     TRY(advance(sim, t_limit, d));

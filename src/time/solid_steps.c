@@ -102,7 +102,7 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
     struct state *const st = &sim->state;
     const double start = wall_clock(), before = phases_so_far(sim), begin = st->time;
     const bool implicit = sim->solid.implicit != NULL;
-    const bool near = timestep_watch_contact(sim, st->time, implicit ? 1 : SOLID_BATCH);
+    const bool near = timestep_watch_contact(sim, sim->solid.time, implicit ? 1 : SOLID_BATCH);
     const double bound = timestep_bound(sim);
     const bool external = sim->external[KIND_SOLID].at != NULL;
     const bool single = external || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;

@@ -2,6 +2,7 @@
  * Names of the bounds of the time step, and times: in messages and of the phases of a step. */
 #include "time/state.h"
 
+#include <math.h>
 #include <stdio.h>
 
 const char *const bound_names[BOUND_COUNT] = {
@@ -15,21 +16,28 @@ const char *const bound_sources[BOUND_COUNT] = {
 #undef BOUND
 };
 
+double scene_time(const struct simulation *sim, double time)
+{
+    return sim->state.seeks_rest ? -(double)INFINITY : time;
+}
+
+double simulation_time(const struct simulation *sim)
+{
+    return max2(0, scene_time(sim, sim->state.time));
+}
+
 struct time_text time_text(const struct simulation *sim)
 {
     struct time_text time;
-    const bool seeks = sim->state.time < 0;
-    snprintf(time.text, sizeof time.text,
-             seeks ? "while rest is sought, after %.3g s" : "t = %.6g s",
-             seeks ? sim->state.relax_time : sim->state.time);
+    snprintf(time.text, sizeof time.text, "%s%.6g s",
+             sim->state.seeks_rest ? "while rest is sought, after " : "t = ", sim->state.time);
     return time;
 }
 
 enum err observe(struct simulation *sim, double until, struct diag *d)
 {
     struct observer *const by = &sim->observer;
-    /* No time passes before t = 0, while rest is sought. */
-    if (!by->context || sim->state.time < 0 || until < by->next) return ERR_OK;
+    if (!by->context || sim->state.seeks_rest || until < by->next) return ERR_OK;
     const double begin = wall_clock(), before = phases_so_far(sim);
     const enum err e = by->look(by->context, sim, until, d);
     /* Evaluations, which the coming step uses, are counted in their own phases. */

@@ -133,7 +133,13 @@ struct simulation {
     struct energy_gain gain;              /* of the last test of the energy account */
 };
 
-/* "t = 0.1 s" for a message; while rest is sought (T-78), how long it has been sought. */
+/* While rest is sought (T-78), the state's time is how long it has been sought. Motions, loads and
+ * gravity are taken at scene_time: at `time` of the run, and before all of it while rest is sought,
+ * when nothing is driven and all else is as at t = 0. The run's own time is 0 then. */
+double scene_time(const struct simulation *sim, double time);
+double simulation_time(const struct simulation *sim);
+
+/* "t = 0.1 s" for a message, or how long rest has been sought. */
 struct time_text {
     char text[64];
 };

@@ -86,7 +86,7 @@ static double end_of_bar(void)
 static void test_hanging_bar(void)
 {
     RIG_OPEN_SOLID(hanging, "relax.tolerance=0.001");
-    TEST_ASSERT_TRUE(relax_due(&rig.sim));
+    TEST_ASSERT_TRUE(rig.sim.state.seeks_rest);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
     TEST_ASSERT_EQUAL_DOUBLE(0, rig.sim.state.time);
     const double found = end_of_bar();
@@ -106,14 +106,43 @@ static void test_hanging_bar(void)
 /* Loads are as at t = 0, moving walls and clamps at rest, and what is at rest is found at once. */
 static void test_forces_are_those_at_the_start(void)
 {
-    RIG_OPEN_SOLID(HEAD "[solid b]\nshape = box 0, 0, 0.2, 0.04\nclamp = box 0, 0, 0.02, 0.04\n"
-                        "clamp_motion = m\n" BODY "[load l]\nbody = b\nforce = 0, 5\n"
-                        "shape = box 0.19, 0, 0.2, 0.04\nhistory = sqrt(t)\n"
-                        "[motion m]\nvelocity = 1, 0\n[relax]\n",
-                   NULL);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
-    TEST_ASSERT_TRUE(rig.sim.state.relaxed);
-    for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_TRUE(p->ux[i] == 0 && p->uy[i] == 0);
+    for (int k = 0; k < 2; k++) { /* by Newton's method, and by motion */
+        RIG_OPEN_SOLID(HEAD "[solid b]\nshape = box 0, 0, 0.2, 0.04\nclamp = box 0, 0, 0.02, 0.04\n"
+                            "clamp_motion = m\n" BODY "[load l]\nbody = b\nforce = 0, 5\n"
+                            "shape = box 0.19, 0, 0.2, 0.04\nhistory = sqrt(t)\n"
+                            "[motion m]\nvelocity = 1, 0\n[relax]\n",
+                       NULL);
+        if (k) rig.sim.state.time = kinetic;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
+        TEST_ASSERT_FALSE(rig.sim.state.seeks_rest);
+        TEST_ASSERT_TRUE(rig.sim.state.time == 0 && rig.sim.state.steps == 0);
+        for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_TRUE(p->ux[i] == 0 && p->uy[i] == 0);
+        for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_TRUE(p->vx[i] == (p->X[i] < 0.02 ? 1 : 0));
+    }
+}
+
+/* Gravity, walls and clamps that follow the time are held while the clock of the search runs. */
+static void test_beside_fluid_the_search_has_its_own_clock(void)
+{
+    static const char motion[] = "[motion m]\nvelocity = 0.1, 0\n";
+    uint64_t hash[2];
+    for (int k = 0; k < 2; k++) {
+        char text[1500];
+        snprintf(text, sizeof text, "%s%s", dam, motion);
+        rig_open(&rig, text, "tank.motion=m", "gate.clamp_motion=m",
+                 k ? "gravity=0, -9.81*(1 + t)" : "gravity=0, -9.81", NULL);
+        for (int n = 0; n < 20; n++)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_step(&rig.sim, &rig.diag), rig.diag.text);
+        TEST_ASSERT_TRUE(rig.sim.state.seeks_rest && rig.sim.state.time > 0);
+        TEST_ASSERT_EQUAL_INT64(20, rig.sim.state.steps);
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            for (int64_t i = 0; i < rig.sim.kind[kind].n; i++)
+                if (kind == KIND_WALL || rig.sim.kind[kind].free[i] == 0) {
+                    TEST_ASSERT_TRUE(rig.sim.kind[kind].vx[i] == 0);
+                }
+        hash[k] = particles_hash(&rig.sim.kind[KIND_FLUID], HASH_START);
+    }
+    TEST_ASSERT_EQUAL_HEX64(hash[0], hash[1]);
 }
 
 static void search(struct image *image, int steps)
@@ -122,7 +151,7 @@ static void search(struct image *image, int steps)
     if (image->size > 0)
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(image, &rig.sim, &rig.diag),
                                       rig.diag.text);
-    while (steps-- > 0 && relax_due(&rig.sim))
+    while (steps-- > 0 && rig.sim.state.seeks_rest)
         TEST_ASSERT_EQUAL_INT(ERR_OK, relax_step(&rig.sim, &rig.diag));
 }
 
@@ -157,7 +186,7 @@ static void test_fluid_that_nothing_holds(void)
 #undef FALLING
 }
 
-/* Not the time before t = 0 at which its steps are computed. */
+/* Their times are not those of the run. */
 static void test_guards_say_the_time_of_the_search(void)
 {
     rig_open(&rig, dam, NULL);
@@ -171,7 +200,7 @@ static void test_guards_say_the_time_of_the_search(void)
 static void test_no_rest_is_said(void)
 {
     rig_open(&rig, hanging, "relax.limit=0.5", NULL);
-    rig.sim.state.relax_time = kinetic;
+    rig.sim.state.time = kinetic;
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL(strstr(rig.diag.text, "no state of rest within"));
     rig_refuses(HEAD "[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY
@@ -204,7 +233,7 @@ static void test_verlet_and_what_is_said(void)
 {
     char text[RELAX_TEXT];
     RIG_OPEN_SOLID(hanging, "integrator=verlet", "relax.tolerance=0.001");
-    rig.sim.state.relax_time = kinetic;
+    rig.sim.state.time = kinetic;
     relax_text(&rig.sim, text);
     TEST_ASSERT_EQUAL_STRING("nothing moves: the state at the start is one of rest", text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
@@ -236,6 +265,7 @@ int main(void)
     RUN_TEST(test_step_holds_for_it);
     RUN_TEST(test_hanging_bar);
     RUN_TEST(test_forces_are_those_at_the_start);
+    RUN_TEST(test_beside_fluid_the_search_has_its_own_clock);
     RUN_TEST(test_a_search_can_be_continued);
     RUN_TEST(test_no_rest_is_said);
     RUN_TEST(test_fluid_that_nothing_holds);
