@@ -22,21 +22,7 @@ static enum err check_line(struct reader *r, const struct scene_beam *beam)
     return ERR_OK;
 }
 
-static double turn(const double a[2], const double b[2], const double c[2])
-{
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-/* Whether segments from a to b and from p to q cross, or the second goes back along the first. */
-static bool segments_meet(const double a[2], const double b[2], const double p[2],
-                          const double q[2])
-{
-    const double back = (b[0] - a[0]) * (q[0] - p[0]) + (b[1] - a[1]) * (q[1] - p[1]);
-    if (b[0] == p[0] && b[1] == p[1]) return back < 0 && fabs(turn(a, b, q)) < 1e-6 * fabs(back);
-    return turn(a, b, p) * turn(a, b, q) < 0 && turn(p, q, a) * turn(p, q, b) < 0;
-}
-
-/* A line that does not meet itself, longer than it is thick, in elements that a run can bear. */
+/* A line longer than it is thick, in elements that a run can bear. */
 static enum err check_extent(struct reader *r, const struct scene_beam *beam)
 {
     enum { ELEMENTS = 10000 }; /* pairs of them are compared in each step */
@@ -46,12 +32,6 @@ static enum err check_extent(struct reader *r, const struct scene_beam *beam)
         const double *const a = line->pt[i], *const b = line->pt[i + 1];
         length += elementary_hypot(b[0] - a[0], b[1] - a[1]);
         parts += scene_beam_parts(r->scene, beam, a, b);
-        for (int j = i + 1; j + 1 < line->n; j++)
-            if (segments_meet(a, b, line->pt[j], line->pt[j + 1]))
-                return bad_line(r, line->line,
-                                "[beam %s] crosses itself or turns back on itself near (%.6g, "
-                                "%.6g) m; move the points of its line apart",
-                                beam->common.name, line->pt[j][0], line->pt[j][1]);
     }
     if (beam->thickness > length)
         return bad_section(r,

@@ -172,10 +172,10 @@ static enum err check_solid(struct reader *r, const void *section)
 static bool moves_freely(const struct scene *scene, const char *name)
 {
     const int wall = scene_find_wall(scene, name);
-    return wall < 0 || (wall >= scene_rigid_wall(scene, 0) && wall < scene_beam_wall(scene, 0));
+    return wall < 0 || wall >= scene_rigid_wall(scene, 0);
 }
 
-/* Two bodies, one of them a solid or rigid body; a larger gap contains fluid particles of its own.
+/* Two bodies, of which one is no wall; a larger gap contains fluid particles of its own.
  */
 static enum err check_contact(struct reader *r, const void *section)
 {
@@ -199,7 +199,7 @@ static enum err check_contact(struct reader *r, const void *section)
     if (*c->between && !moves_freely(scene, name[0]) && !moves_freely(scene, name[1]))
         return bad_key(
             r, "between", c->between,
-            "one of the two must be a [solid] or [rigid], because walls do not interact");
+            "one of the two must be a [solid], [rigid] or [beam], because walls do not interact");
     return ERR_OK;
 }
 

@@ -69,6 +69,7 @@ double start_speed(const struct scene *scene, enum kind kind, int section,
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
     SPHFSI_PRINTF(4, 5);
 void warn_of_values(struct check *check);
+enum err refuse_beams(const struct check *check) SPHFSI_CHECKED;
 enum err warn_of_shapes(struct check *check) SPHFSI_CHECKED;
 enum err warn_of_fluid(struct check *check) SPHFSI_CHECKED;
 enum err warn_of_solids(struct check *check) SPHFSI_CHECKED;

@@ -211,30 +211,6 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
         warn_of_thin(check, region, NULL, across * dp);
 }
 
-/* Contact keeps a beam on the side of a face where it begins. */
-static void warn_of_beam(struct check *check, const struct region *region,
-                         const struct shape *shape)
-{
-    const double dp = check->scene->top.dp;
-    for (int k = 0; k + 1 < shape->n; k++) {
-        const double *const from = shape->pt[k], dx = shape->pt[k + 1][0] - from[0],
-                            dy = shape->pt[k + 1][1] - from[1];
-        const int parts = 1 + (int)(2 * elementary_hypot(dx, dy) / dp);
-        for (int j = 0; j < parts; j++) {
-            const double s = (j + 0.5) / parts, x = from[0] + s * dx, y = from[1] + s * dy;
-            const int other = drawn_at(check, x, y);
-            if (other < 0) continue;
-            const struct region *const its = &check->shapes.regions[other];
-            warn_at(
-                check->diag, check->scene, shape->line,
-                "[beam %s] lies in [%s %s], at (%.6g, %.6g) m: this part cannot leave the body; "
-                "end its line at the face of the body",
-                region->name, its->word, its->name, x, y);
-            return;
-        }
-    }
-}
-
 static void warn_of_region(struct check *check, const struct region *region)
 {
     if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
@@ -252,7 +228,6 @@ static void warn_of_region(struct check *check, const struct region *region)
                     "rigid bodies do not touch this line of [%s %s] but pass through it, because "
                     "it has no thickness",
                     region->word, region->name);
-        if (beam) warn_of_beam(check, region, shape);
         bool layered = false; /* layers follow faces at any position */
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];

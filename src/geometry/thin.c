@@ -87,17 +87,20 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
 }
 
 /* A line that ends at a wall continues into it, so that the fluid of one side does not see the
- * wall's particles below the other side. */
+ * wall's particles below the other side. The wall may end there, too. */
 static double extension(const struct sampler *sampler, const struct scene_line *line, bool last)
 {
     const struct part part = line_part(line, last ? line->n - 2 : 0);
     const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp,
                  along = last ? part.length + 0.5 * dp : -0.5 * dp,
                  x = part.from[0] + along * part.t[0], y = part.from[1] + along * part.t[1];
-    for (int k = 0; k < sampler->n_regions; k++)
-        if (sampler->regions[k].kind == KIND_WALL &&
-            geometry_piece_at(&sampler->regions[k], x, y) >= 0)
+    for (int k = 0; k < 3 * sampler->n_regions; k++) {
+        const double aside = (k % 3 - 1) * 1e-3 * dp;
+        const struct region *const region = &sampler->regions[k / 3];
+        if (region->kind == KIND_WALL &&
+            geometry_piece_at(region, x - aside * part.t[1], y + aside * part.t[0]) >= 0)
             return reach;
+    }
     return 0;
 }
 

@@ -254,6 +254,54 @@ static void test_bad_input_is_refused(void)
     }
 }
 
+#define BAR(name, line) \
+    "[beam " name "]\nshape = polyline: " line "\nthickness = 1 mm\nyoung = 1e9\ndensity = 1000\n"
+#define DRY "dp = 1 cm\nend_time = 1\n"
+
+/* Contact keeps beams on their side of what they meet, so they must begin on one. */
+static void test_beams_begin_beside_each_other_and_bodies(void)
+{
+    static const char *const lies[][2] = {
+        {BAR("a", "0, 0; 1, 0") BAR("b", "0.5, -1; 0.5, 1"), "meets [beam a] at (0.5, 0) m"},
+        {BAR("a", "0, 0; 1, 0") BAR("b", "0.5, 0; 0.5, 1"), "meets [beam a] at (0.5, 0) m"},
+        {BAR("a", "0, 0; 1, 0") BAR("b", "0.2, 0; 1.4, 0"), "meets [beam a]"},
+        {BAR("a", "0, 0; 1, 0") "[rigid r]\nshape = box 0.2, -0.1, 0.21, 0.1\ndensity = 1\n",
+         "lies in [rigid r] or on its face, at (0.2"},
+        {BAR("a", "0, 0; 1, 0") "[rigid r]\nshape = circle 0.5, 0, 1 cm\ndensity = 1\n",
+         "lies in [rigid r]"},
+        {BAR("a", "0, 0; 1, 0") "[rigid r]\nshape = box 0.2, 0, 0.4, 0.1\ndensity = 1\n",
+         "lies in [rigid r] or on its face"},
+        {BAR("a", "0, 0; 1, 0") "[wall w]\nshape = box -1, -1, 2, 1\n", "lies in [wall w]"},
+        {BAR("a", "0, 0; 1, 0") "[wall w]\nshape = box 1, -1, 2, 1\n",
+         "touches [wall w] with a free point, at (1, 0) m"},
+        {BAR("a", "0, 0; 1, 0") "[wall w]\nshape = polyline thickness 0: 0.5, -1; 0.5, 1\n",
+         "meets the line of [wall w] at (0.5, 0) m"},
+        {BAR("a", "0, 0; 1, 0") "[solid s]\nshape = box 0.2, -0.5, 0.8, 0.5\nyoung = 1e6\n"
+                                "poisson = 0\ndensity = 1000\n",
+         "lies in [solid s]"},
+    };
+    static const char *const lie_beside[] = {
+        BAR("a", "0, 0; 1, 0") BAR("b", "0.5, -1; 0.5, 1") "hinge = 0.5, 0, a\n",
+        BAR("a", "0, 0; 1, 0") BAR("b", "0.5, -1; 0.5, 1") "[contact c]\nbetween = a, b\n"
+                                                           "enabled = off\n",
+        BAR("a", "0, 0; 1, 0; 1, 1; 0, 1; 0, 0") BAR("b", "0.5, 0.1; 0.5, 0.9"),
+        BAR("a", "0, 0; 1, 0") "clamp = 1, 0\n[wall w]\nshape = box 1, -1, 2, 1\n",
+        BAR("a", "0, 0; 1, 0") "[wall w]\nshape = box 0.4, -1, 0.6, 1\n"
+                               "minus = box 0.3, -0.1, 0.7, 0.1\n",
+        BAR("a", "0, 0; 1, 0") "[wall w]\nshape = box -1, -1, 2, -0.001\n",
+    };
+    for (size_t k = 0; k < COUNT_OF(lies); k++) {
+        char text[1024];
+        snprintf(text, sizeof text, DRY "%s", lies[k][0]);
+        rig_refuses(text, lies[k][1]);
+    }
+    for (size_t k = 0; k < COUNT_OF(lie_beside); k++) {
+        char text[1024];
+        snprintf(text, sizeof text, DRY "%s", lie_beside[k]);
+        rig_open(&rig, text, NULL);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -266,5 +314,6 @@ int main(void)
     RUN_TEST(test_a_moving_clamp_does_work);
     RUN_TEST(test_beams_are_joined);
     RUN_TEST(test_bad_input_is_refused);
+    RUN_TEST(test_beams_begin_beside_each_other_and_bodies);
     return UNITY_END();
 }

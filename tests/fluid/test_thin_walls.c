@@ -246,6 +246,27 @@ static void test_places_and_loads(void)
     TEST_ASSERT_TRUE(fabs(sum[0]) > 1);
 }
 
+/* A side of the tank that is a thin line from the very end of the floor: none escapes below it. */
+static void test_a_side_at_the_end_of_a_floor(void)
+{
+    static const char *const sides[] = {
+        "[wall side]\nshape = polyline thickness 0: 0.4, 0; 0.4, 0.6\n",
+        "[beam side]\nshape = polyline: 0.4, 0; 0.4, 0.6\nclamp = 0.4, 0\ndensity = 1200\n"
+        "thickness = 4 mm\nyoung = 3e10\n"};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s%s%s", TOP WATER("-0.4, 0, 0.4, 0.4"),
+                 "[wall tank]\nshape = polyline: -0.4, 0.6; -0.4, 0; 0.4, 0\n", sides[k]);
+        rig_open(&rig, text, NULL);
+        rig_run(&rig, 0.3);
+        for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++) {
+            assert_at_most(0, -rig.sim.kind[KIND_FLUID].y[i], "depth");
+            assert_at_most(k ? 0.41 : 0.4, rig.sim.kind[KIND_FLUID].x[i], "x"); /* it bends */
+        }
+        assert_at_most(0.005, rig.sim.state.gain_share, "gain");
+    }
+}
+
 static void test_what_is_refused(void)
 {
     rig_refuses(TOP "[fluid w]\nsound_speed = 20\nshape = polyline thickness 0: 0, 0; 1, 0\n",
@@ -270,6 +291,7 @@ int main(void)
     RUN_TEST(test_a_dam_break);
     RUN_TEST(test_action_and_reaction);
     RUN_TEST(test_places_and_loads);
+    RUN_TEST(test_a_side_at_the_end_of_a_floor);
     RUN_TEST(test_what_is_refused);
     return UNITY_END();
 }

@@ -136,7 +136,7 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE "[wall a]\nshape = box 0, 0, 1, 1\n[wall b]\nshape = box 2, 0, 3, 1\n"
                      "[rigid c]\nshape = box 4, 0, 5, 1\ndensity = 1\n"
                      "[contact d]\nbetween = a, b\n",
-                "one of the two must be a [solid] or [rigid]");
+                "one of the two must be a [solid], [rigid] or [beam]");
     rig_refuses(FREE "[solid a]\nshape = box 0, 0, 1, 1\ndensity = 1000\nyoung = 1e6\n"
                      "poisson = 0.3\n[contact d]\nrestitution = 0.5\n",
                 "has a `restitution`, which is that of a [rigid]");

@@ -75,7 +75,8 @@ void rig_refuses(const char *text, const char *why)
     const int n = strstr(text, "scheme = ") ? 0 : 1;
     enum err e = scene_load_text(&scene, text, "t.cfg", n, &plain_scheme, &d);
     if (e == ERR_OK) {
-        e = simulation_create(&sim, &scene, &d);
+        e = check_scene(&scene, &d);
+        if (e == ERR_OK) e = simulation_create(&sim, &scene, &d);
         scene_free(&scene);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, e, d.text);

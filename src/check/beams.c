@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT
+ * Refuses beams that begin where contact could not keep them on one side: across each other or
+ * themselves, in a body, or with a free point on its face. */
+#include "check/check.h"
+
+#include "base/elementary.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of dp: lengths along a line and beside it that count as nothing. */
+static const double ahead = 1e-3, beside = 1e-5;
+
+/* A segment of a beam, or of a wall that is a thin line (beam: NULL). */
+struct part {
+    const struct scene_beam *beam;
+    const double *from, *to;
+    double length, t[2]; /* direction */
+};
+
+static struct part part_of(const struct scene_beam *beam, const struct shape *line, int k)
+{
+    const double *const from = line->pt[k], *const to = line->pt[k + 1];
+    const double x = to[0] - from[0], y = to[1] - from[1], length = elementary_hypot(x, y);
+    return (struct part){beam, from, to, length, {x / length, y / length}};
+}
+
+/* A place relative to a part: along it, and to its left. */
+static void relative(const struct part *p, const double at[2], double to[2])
+{
+    const double x = at[0] - p->from[0], y = at[1] - p->from[1];
+    to[0] = x * p->t[0] + y * p->t[1];
+    to[1] = p->t[0] * y - p->t[1] * x;
+}
+
+static void place_on(const struct part *p, double along, double left, double at[2])
+{
+    at[0] = p->from[0] + along * p->t[0] - left * p->t[1];
+    at[1] = p->from[1] + along * p->t[1] + left * p->t[0];
+}
+
+static bool is_near(const double a[2], const double b[2], double within)
+{
+    return elementary_hypot(a[0] - b[0], a[1] - b[1]) <= within;
+}
+
+/* Whether a clamp or hinge of a beam is within an element of a place, on another beam (NULL: on
+ * anything). */
+static bool is_held(const struct check *check, const struct scene_beam *beam, const double at[2],
+                    const struct scene_beam *other)
+{
+    const double reach = beam->element > 0 ? beam->element : check->scene->top.dp;
+    for (int k = 0; k < beam->clamp.n + beam->hinge.n; k++) {
+        const struct hinge_point *const h =
+            k < beam->clamp.n ? &beam->clamp.item[k] : &beam->hinge.item[k - beam->clamp.n];
+        if (is_near(h->at, at, reach) && (!other || strcmp(h->other, other->common.name) == 0))
+            return true;
+    }
+    return false;
+}
+
+/* --- lines that meet --- */
+
+/* Whether parts may meet at a place: neighbours at their common end, other lines at a joint. */
+static bool may_meet(const struct check *check, const struct part *p, const struct part *q,
+                     const double at[2])
+{
+    const double nothing = 2 * beside * check->scene->top.dp;
+    if (p->beam != q->beam && q->beam)
+        return is_held(check, p->beam, at, q->beam) || is_held(check, q->beam, at, p->beam);
+    if (!q->beam) return is_held(check, p->beam, at, NULL);
+    return (is_near(at, p->to, nothing) && is_near(at, q->from, nothing)) ||
+           (is_near(at, p->from, nothing) && is_near(at, q->to, nothing));
+}
+
+/* Whether two parts meet where they may not, and where. */
+static bool meet(const struct check *check, const struct part *p, const struct part *q,
+                 double at[2])
+{
+    const double nothing = beside * check->scene->top.dp;
+    double end[4][2]; /* of q relative to p, of p relative to q */
+    for (int k = 0; k < 4; k++) {
+        const struct part *const on = k < 2 ? p : q, *const of = k < 2 ? q : p;
+        memcpy(at, k % 2 ? of->to : of->from, 2 * sizeof *at);
+        relative(on, at, end[k]);
+        const double beyond = max2(-end[k][0], end[k][0] - on->length);
+        if (fabs(end[k][1]) < nothing && beyond < nothing && !may_meet(check, p, q, at))
+            return true;
+    }
+    if (!(end[0][1] * end[1][1] < 0 && end[2][1] * end[3][1] < 0)) return false;
+    const double part = end[0][1] / (end[0][1] - end[1][1]);
+    place_on(p, end[0][0] + part * (end[1][0] - end[0][0]), 0, at);
+    return !may_meet(check, p, q, at);
+}
+
+/* A beam with itself or with one before it. */
+static enum err refuse_meeting(const struct check *check, const struct scene_beam *beam,
+                               const struct scene_beam *other)
+{
+    const struct shape *const line = beam->shape.item, *const its = other->shape.item;
+    const bool own = beam == other;
+    const int walls = check->scene->n_solid + scene_beam_wall(check->scene, 0);
+    if (!own &&
+        !scene_contact_of(check->scene, walls + beam->common.index, walls + other->common.index))
+        return ERR_OK;
+    for (int i = 0; i + 1 < line->n; i++)
+        for (int j = own ? i + 1 : 0; j + 1 < its->n; j++) {
+            const struct part p = part_of(beam, line, i), q = part_of(other, its, j);
+            double at[2];
+            if (!meet(check, &p, &q, at)) continue;
+            if (own)
+                return fail_at(check->diag, check->scene, line->line,
+                               "[beam %s] crosses itself or turns back on itself near (%.6g, %.6g) "
+                               "m; move the points of its line apart",
+                               beam->common.name, at[0], at[1]);
+            return fail_at(check->diag, check->scene, line->line,
+                           "[beam %s] meets [beam %s] at (%.6g, %.6g) m without a joint; give "
+                           "[beam %s] a `clamp` or `hinge` = X, Y, %s there, or move one of them",
+                           beam->common.name, other->common.name, at[0], at[1], beam->common.name,
+                           other->common.name);
+        }
+    return ERR_OK;
+}
+
+/* --- bodies --- */
+
+/* Whether a part lies in a region, or along its face, at a distance from its start. */
+static bool lies_at(const struct part *p, const struct region *region, double along, double dp,
+                    double at[2])
+{
+    if (along < 0.5 * ahead * dp || along > p->length - 0.5 * ahead * dp) return false;
+    for (int side = -1; side < 2; side += 2) {
+        place_on(p, along, side * beside * dp, at);
+        if (geometry_covers(region, at[0], at[1])) return true;
+    }
+    return false;
+}
+
+/* Just before and behind a place where a part meets an outline. */
+static bool lies_near(const struct part *p, const struct region *region, double along, double dp,
+                      double at[2])
+{
+    return lies_at(p, region, along - ahead * dp, dp, at) ||
+           lies_at(p, region, along + ahead * dp, dp, at);
+}
+
+static bool lies_in(const struct part *p, const struct region *region, double dp, double at[2])
+{
+    if (lies_near(p, region, 0, dp, at) || lies_near(p, region, p->length, dp, at)) return true;
+    for (int k = 0; k < region->add.n + region->minus.n; k++) {
+        const struct outline *const o =
+            k < region->add.n ? &region->add.item[k] : &region->minus.item[k - region->add.n];
+        for (int j = 0; j < (o->n ? o->n : 1); j++) {
+            double place[2][2], end[2][2];
+            for (int e = 0; e < 2; e++) {
+                const double *const corner = o->n ? o->pt[(j + e) % o->n] : o->centre;
+                place_of_lattice(&region->lattice, corner[0], corner[1], place[e]);
+                relative(p, place[e], end[e]);
+            }
+            const double chord = sqrt(max2(0, square(o->radius) - square(end[0][1])));
+            const double part = end[0][1] / (end[0][1] - end[1][1]);
+            const double along = end[0][0] + part * (end[1][0] - end[0][0]);
+            if (o->n ? lies_near(p, region, along, dp, at)
+                     : lies_near(p, region, end[0][0] - chord, dp, at) ||
+                           lies_near(p, region, end[0][0] + chord, dp, at))
+                return true;
+        }
+    }
+    return false;
+}
+
+static bool is_on_face(const struct region *region, const double at[2], double dp)
+{
+    for (int k = 0; k < 8; k++) {
+        const double x = at[0] + beside * dp * elementary_cos(PI * (k + 0.5) / 4),
+                     y = at[1] + beside * dp * elementary_sin(PI * (k + 0.5) / 4);
+        if (geometry_covers(region, x, y)) return true;
+    }
+    return false;
+}
+
+static enum err refuse_in_body(const struct check *check, const struct scene_beam *beam,
+                               const struct region *region)
+{
+    const struct shape *const line = beam->shape.item;
+    const double dp = check->scene->top.dp;
+    for (int k = 0; k < line->n; k++) {
+        const struct part p = part_of(beam, line, k + 1 < line->n ? k : k - 1);
+        double at[2];
+        if (lies_in(&p, region, dp, at))
+            return fail_at(check->diag, check->scene, line->line,
+                           "[beam %s] lies in [%s %s] or on its face, at (%.6g, %.6g) m; end its "
+                           "line at the face of the body",
+                           beam->common.name, region->word, region->name, at[0], at[1]);
+        if (is_on_face(region, line->pt[k], dp) && !is_held(check, beam, line->pt[k], NULL))
+            return fail_at(check->diag, check->scene, line->line,
+                           "[beam %s] touches [%s %s] with a free point, at (%.6g, %.6g) m; hold "
+                           "it there by `clamp` or `hinge`, or leave a gap",
+                           beam->common.name, region->word, region->name, line->pt[k][0],
+                           line->pt[k][1]);
+    }
+    for (int s = 0; s < region->list->n; s++) {
+        const struct shape *const thin = &region->list->item[s];
+        for (int j = 0; thin->thin && j + 1 < thin->n; j++)
+            for (int k = 0; k + 1 < line->n; k++) {
+                const struct part p = part_of(beam, line, k), q = part_of(NULL, thin, j);
+                double at[2];
+                if (meet(check, &p, &q, at))
+                    return fail_at(check->diag, check->scene, line->line,
+                                   "[beam %s] meets the line of [wall %s] at (%.6g, %.6g) m; hold "
+                                   "it there by `clamp` or `hinge`, or leave a gap",
+                                   beam->common.name, region->name, at[0], at[1]);
+            }
+    }
+    return ERR_OK;
+}
+
+enum err refuse_beams(const struct check *check)
+{
+    const struct scene *const scene = check->scene;
+    const int first = scene->n_solid + scene_beam_wall(scene, 0);
+    for (int k = 0; k < scene->n_beam; k++) {
+        for (int j = 0; j <= k; j++) TRY(refuse_meeting(check, &scene->beam[k], &scene->beam[j]));
+        for (int r = 0; r < first; r++) {
+            const bool apart = r < scene->n_solid || scene_contact_of(scene, first + k, r);
+            if (apart) TRY(refuse_in_body(check, &scene->beam[k], &check->shapes.regions[r]));
+        }
+    }
+    return ERR_OK;
+}
