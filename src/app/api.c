@@ -276,7 +276,7 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         if (strcmp(f->name, name) != 0 || !field_array(particles, f)) continue;
-        if (is_evaluated(f)) simulation_refresh(sim);
+        if (is_evaluated(f)) (kind == KIND_WALL ? simulation_wall_forces : simulation_refresh)(sim);
         const void *const data = field_array(particles, f); /* integrators exchange arrays */
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
             solid_show(&sim->solid, &sim->kind[KIND_SOLID]);

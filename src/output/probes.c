@@ -140,13 +140,27 @@ static int quantity_columns(int quantity)
     return n;
 }
 
-/* Whether a quantity depends on fields that only simulation_refresh updates. */
-static bool needs_refresh(int quantity)
+/* What must bring fields up to date before a probe reads them, each more than the one before. */
+enum need { NEED_NOTHING, NEED_REFRESH, NEED_WALL_FORCES };
+
+static enum need need_of(const struct probe *probe)
 {
-    return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY ||
-           quantity == PROBE_STRAIN || quantity == PROBE_ACCELERATION ||
-           quantity == PROBE_REACTION || quantity == PROBE_PRESSURE ||
-           quantity == PROBE_SURFACE_PRESSURE;
+    const int of = probe->quantity;
+    for (int k = 0; k < probe->n_bodies; k++)
+        if (probe->bodies[k].kind == KIND_WALL) return NEED_WALL_FORCES;
+    return of == PROBE_STRESS || of == PROBE_FORCE || of == PROBE_ENERGY || of == PROBE_STRAIN ||
+                   of == PROBE_ACCELERATION || of == PROBE_REACTION || of == PROBE_PRESSURE ||
+                   of == PROBE_SURFACE_PRESSURE
+               ? NEED_REFRESH
+               : NEED_NOTHING;
+}
+
+static void refresh(struct simulation *sim, enum need need)
+{
+    if (need == NEED_WALL_FORCES)
+        simulation_wall_forces(sim);
+    else if (need == NEED_REFRESH)
+        simulation_refresh(sim);
 }
 
 static struct probe_body find_body(const struct scene *scene, const char *name)
@@ -525,11 +539,13 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
 void probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
                    double *row, double *rate)
 {
-    bool refresh = false;
-    for (int k = 0; k < probes->n; k++)
-        refresh |= probes->probe[k].file == file && (!means || probes->probe[k].mean) &&
-                   needs_refresh(probes->probe[k].quantity);
-    if (refresh) simulation_refresh(sim);
+    enum need need = NEED_NOTHING;
+    for (int k = 0; k < probes->n; k++) {
+        const enum need by = need_of(&probes->probe[k]);
+        const bool read = probes->probe[k].file == file && (!means || probes->probe[k].mean);
+        if (read && by > need) need = by;
+    }
+    refresh(sim, need);
     row[0] = sim->state.time;
     for (int k = 0; k < probes->n; k++) {
         const struct probe *const probe = &probes->probe[k];
@@ -546,7 +562,7 @@ void probes_values(const struct probes *probes, struct simulation *sim, int k, d
         for (int c = 0; c < probe->columns; c++) row[c] = m->sum[c] / m->covered;
         return;
     }
-    if (needs_refresh(probe->quantity)) simulation_refresh(sim);
+    refresh(sim, need_of(probe));
     double rate[PROBE_MAX_COLUMNS];
     evaluate(probe, sim, row, rate);
 }

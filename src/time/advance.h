@@ -32,6 +32,9 @@ void move_walls(struct simulation *sim, double time);
  * date without changing the state. */
 void simulation_refresh(struct simulation *sim);
 
+/* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */
+void simulation_wall_forces(struct simulation *sim);
+
 /* --- advance.c --- */
 
 /* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end

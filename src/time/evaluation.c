@@ -103,9 +103,7 @@ void simulation_refresh(struct simulation *sim)
     if ((sim->effects & FX_FLUID) && !sim->cells_overfull) {
         double seconds[PHASE_COUNT];
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
-        const bool stale = !sim->evaluated;
         evaluate_fluid(sim, sim->state.time);
-        if (stale) coupling_show_forces(&sim->coupling, sim->kind, &sim->cells);
         sim->state.evaluations--;
         /* A caller's own forces and motions may change between two steps. */
         sim->evaluated = !sim->external[KIND_FLUID].at && !sim->external[KIND_SOLID].at &&
@@ -113,4 +111,11 @@ void simulation_refresh(struct simulation *sim)
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+}
+
+void simulation_wall_forces(struct simulation *sim)
+{
+    simulation_refresh(sim);
+    if (sim->effects & FX_FLUID && !sim->cells_overfull)
+        coupling_show_forces(&sim->coupling, sim->kind, &sim->cells);
 }

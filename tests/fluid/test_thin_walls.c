@@ -24,7 +24,7 @@ void tearDown(void) { rig_close(&rig); }
 static void force_on(int body, double f[2])
 {
     const struct particles *const walls = &rig.sim.kind[KIND_WALL];
-    simulation_refresh(&rig.sim);
+    simulation_wall_forces(&rig.sim);
     f[0] = f[1] = 0;
     for (int64_t i = 0; i < walls->n; i++) {
         f[0] += walls->body[i] == body ? walls->fx[i] : 0;

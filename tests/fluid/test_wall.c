@@ -338,7 +338,7 @@ static void test_a_body_at_rest_is_carried(void)
              "[wall box]\nshape = box 0.2, 0.2, 0.4, 0.4\n"
              "[probe lift]\nquantity = force\nbody = box\npoint = 0.3, 0.3\n",
              NULL);
-    rig_evaluate(&rig);
+    simulation_wall_forces(&rig.sim);
     wall = &rig.sim.kind[KIND_WALL];
     double force = 0;
     for (int64_t i = 0; i < wall->n; i++)

@@ -285,6 +285,21 @@ static void walls_carry_forces_only_when_asked(void)
     TEST_ASSERT_NOT_NULL(rig.sim.kind[KIND_WALL].fx);
 }
 
+/* Of two files that are read at different times. */
+static void walls_get_forces_only_for_rows_that_show_them(void)
+{
+    double row[1 + PROBE_MAX_COLUMNS], rate[1 + PROBE_MAX_COLUMNS];
+    open_with("[probe T]\nquantity = force\nbody = tank\n"
+              "[probe Q]\nquantity = pressure\npoint = 0.05, 0.05\ninterval = 1 ms\n",
+              NULL);
+    double *const fy = rig.sim.kind[KIND_WALL].fy;
+    fy[0] = 7;
+    probes_sample(&probes, &rig.sim, 1, false, row, rate);
+    TEST_ASSERT_TRUE(fy[0] == 7);
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
+    TEST_ASSERT_FALSE(fy[0] == 7);
+}
+
 /* --- points that move, several bodies --- */
 
 /* Density that differs from place to place. */
@@ -531,6 +546,7 @@ int main(void)
     RUN_TEST(forces_balance);
     RUN_TEST(moment_about_a_point);
     RUN_TEST(walls_carry_forces_only_when_asked);
+    RUN_TEST(walls_get_forces_only_for_rows_that_show_them);
     RUN_TEST(a_point_rides_on_a_solid);
     RUN_TEST(a_point_rides_on_a_wall);
     RUN_TEST(a_line_rides_on_a_wall);
