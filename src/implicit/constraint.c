@@ -31,17 +31,6 @@ static void subtract_motion(const struct implicit *implicit, const struct hinges
     }
 }
 
-/* Subtracts the interpolated field of all particles, of clamps too. */
-static void subtract_field(const struct hinges *hinges, const double *x, const double *y,
-                           double *from)
-{
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        const struct hinge_node *const node = &hinges->node[k];
-        from[2 * node->hinge] -= node->weight * x[node->particle];
-        from[2 * node->hinge + 1] -= node->weight * y[node->particle];
-    }
-}
-
 enum err constraint_create(struct implicit *implicit, const struct hinges *hinges, struct arena *a,
                            struct diag *d)
 {
@@ -79,24 +68,13 @@ void constraint_begin(struct implicit *implicit, struct hinges *hinges,
     const size_t n = 2 * (size_t)hinges->n;
     memset(implicit->hinge_force, 0, n * sizeof *implicit->hinge_force);
     memset(implicit->hinge_place, 0, n * sizeof *implicit->hinge_place);
-    if (middle) subtract_field(hinges, particles->ux, particles->uy, implicit->hinge_place);
+    if (middle) hinges_subtract(hinges, particles->ux, particles->uy, implicit->hinge_place);
     for (int k = 0; k < hinges->n; k++) {
         double to[2];
         hinges_place(hinges, k, time, to);
         for (int c = 0; c < 2; c++)
             implicit->hinge_place[2 * k + c] =
                 middle ? 0.5 * (to[c] - implicit->hinge_place[2 * k + c]) : to[c];
-    }
-}
-
-void constraint_push(const struct implicit *implicit, const struct hinges *hinges,
-                     struct particles *particles)
-{
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        const struct hinge_node *const node = &hinges->node[k];
-        const double per_force = node->weight * node->inv_mass;
-        particles->sx[node->particle] += per_force * implicit->hinge_force[2 * node->hinge];
-        particles->sy[node->particle] += per_force * implicit->hinge_force[2 * node->hinge + 1];
     }
 }
 
@@ -107,7 +85,7 @@ void constraint_solve(struct implicit *implicit, struct hinges *hinges,
     memcpy(implicit->column, implicit->unknown, 2 * (size_t)implicit->n * sizeof *implicit->column);
     envelope_solve(&implicit->matrix, implicit->column);
     memcpy(hinges->force, implicit->hinge_place, (size_t)n * sizeof *hinges->force);
-    subtract_field(hinges, particles->ux, particles->uy, hinges->force);
+    hinges_subtract(hinges, particles->ux, particles->uy, hinges->force);
     subtract_motion(implicit, hinges, implicit->column, hinges->force);
     memcpy(hinges->matrix, implicit->flexibility, (size_t)(n * n) * sizeof *hinges->matrix);
     cholesky_solve(hinges->matrix, n, n, 0, hinges->force);
@@ -120,7 +98,7 @@ void constraint_end(const struct implicit *implicit, struct hinges *hinges,
 {
     const size_t bytes = 2 * (size_t)hinges->n * sizeof *hinges->force;
     memset(hinges->force, 0, bytes);
-    subtract_field(hinges, particles->vx, particles->vy, hinges->force);
+    hinges_subtract(hinges, particles->vx, particles->vy, hinges->force);
     for (int k = 0; k < hinges->n; k++)
         for (int c = 0; c < 2; c++) hinges->hinge[k].target[c] = -hinges->force[2 * k + c];
     memcpy(hinges->force, implicit->hinge_force, bytes);

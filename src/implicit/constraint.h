@@ -15,10 +15,6 @@ void constraint_factor(struct implicit *implicit, const struct hinges *hinges);
 void constraint_begin(struct implicit *implicit, struct hinges *hinges,
                       const struct particles *particles, double time, bool middle);
 
-/* Adds the accelerations by the hinges' forces so far. */
-void constraint_push(const struct implicit *implicit, const struct hinges *hinges,
-                     struct particles *particles);
-
 /* Adds to the residual what the hinges' forces must be changed by, so that the solution leads the
  * points to their places. */
 void constraint_solve(struct implicit *implicit, struct hinges *hinges,

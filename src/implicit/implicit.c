@@ -163,7 +163,8 @@ double implicit_residual(struct solid *solid, struct particles *particles, doubl
         particles->vy[i] = 2 / dt * (particles->uy[i] - start[START_UY][i]);
     }
     solid_forces_within(solid, particles, time);
-    if (solid->hinges) constraint_push(solid->implicit, solid->hinges, particles);
+    if (solid->hinges)
+        hinges_push(solid->hinges, solid->implicit->hinge_force, particles->sx, particles->sy);
     for (int64_t i = 0; i < particles->n; i++)
         if (solid->implicit->order[i] >= 0) find_one(solid, particles, i, dt, &top);
     return top.off <= rounding_of(&top, dt) ? 0 : top.off / top.force;

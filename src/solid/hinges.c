@@ -81,8 +81,7 @@ static enum err find_weights(struct hinges *hinges, const struct solid *solid,
 }
 
 /* The matrix of the hinges' forces, in which `face` is the direction in which the fluid resists a
- * particle's kick (T-35a): what one hinge's force does to the velocity of another's point. Also
- * subtracts the values of the nodes from `force`. */
+ * particle's kick (T-35a): what one hinge's force does to the velocity of another's point. */
 static void assemble(struct hinges *hinges, const struct particles *particles, bool resisted)
 {
     const int n2 = 2 * hinges->n;
@@ -103,8 +102,6 @@ static void assemble(struct hinges *hinges, const struct particles *particles, b
                 to[n2] -= both * fx * fy;
                 to[n2 + 1] += both * (1 - fy * fy);
             }
-            hinges->force[2 * a->hinge] -= a->weight * a->value[0];
-            hinges->force[2 * a->hinge + 1] -= a->weight * a->value[1];
         }
     }
 }
@@ -193,7 +190,31 @@ void hinges_place(const struct hinges *hinges, int hinge, double time, double to
     memcpy(to, place_of(hinges, &hinges->hinge[hinge], time).x, 2 * sizeof *to);
 }
 
-/* Solves T-81 for the values of the nodes: those of the points become what `force` has before. */
+static void subtract_value(const struct hinge_node *node, double x, double y, double *from)
+{
+    from[2 * node->hinge] -= node->weight * x;
+    from[2 * node->hinge + 1] -= node->weight * y;
+}
+
+void hinges_subtract(const struct hinges *hinges, const double *x, const double *y, double *from)
+{
+    for (int64_t k = 0; k < hinges->n_nodes; k++) {
+        const struct hinge_node *const node = &hinges->node[k];
+        subtract_value(node, x[node->particle], y[node->particle], from);
+    }
+}
+
+void hinges_push(const struct hinges *hinges, const double *force, double *x, double *y)
+{
+    for (int64_t k = 0; k < hinges->n_nodes; k++) {
+        const struct hinge_node *const node = &hinges->node[k];
+        const double per_force = node->weight * node->inv_mass;
+        x[node->particle] += per_force * force[2 * node->hinge];
+        y[node->particle] += per_force * force[2 * node->hinge + 1];
+    }
+}
+
+/* Solves T-81 for what the points lack without the hinges, in `force`. */
 static void solve_hinges(struct hinges *hinges, const struct particles *particles, bool resisted)
 {
     assemble(hinges, particles, resisted);
@@ -204,18 +225,9 @@ void hinges_start(struct hinges *hinges, struct particles *particles)
 {
     for (int k = 0; k < hinges->n; k++)
         memcpy(&hinges->force[2 * k], place_of(hinges, &hinges->hinge[k], 0).v, 2 * sizeof(double));
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        struct hinge_node *const node = &hinges->node[k];
-        node->value[0] = particles->vx[node->particle];
-        node->value[1] = particles->vy[node->particle];
-    }
+    hinges_subtract(hinges, particles->vx, particles->vy, hinges->force);
     solve_hinges(hinges, particles, false);
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        const struct hinge_node *const node = &hinges->node[k];
-        const double by = node->weight * node->inv_mass;
-        particles->vx[node->particle] += by * hinges->force[2 * node->hinge];
-        particles->vy[node->particle] += by * hinges->force[2 * node->hinge + 1];
-    }
+    hinges_push(hinges, hinges->force, particles->vx, particles->vy);
 }
 
 /* The velocity of particle i after a kick of dt without hinges (T-35a), or its acceleration. */
@@ -245,11 +257,7 @@ static void find_targets(struct hinges *hinges, const struct particles *particle
         for (int c = 0; c < 2; c++) target[2 * k + c] = dt > 0 ? to.x[c] : to.a[c];
     }
     if (!(dt > 0)) return;
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        const struct hinge_node *const node = &hinges->node[k];
-        target[2 * node->hinge] -= node->weight * particles->ux[node->particle];
-        target[2 * node->hinge + 1] -= node->weight * particles->uy[node->particle];
-    }
+    hinges_subtract(hinges, particles->ux, particles->uy, target);
     for (int k = 0; k < 2 * hinges->n; k++) target[k] /= dt;
 }
 
@@ -260,16 +268,14 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
     find_targets(hinges, particles, time, dt);
     for (int k = 0; k < hinges->n; k++)
         for (int c = 0; c < 2; c++) hinges->hinge[k].target[c] = hinges->force[2 * k + c];
-    for (int64_t k = 0; k < hinges->n_nodes; k++)
-        value_of(particles, hinges->node[k].particle, dt, resisted, hinges->node[k].value);
+    for (int64_t k = 0; k < hinges->n_nodes; k++) {
+        double value[2];
+        value_of(particles, hinges->node[k].particle, dt, resisted, value);
+        subtract_value(&hinges->node[k], value[0], value[1], hinges->force);
+    }
     solve_hinges(hinges, particles, resisted);
     for (int k = 0; k < 2 * hinges->n && dt > 0; k++) hinges->force[k] /= dt;
-    for (int64_t k = 0; k < hinges->n_nodes; k++) {
-        const struct hinge_node *const node = &hinges->node[k];
-        const double by = node->weight * node->inv_mass;
-        particles->sx[node->particle] += by * hinges->force[2 * node->hinge];
-        particles->sy[node->particle] += by * hinges->force[2 * node->hinge + 1];
-    }
+    hinges_push(hinges, hinges->force, particles->sx, particles->sy);
     hinges->kick = dt;
 }
 
@@ -278,8 +284,7 @@ void hinges_hold(struct hinges *hinges, double *const by[2], double *const force
     for (int k = 0; k < hinges->n; k++)
         memcpy(&hinges->force[2 * k], place_of(hinges, &hinges->hinge[k], time).a,
                2 * sizeof(double));
-    for (int64_t k = 0; k < hinges->n_nodes; k++)
-        for (int c = 0; c < 2; c++) hinges->node[k].value[c] = by[c][hinges->node[k].particle];
+    hinges_subtract(hinges, by[0], by[1], hinges->force);
     solve_hinges(hinges, NULL, false);
     for (int64_t k = 0; k < hinges->n_nodes; k++) {
         const struct hinge_node *const node = &hinges->node[k];
@@ -294,20 +299,17 @@ void hinges_hold(struct hinges *hinges, double *const by[2], double *const force
 double hinges_work(const struct hinges *hinges, const double *vx, const double *vy, double dt,
                    double *on)
 {
-    double work = 0;
+    double work = 0, before[2 * hinges->n]; /* velocities against the motion */
+    memset(before, 0, sizeof before);
+    hinges_subtract(hinges, vx, vy, before);
     for (int k = 0; k < hinges->n; k++) {
         const struct hinge *const h = &hinges->hinge[k];
-        double v[2] = {0, 0};
-        if (h->motion < 0) continue;
-        for (int64_t m = 0; m < hinges->n_nodes; m++) {
-            if (hinges->node[m].hinge != k) continue;
-            v[0] += hinges->node[m].weight * vx[hinges->node[m].particle];
-            v[1] += hinges->node[m].weight * vy[hinges->node[m].particle];
-        }
         double done = 0;
+        if (h->motion < 0) continue;
         for (int c = 0; c < 2; c++) {
-            const double after = hinges->kick > 0 ? h->target[c] : v[c] + dt * h->target[c];
-            done += 0.5 * dt * hinges->force[2 * k + c] * (v[c] + after);
+            const double v = -before[2 * k + c];
+            const double after = hinges->kick > 0 ? h->target[c] : v + dt * h->target[c];
+            done += 0.5 * dt * hinges->force[2 * k + c] * (v + after);
         }
         work += done;
         on[h->body[0]] += done;

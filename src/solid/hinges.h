@@ -20,7 +20,6 @@ struct hinge_node {
     int32_t particle;
     int hinge, end;          /* end: 1 of its body, 2 of the other one */
     double weight, inv_mass; /* negative for the other body; 0 where a clamp holds the particle */
-    double value[2];         /* scratch: velocity or acceleration without the hinges */
 };
 
 struct hinges {
@@ -51,6 +50,12 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
 
 /* The same without dt for accelerations `by`; adds the forces, N/m. */
 void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time);
+
+/* Subtracts a field at the points of the hinges from two items of each. */
+void hinges_subtract(const struct hinges *hinges, const double *x, const double *y, double *from);
+
+/* Adds what forces at the points change in a field of velocities or accelerations. */
+void hinges_push(const struct hinges *hinges, const double *force, double *x, double *y);
 
 /* Displacement that a hinge gives its point at a time, m. */
 void hinges_place(const struct hinges *hinges, int hinge, double time, double to[2]);
