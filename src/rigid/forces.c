@@ -25,11 +25,10 @@ static struct motion_point hinge_at(const struct rigid *rigid, const struct rigi
     return motion_of_point(&m, at[0], at[1]);
 }
 
-/* The arm from the hinge to the centre of mass. */
-static void hinge_arm(const struct rigid_body *body, double angle, double arm[2])
+void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angle, double arm[2])
 {
-    const double *const at = body->fixed->at;
-    const double x = body->centre[0] - at[0], y = body->centre[1] - at[1];
+    const double *const centre = rigid->body[k].centre;
+    const double x = at[0] - centre[0], y = at[1] - centre[1];
     const double c = elementary_cos(angle), s = elementary_sin(angle);
     arm[0] = c * x - s * y;
     arm[1] = s * x + c * y;
@@ -43,8 +42,8 @@ static struct freedom freedom_of(const struct rigid *rigid, int k, double time)
     if (body->fixed) {
         const struct motion_point at = hinge_at(rigid, body, time);
         double arm[2];
-        hinge_arm(body, rigid->state[k].x[2], arm);
-        f.B[0][0] = -arm[1], f.B[1][0] = arm[0], f.B[2][0] = 1;
+        rigid_arm(rigid, k, body->fixed->at, rigid->state[k].x[2], arm);
+        f.B[0][0] = arm[1], f.B[1][0] = -arm[0], f.B[2][0] = 1;
         memcpy(f.base, at.v, sizeof at.v);
         f.n = 1;
         return f;
@@ -65,8 +64,8 @@ void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[
     const struct rigid_body *const body = &rigid->body[k];
     const struct motion_point at = hinge_at(rigid, body, time);
     double arm[2];
-    hinge_arm(body, x[2], arm);
-    for (int c = 0; c < 2; c++) x[c] = at.x[c] + arm[c] - body->centre[c];
+    rigid_arm(rigid, k, body->fixed->at, x[2], arm);
+    for (int c = 0; c < 2; c++) x[c] = at.x[c] - arm[c] - body->centre[c];
 }
 
 void rigid_hold(struct rigid *rigid, int k, double time)
@@ -129,10 +128,8 @@ void rigid_solve(struct rigid *rigid, int k, double end, double kick)
     for (int c = 0; c < 3; c++) {
         right[c] = eq->impulse[c] - kick * body->mass[c] * s->a[c];
         for (int e = 0; e < 3; e++) {
-            const double mass = eq->fluid[c][e] + (c == e ? body->mass[c] : 0);
-            A[c][e] = mass + eq->springs[c][e];
-            right[c] += mass * (s->v[e] + kick * s->a[e] - f.base[e]) +
-                        eq->springs[c][e] * (s->v[e] - f.base[e]);
+            A[c][e] = eq->fluid[c][e] + (c == e ? body->mass[c] : 0);
+            right[c] += A[c][e] * (s->v[e] + kick * s->a[e] - f.base[e]);
         }
     }
     for (int i = 0; i < f.n; i++) {
@@ -161,13 +158,19 @@ void rigid_find_reaction(struct rigid *rigid, int k, double kick)
     const bool free = !body->given->hinge.n && along[0] == 0 && along[1] == 0 && body->given->turns;
     for (int c = 0; c < 3; c++) {
         double needed = body->mass[c] * eq->change[c] - eq->impulse[c];
-        for (int e = 0; e < 3; e++)
-            needed += eq->fluid[c][e] * eq->faster[e] + eq->springs[c][e] * eq->change[e];
+        for (int e = 0; e < 3; e++) needed += eq->fluid[c][e] * eq->faster[e];
         rigid->state[k].reaction[c] = free ? 0 : needed / kick;
     }
 }
 
-/* --- impulses between two bodies --- */
+/* --- rows --- */
+
+struct rigid_row *rigid_add_row(struct rigid *rigid, enum rigid_law law, const int body[2])
+{
+    struct rigid_row *const row = &rigid->row[rigid->n_rows++];
+    *row = (struct rigid_row){.law = law, .body = {body[0], body[1]}};
+    return row;
+}
 
 /* An impact is over before the fluid resists. */
 static const double (*yields_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
@@ -175,54 +178,57 @@ static const double (*yields_in(const struct rigid_equations *eq, enum rigid_sta
     return stage == RIGID_IMPACT ? eq->alone : eq->yields;
 }
 
-double rigid_row_change(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+double rigid_row_change(const struct rigid *rigid, const struct rigid_row *row,
+                        enum rigid_stage stage)
 {
     double rate = 0;
     for (int side = 0; side < 2; side++)
-        for (int c = 0; c < 3 && row.body[side] >= 0; c++)
-            rate += row.along[side][c] * rigid->eq[row.body[side]].touch[stage][c];
+        for (int c = 0; c < 3 && row->body[side] >= 0; c++)
+            rate += row->along[side][c] * rigid->eq[row->body[side]].touch[stage][c];
     return rate;
 }
 
-double rigid_row_rate(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,
+                      enum rigid_stage stage)
 {
     double rate = 0;
     for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        const struct rigid_equations *const eq = &rigid->eq[row.body[side]];
+        if (row->body[side] < 0) continue;
+        const struct rigid_equations *const eq = &rigid->eq[row->body[side]];
         for (int c = 0; c < 3; c++) {
             const double impact = eq->before[c] + (stage == RIGID_STEP ? eq->touch[0][c] : 0);
             const double start =
                 stage == RIGID_PUSH ? 0 : impact + (stage == RIGID_STEP ? eq->change[c] : 0);
-            rate += row.along[side][c] * (start + eq->touch[stage][c]);
+            rate += row->along[side][c] * (start + eq->touch[stage][c]);
         }
     }
     return rate;
 }
 
-double rigid_row_yields(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage)
+double rigid_row_yields(const struct rigid *rigid, const struct rigid_row *row,
+                        enum rigid_stage stage)
 {
     double sum = 0;
     for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        const double(*const yields)[3] = yields_in(&rigid->eq[row.body[side]], stage);
+        if (row->body[side] < 0) continue;
+        const double(*const yields)[3] = yields_in(&rigid->eq[row->body[side]], stage);
         for (int c = 0; c < 3; c++)
             for (int e = 0; e < 3; e++)
-                sum += row.along[side][c] * yields[c][e] * row.along[side][e];
+                sum += row->along[side][c] * yields[c][e] * row->along[side][e];
     }
     return sum;
 }
 
-void rigid_row_push(struct rigid *rigid, struct rigid_row row, enum rigid_stage stage,
+void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid_stage stage,
                     double impulse)
 {
     for (int side = 0; side < 2; side++) {
-        if (row.body[side] < 0) continue;
-        struct rigid_equations *const eq = &rigid->eq[row.body[side]];
+        if (row->body[side] < 0) continue;
+        struct rigid_equations *const eq = &rigid->eq[row->body[side]];
         const double(*const yields)[3] = yields_in(eq, stage);
         for (int c = 0; c < 3; c++)
             for (int e = 0; e < 3; e++)
-                eq->touch[stage][c] += yields[c][e] * row.along[side][e] * impulse;
+                eq->touch[stage][c] += yields[c][e] * row->along[side][e] * impulse;
     }
 }
 
@@ -272,14 +278,10 @@ static struct spring_end end_at(const struct rigid *rigid, const struct rigid_sp
     const int k = spring->body[end];
     struct spring_end e = {.x = {at[0], at[1]}};
     if (k < 0) return e;
-    const struct rigid_body *const body = &rigid->body[k];
     const struct rigid_state *const s = &rigid->state[k];
-    const double c = elementary_cos(s->x[2]), n = elementary_sin(s->x[2]);
-    const double x = at[0] - body->centre[0], y = at[1] - body->centre[1];
-    e.arm[0] = c * x - n * y;
-    e.arm[1] = n * x + c * y;
+    rigid_arm(rigid, k, at, s->x[2], e.arm);
     for (int m = 0; m < 2; m++) {
-        e.x[m] = body->centre[m] + s->x[m] + e.arm[m];
+        e.x[m] = rigid->body[k].centre[m] + s->x[m] + e.arm[m];
         e.v[m] = s->v[m] + (m ? e.arm[0] : -e.arm[1]) * s->v[2];
     }
     return e;
@@ -310,33 +312,23 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
     return now;
 }
 
-void rigid_find_loads(struct rigid *rigid)
+void rigid_add_springs(struct rigid *rigid)
 {
-    for (int k = 0; k < rigid->n; k++) {
-        struct rigid_body *const body = &rigid->body[k];
-        memset(body->load, 0, sizeof body->load);
-        memset(body->stiffness, 0, sizeof body->stiffness);
-        memset(body->damping, 0, sizeof body->damping);
-    }
     for (int k = 0; k < rigid->n_springs; k++) {
-        struct rigid_spring *const spring = &rigid->spring[k];
-        memset(spring->load, 0, sizeof spring->load);
+        const struct rigid_spring *const spring = &rigid->spring[k];
         const struct spring_now now = spring_now(rigid, spring);
-        for (int end = 0; end < 2 && !now.slack; end++) {
-            if (spring->body[end] < 0) continue;
-            struct rigid_body *const body = &rigid->body[spring->body[end]];
+        if (spring->given->slack && now.longer <= 0) continue;
+        struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
+        row->stiffness = spring->given->stiffness;
+        row->damping = spring->given->damping;
+        row->shorter = -now.longer;
+        row->later = spring->body[1] < 0 ? 0.25 : 0;
+        row->pulls_only = spring->given->slack;
+        for (int end = 0; end < 2; end++) {
             const double *const arm = now.end[end].arm, sign = end ? -1 : 1;
-            const double to[3] = {now.along[0], now.along[1],
-                                  arm[0] * now.along[1] - arm[1] * now.along[0]};
-            const bool fixed = spring->body[1] < 0; /* else both ends would have to move at once */
-            for (int c = 0; c < 3; c++) {
-                body->load[c] += sign * now.tension * to[c];
-                if (end) spring->load[c] = -now.tension * to[c];
-                for (int e = 0; e < 3 && fixed; e++) {
-                    body->stiffness[c][e] += spring->given->stiffness * to[c] * to[e];
-                    body->damping[c][e] += spring->given->damping * to[c] * to[e];
-                }
-            }
+            row->along[end][0] = sign * now.along[0];
+            row->along[end][1] = sign * now.along[1];
+            row->along[end][2] = sign * (arm[0] * now.along[1] - arm[1] * now.along[0]);
         }
     }
 }
@@ -360,19 +352,6 @@ double rigid_spring_energy(const struct rigid *rigid, int k)
         sum += slack ? 0 : 0.5 * rigid->spring[j].given->stiffness * square(now.longer);
     }
     return sum;
-}
-
-void rigid_pass_work(struct rigid *rigid, double kick)
-{
-    for (int j = 0; j < rigid->n_springs; j++) {
-        const struct rigid_spring *const spring = &rigid->spring[j];
-        if (spring->body[1] < 0) continue;
-        struct rigid_body *const body = &rigid->body[spring->body[1]];
-        double work = 0;
-        for (int c = 0; c < 3; c++) work += kick * spring->load[c] * body->mean[c];
-        body->passed += work;
-        rigid->body[spring->body[0]].passed -= work;
-    }
 }
 
 double rigid_hinge_power(const struct rigid *rigid, int k, double time)

@@ -7,13 +7,8 @@
 
 enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* The loads of springs on the bodies where they are, and the derivatives of these. */
-void rigid_find_loads(struct rigid *rigid);
-
-/* Energy of the springs whose first end a body has, J/m; and after a step the work that they pass
- * on to the second one. */
+/* Energy of the springs whose first end a body has, J/m. */
 double rigid_spring_energy(const struct rigid *rigid, int k);
-void rigid_pass_work(struct rigid *rigid, double kick);
 
 /* Power of the motion of a wall on the body that is hinged to it, W/m. */
 double rigid_hinge_power(const struct rigid *rigid, int k, double time);
@@ -28,10 +23,10 @@ void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[
  * and of the places. */
 enum rigid_stage { RIGID_IMPACT, RIGID_STEP, RIGID_PUSH, RIGID_STAGES };
 
-/* T-96 of a body: what acts on it for the step, the masses of fluid and springs that resist, and
- * the solution. */
+/* T-96 of a body: what acts on it for the step, the mass of fluid that resists, and the solution.
+ */
 struct rigid_equations {
-    double impulse[3], fluid[3][3], springs[3][3];
+    double impulse[3], fluid[3][3];
     double from_fluid[3];             /* the fluid's part of the impulse */
     double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
     double change[3], faster[3];      /* of the velocity before, and delta */
@@ -47,55 +42,83 @@ void rigid_find_reaction(struct rigid *rigid, int k, double kick);
 /* Of the masses of a body alone, as it may move at a time: eq->alone. */
 void rigid_find_alone(struct rigid *rigid, int k, double time);
 
-/* --- impulses between two bodies --- */
+/* --- relations of a body to another one, to a wall or to a place --- */
 
 /* A step, the time for which its rates act, and that for which its last velocity moves bodies. */
 struct rigid_step {
     double dt, kick, late;
 };
 
-/* Two bodies, -1: none, and what a unit of an impulse between them is to each. */
+/* What decides on the impulse of a row: surfaces do not come nearer than their gap; friction stops
+ * as far as it can; a spring with a damper; points stay together. */
+enum rigid_law { RIGID_GAP, RIGID_FRICTION, RIGID_SPRING, RIGID_JOINT };
+
 struct rigid_row {
-    const int *body;
-    const double (*along)[3];
+    enum rigid_law law;
+    int body[2];        /* -1: a wall or place, or none */
+    double along[2][3]; /* what a unit of impulse is to each body: force and moment */
+    double other_rate;  /* the part of what is no body in the relative velocity, m/s */
+    double start_rate;  /* relative velocity before the step */
+    double impulse[RIGID_STAGES];
+    double gap, restitution;   /* m, 1 */
+    double leave;              /* least speed at which a gap opens after an impact, m/s */
+    double friction;           /* Coulomb's coefficient with the gap of the row before, or N */
+    double stiffness, damping; /* N/m^2 and N s/m^2, or N and N s */
+    double shorter;            /* of a spring, m, or its angle */
+    double later;    /* part of a step in which its change of the rate moves it: 1/4, explicit 0 */
+    bool pulls_only; /* a spring that does not push */
+    const struct rigid_hinge *hinge; /* NULL: none */
+    int component;                   /* of it: x, y or the angle */
 };
+
+/* A row for the coming step, which its caller fills in. */
+struct rigid_row *rigid_add_row(struct rigid *rigid, enum rigid_law law, const int body[2]);
 
 /* Relative velocity along a row after a stage; what the stage has changed in it; and what a unit of
  * impulse adds. */
-double rigid_row_rate(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage);
-double rigid_row_change(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage);
-double rigid_row_yields(const struct rigid *rigid, struct rigid_row row, enum rigid_stage stage);
-void rigid_row_push(struct rigid *rigid, struct rigid_row row, enum rigid_stage stage,
+double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,
+                      enum rigid_stage stage);
+double rigid_row_change(const struct rigid *rigid, const struct rigid_row *row,
+                        enum rigid_stage stage);
+double rigid_row_yields(const struct rigid *rigid, const struct rigid_row *row,
+                        enum rigid_stage stage);
+void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid_stage stage,
                     double impulse);
 
 /* Component c of the displacement that the velocity after the step gives a body. */
 double rigid_way(const struct rigid *rigid, int k, int c, double late);
 
+/* From the centre of mass to a point of a body, where the body is. */
+void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angle, double arm[2]);
+
+void rigid_add_springs(struct rigid *rigid);
+
 /* --- hinges between bodies, and moments in hinges (rigid/hinges.c) --- */
 
 enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
-/* Before the impulses of a step, with walls where they are at a time. */
-void rigid_hinges_begin(struct rigid *rigid, double time);
-/* Changes each impulse once; returns the largest change of a velocity. */
-double rigid_hinges_relax(struct rigid *rigid, enum rigid_stage stage,
-                          const struct rigid_step *step);
-/* Adds the impulses to `eq` of the bodies for which they are no reaction. */
-void rigid_hinges_load(struct rigid *rigid);
+/* With walls where they are at a time. */
+void rigid_add_hinges(struct rigid *rigid, double time);
+/* T-99a: what is left of the distance of both places, or of the driven angle, after the step, as a
+ * velocity. */
+double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late);
 /* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
 void rigid_hinges_hold(struct rigid *rigid, double time, double kick);
-void rigid_hinges_work(struct rigid *rigid);
 /* Energy of the springs in the hinges that a body has. */
 double rigid_hinge_energy(const struct rigid *rigid, int k);
 
 /* --- contact (rigid/contact.c) --- */
 
 enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+/* Two rows for each place that may touch, with walls where they are at a time. */
+void rigid_add_touches(struct rigid *rigid, double time);
 
-/* After the solution of all bodies for a step, with walls where they are at a time: the impulses
- * of contact and hinges, added to `eq`, and what they change there. */
-void rigid_touch(struct rigid *rigid, double time, const struct rigid_step *step);
+/* --- the solution for all rows (rigid/impulses.c) --- */
+
+/* After the solution of all bodies for a step, with walls where they are at a time: all impulses,
+ * added to `eq`, and what they change there. */
+void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_step *step);
 
 /* Their work in the last step, of walls that move and of bodies on each other. */
-void rigid_contact_work(struct rigid *rigid);
+void rigid_impulse_work(struct rigid *rigid);
 
 #endif

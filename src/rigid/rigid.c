@@ -31,10 +31,12 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
             .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
     }
     TRY(rigid_hinges_create(rigid, a, d));
+    TRY(rigid_springs_create(rigid, a, d));
     for (int k = 0; k < rigid->n; k++) rigid_hold(rigid, k, 0);
-    rigid_hinges_hold(rigid, 0, 0);
     TRY(rigid_contact_create(rigid, a, d));
-    return rigid_springs_create(rigid, a, d);
+    rigid_add_hinges(rigid, 0);
+    rigid_hinges_hold(rigid, 0, 0);
+    return ERR_OK;
 }
 
 /* What a value with a rate is at the end of a step of dt. */
@@ -132,7 +134,7 @@ static void publish_free(const struct rigid *rigid, int k, double kick)
     now->angular_acceleration = change[2] / kick;
 }
 
-static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
+static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now,
                          double kick)
 {
     const struct rigid_body *const body = &rigid->body[k];
@@ -147,12 +149,8 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
         const double heavy = c < 2 && body->given->gravity ? body->mass[c] * gravity[c] : 0;
         eq->before[c] = s->v[c];
         eq->from_fluid[c] = kick * force[c] - part * s->impulse[c];
-        eq->impulse[c] = eq->from_fluid[c] + kick * (heavy + body->load[c]);
-        for (int e = 0; e < 3; e++) {
-            eq->fluid[c][e] = exchange * impedance[c][e];
-            eq->springs[c][e] =
-                0.25 * kick * dt * body->stiffness[c][e] + 0.5 * kick * body->damping[c][e];
-        }
+        eq->impulse[c] = eq->from_fluid[c] + kick * heavy;
+        for (int e = 0; e < 3; e++) eq->fluid[c][e] = exchange * impedance[c][e];
     }
 }
 
@@ -227,12 +225,11 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
     rigid->end = time + dt;
     for (int k = 0; k < rigid->n && rigid->centred; k++)
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
-    rigid_find_loads(rigid);
     for (int k = 0; k < rigid->n; k++) {
         struct rigid_body *const body = &rigid->body[k];
         memset(body->pushed, 0, sizeof body->pushed);
         memset(body->moved, 0, sizeof body->moved);
-        prepare_body(rigid, k, gravity, now, dt, kick);
+        prepare_body(rigid, k, gravity, now, kick);
         rigid_solve(rigid, k, rigid->end, kick);
         publish_free(rigid, k, kick);
     }
@@ -243,13 +240,11 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
     const struct rigid_step step = {dt, kick, .late = rigid->centred ? 0.5 * dt : dt};
     const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) add_pushed(rigid, k);
-    rigid_touch(rigid, now, &step);
+    rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, &step);
     if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);
     for (int k = 0; k < rigid->n; k++) end_body(rigid, k, kick);
-    rigid_hinges_work(rigid);
-    rigid_pass_work(rigid, kick);
-    rigid_contact_work(rigid);
+    rigid_impulse_work(rigid);
 }
 
 /* --- contact with solids --- */

@@ -20,14 +20,12 @@ enum { RIGID_NUMBERS = sizeof(struct rigid_state) / sizeof(double) };
 
 struct rigid_body {
     const struct scene_rigid *given;
-    const struct moving_wall *wall;        /* its particles */
-    double mass[3];                        /* kg/m, kg/m, kg m */
-    double centre[2];                      /* of mass at the start, m */
-    const struct hinge_point *fixed;       /* a hinge in place or on a wall; NULL: none */
-    int hinge_motion;                      /* of this wall; -1: in place */
-    double load[3];                        /* of springs in the coming step, N/m and N */
-    double stiffness[3][3], damping[3][3]; /* of springs to a place */
-    double mean[3];                        /* velocity over the last step, m/s and 1/s */
+    const struct moving_wall *wall;  /* its particles */
+    double mass[3];                  /* kg/m, kg/m, kg m */
+    double centre[2];                /* of mass at the start, m */
+    const struct hinge_point *fixed; /* a hinge in place or on a wall; NULL: none */
+    int hinge_motion;                /* of this wall; -1: in place */
+    double mean[3];                  /* velocity over the last step, m/s and 1/s */
     /* Of contact with solids: the force now; its impulse and what it moves in the coming step. */
     double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
@@ -38,8 +36,7 @@ struct rigid_body {
 struct rigid_spring {
     const struct scene_spring *given;
     int body[2];
-    double length;  /* without force, m */
-    double load[3]; /* on the second body in the coming step, N/m and N */
+    double length; /* without force, m */
 };
 
 struct rigid {
@@ -52,6 +49,8 @@ struct rigid {
     struct rigid_contact *contact;
     int n_hinges;
     struct rigid_hinge *hinge; /* of all bodies, in their order */
+    int n_rows;
+    struct rigid_row *row; /* of a step: contact, hinges and springs (rigid/forces.h) */
     const struct scene *scene;
     struct particles *walls;
     double impedance; /* rho0 c0; 0: no fluid */
