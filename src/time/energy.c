@@ -95,25 +95,21 @@ static double add_solids(struct simulation *sim, struct energies *solid)
     return lowest;
 }
 
-static struct energies energies_of_body(const struct body_energy e)
+/* Rigid bodies and beams, whose sections follow those of the other walls. */
+static void add_bodies(const struct simulation *sim, struct energies *body)
 {
-    return (struct energies){.row = {.kinetic = e.kinetic,
-                                     .potential = e.potential,
-                                     .elastic = e.elastic,
-                                     .momentum_x = e.momentum[0],
-                                     .momentum_y = e.momentum[1],
-                                     .mass = e.mass},
-                             .waiting = e.waiting};
-}
-
-/* Rigid bodies and beams. */
-static void add_bodies(const struct simulation *sim, struct energies *wall)
-{
-    for (int k = 0; k < sim->rigid.n; k++)
-        wall[scene_rigid_wall(sim->scene, k)] =
-            energies_of_body(rigid_energy(&sim->rigid, k, sim->state.dt));
-    for (int k = 0; k < sim->beams.n; k++)
-        wall[scene_beam_wall(sim->scene, k)] = energies_of_body(beam_energy(&sim->beams, k));
+    for (int k = 0; k < sim->rigid.n + sim->beams.n; k++) {
+        const struct body_energy e = k < sim->rigid.n ? rigid_energy(&sim->rigid, k, sim->state.dt)
+                                                      : beam_energy(&sim->beams, k - sim->rigid.n);
+        struct ledger *const row = &body[k].row;
+        row->kinetic = e.kinetic;
+        row->potential = e.potential;
+        row->elastic = e.elastic;
+        row->momentum_x = e.momentum[0];
+        row->momentum_y = e.momentum[1];
+        row->mass = e.mass;
+        body[k].waiting = e.waiting;
+    }
 }
 
 /* Returns the smallest det F. */
@@ -121,7 +117,7 @@ static double find_energies(struct simulation *sim, struct energies of[ENERGY_EN
 {
     memset(of, 0, ENERGY_ENTRIES * sizeof *of);
     if (sim->effects & FX_FLUID) add_fluid(sim, of);
-    if (sim->effects & (FX_RIGID | FX_BEAM)) add_bodies(sim, &of[energy_entry(KIND_WALL, 0)]);
+    add_bodies(sim, &of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, 0))]);
     return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
 }
 
@@ -193,25 +189,19 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
     entry_of(sim, kind, section)->noted += work;
 }
 
-/* Work in dt by the last evaluation: on the fluid by a program, by gravity beyond its value at
- * t = 0, by the constraint at open boundaries and by moving walls; on structures by the fluid's
- * force, at the velocity that the fluid uses. */
+/* Work in dt by the last evaluation: on the fluid by a program, by the constraint at open
+ * boundaries and by moving walls; on structures by the fluid's force, at the velocity that the
+ * fluid uses. */
 void energy_of_evaluation(struct simulation *sim, double dt)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid =
                                                                       &sim->kind[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_FLUID];
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double gx = k->gravity[0] - sim->scene->top.gravity[0],
-                 gy = k->gravity[1] - sim->scene->top.gravity[1];
-    if (sim->gravity_varies || external->at)
-        for (int64_t i = 0; i < fluid->n; i++) {
-            const double ax = gx + (external->at ? external->ax[i] : 0),
-                         ay = gy + (external->at ? external->ay[i] : 0);
-            entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
-                dt * particle_mass(k, fluid, i) * (ax * fluid->vx[i] + ay * fluid->vy[i]);
-        }
+    for (int64_t i = 0; i < fluid->n && external->at; i++)
+        entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
+            dt * particle_mass(&sim->fluid.k, fluid, i) *
+            (external->ax[i] * fluid->vx[i] + external->ay[i] * fluid->vy[i]);
     for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
         entry_of(sim, KIND_FLUID, 0)->supplied += dt * sim->open.rate[b].power;
     for (int b = 0; b < sim->wall_motion.n; b++) {
@@ -270,9 +260,12 @@ static double gravity_work(struct simulation *sim)
     for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - sim->scene->top.gravity[c]);
     const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
                                                                       &sim->kind[KIND_SOLID];
-    for (int64_t i = 0; i < fluid->n; i++)
-        work +=
-            particle_mass(&sim->fluid.k, fluid, i) * (g[0] * fluid->vx[i] + g[1] * fluid->vy[i]);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        const double m = particle_mass(&sim->fluid.k, fluid, i);
+        const double done = m * (g[0] * fluid->vx[i] + g[1] * fluid->vy[i]);
+        energy_supply(sim, KIND_FLUID, fluid->body[i], done);
+        work += done;
+    }
     for (int64_t i = 0; i < particles->n; i++) {
         const int body = particles->body[i];
         const double done = sim->scene->solid[body].gravity * particles->free[i] *
@@ -429,15 +422,6 @@ void energy_begin(struct simulation *sim)
 
 /* --- the test for gains --- */
 
-/* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it the
- * energy at the start from rest says nothing. */
-static double driven_energy(const struct simulation *sim)
-{
-    if (!(sim->effects & FX_OPEN)) return 0;
-    return 0.5 * sim->fluid.k.mass * (double)sim->kind[KIND_FLUID].n *
-           square(0.1 * sim->fluid.k.c0);
-}
-
 /* The term of a region that has gained the largest fraction. */
 static struct energy_gain gain_of_region(struct energy_account *account, int entry,
                                          const struct energies *region, double driven)
@@ -472,6 +456,10 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
     struct energy_gain worst = {.entry = -1};
+    /* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it
+     * the energy at the start from rest says nothing. */
+    const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
+    const double driven = sim->effects & FX_OPEN ? flow * (double)sim->kind[KIND_FLUID].n : 0;
     find_all_energies(sim, of);
     find_terms(sim, of);
     join_neighbours(sim);
@@ -483,7 +471,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     }
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         if (region_of(account, k) != k) continue;
-        const struct energy_gain gain = gain_of_region(account, k, &sum[k], driven_energy(sim));
+        const struct energy_gain gain = gain_of_region(account, k, &sum[k], driven);
         if (gain.share > worst.share) worst = gain;
     }
     return worst;

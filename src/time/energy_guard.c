@@ -49,62 +49,38 @@ static void write_remedy(const struct simulation *sim, enum energy_term term, ch
              term == TERM_SOLID && paper ? " or law = neo_hookean or svk" : "");
 }
 
-/* The names of a region's sections, "[fluid left], [solid plate]"; returns their number. */
-enum { REGION_NAME = 160 };
-static int write_region_name(const struct simulation *sim, int region, char text[REGION_NAME])
+/* What has the most speed in a region: "[solid gate] at (0.1, 0.2) m", or the region's first
+ * section where it has no particles. */
+enum { PLACE = TITLE_TEXT + 64 };
+static void write_fastest(const struct simulation *sim, int region, char text[PLACE])
 {
     static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
-    size_t used = 0;
-    int names = 0;
-    text[0] = '\0';
-    for (int k = 0; k < ENERGY_ENTRIES && used < REGION_NAME; k++) {
-        if (sim->state.energy.entry[k].region != region) continue;
-        const struct scene_section_common *const common =
-            section_at(sim->scene, id[k / SCENE_MAX_SECTIONS], k % SCENE_MAX_SECTIONS);
-        used += (size_t)snprintf(text + used, REGION_NAME - used, "%s[%s %s]", used ? ", " : "",
-                                 section_table[common->section].word, common->name);
-        names++;
-    }
-    return names;
-}
-
-/* The fastest particle of a region; false if none moves. */
-static bool find_fastest(const struct simulation *sim, int region, double at[2])
-{
-    double top = 0;
+    double top = -1, x = 0, y = 0;
+    int fastest = region;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct particles *const particles = &sim->kind[kind];
-        for (int64_t i = 0; i < particles->n && kind != KIND_WALL; i++) {
+        for (int64_t i = 0; i < particles->n; i++) {
             const double speed2 = square(particles->vx[i]) + square(particles->vy[i]);
-            const int entry = energy_entry((enum kind)kind, particles->body[i]);
-            if (!(speed2 > top) || sim->state.energy.entry[entry].region != region) continue;
+            const int own = energy_entry((enum kind)kind, particles->body[i]);
+            if (!(speed2 > top) || sim->state.energy.entry[own].region != region) continue;
             top = speed2;
-            at[0] = particles->x[i];
-            at[1] = particles->y[i];
+            fastest = own;
+            x = particles->x[i];
+            y = particles->y[i];
         }
     }
-    return top > 0;
-}
-
-static void write_gain(const struct simulation *sim, const struct energy_gain *g, char text[400])
-{
-    char name[REGION_NAME];
-    double at[2] = {0, 0};
-    const bool one = write_region_name(sim, g->entry, name) == 1;
-    const int used = snprintf(text, 400,
-                              "%s: %s %s gained %.3g J/m of energy that nothing supplied "
-                              "(available: %.3g J/m), in %s",
-                              time_text(sim).text, name, one ? "has" : "have", g->energy,
-                              g->available, sources[g->term]);
-    if (find_fastest(sim, g->entry, at) && used > 0 && used < 400)
-        snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
+    section_title(section_at(sim->scene, id[fastest / SCENE_MAX_SECTIONS],
+                             fastest % SCENE_MAX_SECTIONS),
+                  text);
+    const size_t used = strlen(text);
+    if (top >= 0) snprintf(text + used, PLACE - used, " at (%.4g, %.4g) m", x, y);
 }
 
 enum err energy_guard(struct simulation *sim, struct diag *d)
 {
     const struct energy_gain g = sim->gain;
     const double time = sim->state.time;
-    char text[400], remedy[REMEDY];
+    char place[PLACE], text[600], remedy[REMEDY];
     if (!sim->gain.found) return ERR_OK;
     sim->gain.found = false;
     const double share = g.share;
@@ -115,7 +91,11 @@ enum err energy_guard(struct simulation *sim, struct diag *d)
     sim->state.gain = max2(sim->state.gain, g.energy);
     sim->state.gain_share = max2(sim->state.gain_share, share);
     if (share <= GAIN_WARNING) return ERR_OK;
-    write_gain(sim, &g, text);
+    write_fastest(sim, g.entry, place);
+    snprintf(text, sizeof text,
+             "%s: %.3g J/m of energy that nothing supplied (available: %.3g J/m) have been gained "
+             "in %s; fastest: %s",
+             time_text(sim).text, g.energy, g.available, sources[g.term], place);
     write_remedy(sim, g.term, remedy);
     /* A gain at the interface may be less than what the rest loses. */
     if ((g.term == TERM_INTERFACE ? g.all : share) > GAIN_LIMIT)

@@ -77,8 +77,7 @@ static void test_gain_beside_a_collapse(void)
     TEST_ASSERT_TRUE(simulation_ledger(&rig.sim).dissipated > 0); /* of both together */
     TEST_ASSERT_EQUAL_INT(ERR_OK, go_on(rig.sim.state.time + 5e-3));
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[fluid left], [fluid right], [solid plate] have"),
-                                 warning);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "fastest: [solid plate] at ("), warning);
     TEST_ASSERT_NULL(strstr(warning, "column"));
 }
 
@@ -159,7 +158,7 @@ static void test_gain_after_a_loss(void)
         "clamp = box 0, -0.32, 0.02, 0.02\ndensity = 1000\nyoung = 30 kPa\npoisson = 0.3\n";
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(strip, NULL, 0.7));
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[solid strip] has gained"), warning);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "fastest: [solid strip] at ("), warning);
     TEST_ASSERT_TRUE(simulation_ledger(&rig.sim).dissipated > 0);
 }
 

@@ -274,10 +274,9 @@ static void test_energy_that_is_gained(void)
     TEST_ASSERT_EQUAL_INT(0, warnings);
     TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.002));
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[fluid water], [solid gate] have gained"),
-                                 warning);
     TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(warning, "in the exchange between fluid and structure; fastest at ("), warning);
+        strstr(warning, "in the exchange between fluid and structure; fastest: [solid gate] at ("),
+        warning);
     assert_near(1e-4, 0.011, rig.sim.state.gain_share, "largest share");
     TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.5));
     TEST_ASSERT_EQUAL_INT(1, warnings);
