@@ -56,8 +56,8 @@ static void warn_of_damping(const struct simulation *sim, struct diag *d)
         const struct scene_solid *const body = &sim->scene->solid[k];
         if (!(body->damping_time > 0)) continue;
         warn_at(d, sim->scene, scene_line(sim->scene, SECTION_solid, k, "damping_time"),
-                "[solid %s] damping_time = %g s makes the steps of the solid %.3g times "
-                "shorter; a shorter damping_time allows longer steps",
+                "[solid %s] damping_time = %g s makes the steps of the solid %.3g times shorter; a "
+                "shorter damping_time allows longer steps",
                 body->common.name, body->damping_time, free / sim->solid.stable_step);
     }
 }

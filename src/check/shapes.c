@@ -189,8 +189,8 @@ static void warn_of_thin(struct check *check, const struct region *region, const
     if (scene->n_fluid == 0 || thick >= reach || (wall && !is_between(check, wall))) return;
     if (scene->numerics.sides == SIDES_ONE && !directly) return;
     warn_at(check->diag, check->scene, wall ? wall->line : region->line,
-            "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts "
-            "with the fluid behind it; %s prevents that",
+            "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts with "
+            "the fluid behind it; %s prevents that",
             region->word, region->name, thick, 2 * scene->h,
             !directly ? "numerics.sides = one"
             : wall    ? "a thicker wall or a finer dp"
@@ -202,8 +202,8 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
     const double across = geometry_rows_across(region), dp = region->lattice.dp;
     if (across < 4)
         warn_at(check->diag, check->scene, region->line,
-                "[solid %s] is only %.0f particles thick at dp = %g m, so its bending will "
-                "be inaccurate; use a finer dp, for 4 particles or more",
+                "[solid %s] is only %.0f particles thick at dp = %g m, so its bending will be "
+                "inaccurate; use a finer dp, for 4 particles or more",
                 region->name, across, dp);
     if (scene_is_bonded(check->scene, region->body)) return;
     /* At the default h/dp a warning here would repeat the one on two particles across. */
@@ -273,9 +273,8 @@ static void warn_of_cuts(struct check *check, const struct region *region)
                 region->minus.shape[k] == shape && removes_any(region, &region->minus.item[k]);
         if (removes) continue;
         warn_at(check->diag, check->scene, region->minus_list->item[shape].line,
-                "`minus` removes no particle of [%s %s], because it is narrower than dp = %g "
-                "m or lies outside, so the opening is closed; enlarge or move it, or use a "
-                "smaller dp",
+                "`minus` removes no particle of [%s %s], because it is narrower than dp = %g m or "
+                "lies outside, so the opening is closed; enlarge or move it, or use a smaller dp",
                 region->word, region->name, region->lattice.dp);
     }
 }

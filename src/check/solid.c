@@ -81,9 +81,9 @@ static enum err warn_of_loose_bodies(struct check *check)
                 ? "a [load] acts on it, so it is driven away unless something stops it"
                 : NULL;
         if (why)
-            warn_at(check->diag, check->scene, b->common.line,
-                    "[solid %s] has no clamp, and %s; give it a `clamp` if it is fixed%s",
-                    b->common.name, why, falls ? ", or gravity = off" : "");
+            warn_of(check, &b->common, NULL,
+                    "has no clamp, and %s; give it a `clamp` if it is fixed%s", why,
+                    falls ? ", or gravity = off" : "");
     }
     return ERR_OK;
 }
@@ -128,8 +128,8 @@ static void warn_of_other_motions(struct check *check, int body)
         const struct scene_wall *const w = &check->scene->wall[wall];
         if (strcmp(b->clamp_motion, w->motion) == 0 || !is_clamped_to(check, body, wall)) continue;
         warn_at(check->diag, check->scene, b->common.line,
-                "the clamp of [solid %s] %s%s but touches [wall %s], which %s%s, so "
-                "the two will overlap or part; `%s = %s` moves both",
+                "the clamp of [solid %s] %s%s but touches [wall %s], which %s%s, so the two will "
+                "overlap or part; `%s = %s` moves both",
                 b->common.name, b->clamp_motion[0] ? "has the motion " : "is at rest",
                 b->clamp_motion, w->common.name, w->motion[0] ? "moves" : "is at rest",
                 w->motion[0] && b->clamp_motion[0] ? " otherwise" : "",
@@ -147,10 +147,10 @@ static void warn_of_material(struct check *check, int body)
     const struct scene *const scene = check->scene;
     const struct scene_solid *const b = &scene->solid[body];
     if (b->density < LIGHTEST_FOAM)
-        warn_at(check->diag, check->scene, b->common.line,
-                "[solid %s] has a density of %.4g kg/m^3, less than any foam, so it has "
-                "hardly any inertia; rubber has about 1100 kg/m^3",
-                b->common.name, b->density);
+        warn_of(check, &b->common, NULL,
+                "has a density of %.4g kg/m^3, less than any foam, so it has hardly any inertia; "
+                "rubber has about 1100 kg/m^3",
+                b->density);
     /* Its own weight, or the water beside it. */
     double water = 0;
     for (int f = 0; f < scene->n_fluid; f++)
@@ -160,20 +160,20 @@ static void warn_of_material(struct check *check, int body)
     const double weight = extent_along(scene, KIND_SOLID, body, scene->top.gravity);
     const double own = b->gravity ? b->density * weight : 0, pressure = max2(own, water);
     if (pressure > 0.1 * b->young)
-        warn_at(check->diag, check->scene, b->common.line,
-                "[solid %s] is too soft for %s of %.3g Pa, which is %.2g times its `young` = "
-                "%.3g Pa: it may collapse and a guard stop the run; check the unit, such as MPa",
-                b->common.name, own > water ? "its own weight" : "the pressure of the water",
-                pressure, pressure / b->young, b->young);
+        warn_of(check, &b->common, NULL,
+                "is too soft for %s of %.3g Pa, which is %.2g times its `young` = %.3g Pa: it may "
+                "collapse and a guard stop the run; check the unit, such as MPa",
+                own > water ? "its own weight" : "the pressure of the water", pressure,
+                pressure / b->young, b->young);
     /* Where such a body meets another, no wave carries the load away. */
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_at(check->diag, check->scene, scene_line(scene, SECTION_solid, body, "velocity"),
-                "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
-                "sqrt(young/density) = %.3g m/s: an impact crushes it and a guard stops the run; "
-                "check the units of `velocity`, `young` and `density`",
-                b->common.name, speed, sound);
+        warn_of(check, &b->common, "velocity",
+                "begins with up to %.4g m/s, faster than waves in it, sqrt(young/density) = %.3g "
+                "m/s: an impact crushes it and a guard stops the run; check the units of "
+                "`velocity`, `young` and `density`",
+                speed, sound);
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
@@ -184,10 +184,10 @@ static void warn_of_flutter(const struct check *check, int body)
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
     if (b->hourglass_form == HOURGLASS_VARIATIONAL || !(b->hourglass > (quadratic ? 0 : 10)))
         return;
-    warn_at(check->diag, check->scene, b->common.line,
-            "[solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
-            "hourglass_form = variational%s",
-            b->common.name, quadratic ? "gradient = quadratic" : "hourglass above 10",
+    warn_of(check, &b->common, NULL,
+            "hourglass_form = printed with %s is unstable at any time step%s; use hourglass_form = "
+            "variational%s",
+            quadratic ? "gradient = quadratic" : "hourglass above 10",
             quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 

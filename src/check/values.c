@@ -14,21 +14,20 @@ static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fl
     const struct scene *const scene = check->scene;
     const double least = 10 * max2(fluid->max_speed, sqrt(fluid->max_pressure / fluid->density));
     if (scene->c0 < least * (1 - 1e-9))
-        warn_at(check->diag, check->scene, fluid->common.line,
-                "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will "
-                "vary by more than 1 %%",
-                fluid->common.name, scene->c0, least);
+        warn_of(check, &fluid->common, NULL,
+                "sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary by more "
+                "than 1 %%",
+                scene->c0, least);
     if (!isnan(fluid->surface) && scene->top.gravity[1] == 0)
-        warn_at(check->diag, check->scene, fluid->common.line,
-                "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so "
-                "the initial pressure is zero",
-                fluid->common.name);
+        warn_of(check, &fluid->common, NULL,
+                "has a `surface`, but gravity has no vertical component at t = 0, so the initial "
+                "pressure is zero");
     if (fluid != scene->fluid || fluid->shifting_speed != SHIFTING_LARGEST) return;
     if (fluid->shifting * scene->numerics.cfl > 5 * (1 + 1e-9))
-        warn_at(check->diag, check->scene, fluid->common.line,
-                "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit "
-                "of shifting_speed = largest; reduce one of them",
-                fluid->common.name, fluid->shifting, scene->numerics.cfl);
+        warn_of(check, &fluid->common, NULL,
+                "shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
+                "shifting_speed = largest; reduce one of them",
+                fluid->shifting, scene->numerics.cfl);
 }
 
 /* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
@@ -50,18 +49,15 @@ static void warn_of_sliding(struct check *check)
 static void warn_of_motion_of_nothing(struct check *check, const struct scene_motion *motion)
 {
     const struct scene *const scene = check->scene;
-    for (int k = 0; k < scene->n_wall; k++)
-        if (strcmp(scene->wall[k].motion, motion->common.name) == 0) return;
-    for (int k = 0; k < scene->n_solid; k++)
-        if (strcmp(scene->solid[k].clamp_motion, motion->common.name) == 0) return;
-    for (int k = 0; k < scene->n_beam; k++)
-        if (strcmp(scene->beam[k].motion, motion->common.name) == 0) return;
-    for (int k = 0; k < scene->n_rigid; k++)
-        if (strcmp(scene->rigid[k].hinge_motion, motion->common.name) == 0) return;
-    warn_at(check->diag, check->scene, motion->common.line,
-            "[motion %s] moves nothing: name it by `motion` of a [wall] or [beam], by "
-            "`clamp_motion` of a [solid] or by `hinge_motion` of a [rigid]",
-            motion->common.name);
+    for (const struct param *key = param_table; key < param_table + PARAM_COUNT; key++)
+        for (int k = 0; key->kind == SECTION_motion && k < section_count(scene, key->section);
+             k++) {
+            const char *const section = section_at(scene, key->section, k);
+            if (strcmp(section + key->offset, motion->common.name) == 0) return;
+        }
+    warn_of(check, &motion->common, NULL,
+            "moves nothing: name it by `motion` of a [wall] or [beam], by `clamp_motion` of a "
+            "[solid] or by `hinge_motion` of a [rigid]");
 }
 
 /* A table that ends in motion, while the run goes on: the wall stops within a step. */
@@ -70,15 +66,15 @@ static void warn_of_motion_table(struct check *check, int k)
     const struct scene *const scene = check->scene;
     const struct scene_motion *const motion = &scene->motion[k];
     const struct scene_table *const table = &scene->motion_data[k];
-    const int n = table->n, line = scene_line(scene, SECTION_motion, k, "file");
+    const int n = table->n;
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_at(check->diag, check->scene, line,
-            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last "
-            "two rows differ: the motion stops there within a step; continue the table, end it at "
-            "rest, or use end_time = %.6g s",
-            motion->common.name, motion->file, end, scene->top.end_time, end);
+    warn_of(check, &motion->common, "file",
+            "file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last two rows "
+            "differ: the motion stops there within a step; continue the table, end it at rest, or "
+            "use end_time = %.6g s",
+            motion->file, end, scene->top.end_time, end);
 }
 
 /* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. */
@@ -110,8 +106,7 @@ void warn_of_speed(struct check *check, int line, double speed, const char *form
         warn_at(check->diag, check->scene, line,
                 "%s up to %.3g m/s, above %g of the fluid's speed of sound, %.3g m/s. It is not "
                 "weakly compressible then, and a guard may stop the run; check the units (angles "
-                "are in radians), or use "
-                "sound_speed = %.3g or more",
+                "are in radians), or use sound_speed = %.3g or more",
                 what, speed, SPEED_WARNING, scene->c0, 10 * speed);
 }
 
@@ -124,25 +119,22 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
     const double wave = scene->c0 * open->absorb / 4, reach = 2 * scene->h,
                  largest = scene_open_range(scene, open).largest,
                  stiffness = scene->rho0 * square(scene->c0);
-    const int line =
-        scene_line(scene, (enum section_id)open->common->section, open->common->index, "absorb");
     if (open->kind == OPEN_VELOCITY) {
         warn_of_speed(check, open->common->line, largest, "[%s %s] gives the fluid", open->word,
                       open->common->name);
         return;
     }
     if (largest > DENS_WARNING * stiffness)
-        warn_at(check->diag, check->scene, open->common->line,
-                "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
-                "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
-                open->word, open->common->name, largest, 100 * largest / stiffness,
-                sqrt(largest / (0.01 * scene->rho0)));
+        warn_of(check, open->common, NULL,
+                "gives the fluid up to %.4g Pa, which changes its density by about %.2g %%; 1 %% "
+                "is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
+                largest, 100 * largest / stiffness, sqrt(largest / (0.01 * scene->rho0)));
     if (open->absorb > 0 && wave < reach)
-        warn_at(check->diag, check->scene, line,
-                "[%s %s] absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the "
-                "fluid resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 "
-                "lets waves up to the length L pass",
-                open->word, open->common->name, open->absorb, wave, reach);
+        warn_of(check, open->common, "absorb",
+                "absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the fluid "
+                "resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 lets "
+                "waves up to the length L pass",
+                open->absorb, wave, reach);
 }
 
 void warn_of_values(struct check *check)
@@ -158,10 +150,9 @@ void warn_of_values(struct check *check)
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)
-            warn_at(check->diag, check->scene, open.common->line,
-                    "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
-                    "this boundary; use density_diffusion = 0.1",
-                    open.word, open.common->name);
+            warn_of(check, open.common, NULL,
+                    "adjoins fluid without density_diffusion, so pressure noise grows at this "
+                    "boundary; use density_diffusion = 0.1");
         warn_of_open(check, &open);
     }
 }
