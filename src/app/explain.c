@@ -7,7 +7,6 @@
 #include "check/check.h"
 #include "implicit/implicit.h"
 #include "output/report.h"
-#include "output/snapshot_file.h"
 #include "time/timestep.h"
 
 #include <math.h>
@@ -79,22 +78,6 @@ static void say_fields(const struct simulation *sim, const struct sphfsi_options
     session_say(
         o, "  total %.3g MB (fields, cells, packed copies, stencils), and %.3g MB for the case",
         1e-6 * (double)sim->arena.bytes, 1e-6 * (double)sim->scene->arena.bytes);
-}
-
-static void say_output(const struct simulation *sim, const struct sphfsi_options *o)
-{
-    const struct snapshot_layout layout = snapshot_file_layout(sim->scene);
-    const double end = sim->scene->top.end_time, every = sim->scene->output.snapshot_interval;
-    const double snapshots = floor(end / every * (1 + 1e-12)) + 1,
-                 point = (double)snapshot_file_point_bytes(&layout);
-    double points = 0;
-    for (int k = 0; k < KIND_COUNT; k++) points += (double)sim->kind[k].n;
-    session_say(o, "output");
-    session_say(o,
-                "  fields.vtkhdf: %.0f snapshots of %.0f points of %.0f bytes: %.3g MB %s; needs "
-                "twice that space during the run",
-                snapshots, points, point, 1e-6 * snapshots * points * point,
-                layout.deflate ? "before compression" : "(no compression)");
 }
 
 static bool is_known(const struct simulation *sim, int bound)
@@ -223,7 +206,6 @@ static enum err explain_text(struct session *session, const struct sphfsi_option
     say_lattices(&session->scene, o);
     say_effects(sim, o);
     say_fields(sim, o);
-    say_output(sim, o);
     char precision[SCENE_NAME], integrator[SCENE_NAME], scheme[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "scheme"), sim->scene->top.scheme, scheme);
     param_choice_name(param_find(SECTION_top, "precision"), sim->scene->top.precision, precision);
@@ -250,19 +232,6 @@ static void write_scene(struct json *j, const struct session *session)
     json_open(j, "particles", '{');
     for (int k = 0; k < KIND_COUNT; k++)
         json_integer(j, kind_names[k], session->simulation.kind[k].n);
-    json_close(j, '}');
-}
-
-static void write_fields(struct json *j, const struct simulation *sim)
-{
-    json_open(j, "fields", '{');
-    for (int k = 0; k < KIND_COUNT; k++) {
-        json_open(j, kind_names[k], '[');
-        for (int f = 0; f < field_count && sim->kind[k].capacity; f++)
-            if (field_array(&sim->kind[k], &field_table[f]))
-                json_text(j, NULL, field_table[f].name);
-        json_close(j, ']');
-    }
     json_close(j, '}');
 }
 
@@ -322,7 +291,6 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
     json_open(j, NULL, '{');
     write_scene(j, session);
     report_effects(j, sim);
-    write_fields(j, sim);
     const enum err e = forecast_measure(&c, sim, d);
     c.opening = session->opening;
     check_simulation(sim, d);

@@ -8,13 +8,6 @@ explain() { "$sphfsi" --explain "${still[@]}" "$@" 2>/dev/null >"$dir/said" ||
     fail "--explain $*"; }
 says() { grep -q -- "$1" "$dir/said" || fail "no '$1': $(cat "$dir/said")"; }
 
-explain
-# The file of snapshots is as large as its points.
-size="\([0-9]*\) snapshots of \([0-9]*\) points of \([0-9]*\) bytes: \([^ ]*\) MB"
-sed -n "s/^  fields.vtkhdf: $size.*/\1 \2 \3 \4/p" "$dir/said" |
-    awk '{ found = 1; off = 1e-6 * $1 * $2 * $3 / $4 - 1 }
-         END { exit !(found && off * off < 3e-5) }' || fail "size of the snapshots"
-
 # Steps of all particles; two rows and snapshots take little.
 for row in "5 s 1" "2000 min 60" "2e5 h 3600"; do
     read -r until unit of <<<"$row"

@@ -46,15 +46,11 @@ static void store(const char *version)
 
 static const struct sphfsi_options noting = {.message = note};
 
-static void test_values_of_each_block(void)
+static void test_head_and_case(void)
 {
     char line[PATH_BYTES + 200];
     rig_open(&rig, tiny_case, NULL);
     rig_steps(&rig, 3, 1);
-    struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < fluid->n; i++) fluid->vx[i] = 0.25 * (double)i - 3;
-    fluid->vy[5] = (double)NAN;
-    fluid->vy[7] = (double)INFINITY;
     store("9.8.7");
     TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_inspect(path, &noting), sphfsi_error());
     snprintf(line, sizeof line, "%s: a valid checkpoint of %zu bytes, written by sphfsi 9.8.7\n",
@@ -64,12 +60,6 @@ static void test_values_of_each_block(void)
     says(line);
     says("  fluid         100 particles\n");
     says("  solid          45 particles\n");
-    says("  fluid  vx                        100 double -3 to 21.75\n");
-    says("  fluid  vy                        100 double 2 of them not finite\n");
-    says("  fluid  id                        100 int64  0 to 99\n");
-    says("  solid  body                       45 int32  0 to 0\n");
-    says("  run    steps                       1 int64  3\n");
-    says("  case   case                       23 byte   the effective case, below\n");
     says("the case\n");
     says("in two lines\n");
 }
@@ -107,7 +97,7 @@ static void test_another_version_is_said(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_values_of_each_block);
+    RUN_TEST(test_head_and_case);
     RUN_TEST(test_another_version_is_said);
     return UNITY_END();
 }

@@ -9,8 +9,7 @@ ckpt=$(ls "$run"/*.ckpt)
 
 # --- inspect ---
 expect 0 'a valid checkpoint' --inspect "$ckpt"
-for words in 'time 0.02[0-9]* s, 75 steps' 'fluid *100 particles' 'run *sorts' \
-    'solid *ux *45 double' 'case *case' 'dp = 0.01 m'; do
+for words in 'time 0.02[0-9]* s, 75 steps' 'fluid *100 particles' 'dp = 0.01 m'; do
     grep -q -- "$words" "$dir/output" || fail "--inspect does not say '$words'"
 done
 expect 0 'step-0*75.ckpt: a valid checkpoint' --inspect "$run"
