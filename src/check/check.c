@@ -6,8 +6,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-void warn_of(const struct check *check, const struct scene_section_common *section, const char *key,
-             const char *format, ...)
+void warn_section(const struct check *check, const struct scene_section_common *section,
+                  const char *key, const char *format, ...)
 {
     char text[sizeof check->diag->text], title[TITLE_TEXT];
     int line = section->line;

@@ -71,10 +71,11 @@ static void warn_of_surface(struct check *check, int f)
     double top = -HUGE_VAL, lowest = HUGE_VAL;
     int64_t above = 0;
     if (scene->top.gravity[1] > 0)
-        warn_of(check, &fluid->common, NULL,
-                "has a `surface`, but gravity points upwards, by %.3g m/s^2 at t = 0; gravity that "
-                "points down has a negative second component",
-                scene->top.gravity[1]);
+        warn_section(
+            check, &fluid->common, NULL,
+            "has a `surface`, but gravity points upwards, by %.3g m/s^2 at t = 0; gravity that "
+            "points down has a negative second component",
+            scene->top.gravity[1]);
     for (int64_t k = 0; k < p->n; k++) {
         if (p->bit[k] != POINT_FLUID || p->section[k] != f) continue;
         above += p->y[k] > fluid->surface;
@@ -84,17 +85,19 @@ static void warn_of_surface(struct check *check, int f)
             lowest = p->y[k] + 0.5 * dp;
     }
     if (above > 0)
-        warn_of(check, &fluid->common, NULL,
-                "reaches up to y = %.4g m, above its `surface = %.4g m`: %lld particles begin with "
-                "a pressure below zero; `surface` is the height of the free surface",
-                top, fluid->surface, (long long)above);
+        warn_section(
+            check, &fluid->common, NULL,
+            "reaches up to y = %.4g m, above its `surface = %.4g m`: %lld particles begin with "
+            "a pressure below zero; `surface` is the height of the free surface",
+            top, fluid->surface, (long long)above);
     if (isfinite(lowest) && scene->top.gravity[1] < 0)
-        warn_of(check, &fluid->common, NULL,
-                "has a free surface at y = %.4g m, below its `surface = %.4g m`: the pressure "
-                "there begins with %.3g Pa and drives a jet; `surface` is the height of the free "
-                "surface, one for each [fluid]",
-                lowest, fluid->surface,
-                -fluid->density * scene->top.gravity[1] * (fluid->surface - lowest));
+        warn_section(
+            check, &fluid->common, NULL,
+            "has a free surface at y = %.4g m, below its `surface = %.4g m`: the pressure "
+            "there begins with %.3g Pa and drives a jet; `surface` is the height of the free "
+            "surface, one for each [fluid]",
+            lowest, fluid->surface,
+            -fluid->density * scene->top.gravity[1] * (fluid->surface - lowest));
 }
 
 /* --- density, weight --- */
@@ -110,18 +113,20 @@ static void warn_of_density(struct check *check, int f)
     const struct scene *const scene = check->scene;
     const struct scene_fluid *const fluid = &scene->fluid[f];
     if (fluid->density < LIGHTEST_LIQUID)
-        warn_of(check, &fluid->common, NULL,
-                "has a density of %.4g kg/m^3, less than any liquid, so its forces will be small; "
-                "water has 1000 kg/m^3",
-                fluid->density);
+        warn_section(
+            check, &fluid->common, NULL,
+            "has a density of %.4g kg/m^3, less than any liquid, so its forces will be small; "
+            "water has 1000 kg/m^3",
+            fluid->density);
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis) && scene->top.gravity[axis] != 0) return;
     const double fall = extent_along(scene, KIND_FLUID, f, scene->top.gravity);
     if (fall > 0.01 * square(scene->c0))
-        warn_of(check, &fluid->common, NULL,
-                "is compressed by %.2g %% under its own weight, because its speed of sound is only "
-                "%.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
-                100 * fall / square(scene->c0), scene->c0, sqrt(fall));
+        warn_section(
+            check, &fluid->common, NULL,
+            "is compressed by %.2g %% under its own weight, because its speed of sound is only "
+            "%.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
+            100 * fall / square(scene->c0), scene->c0, sqrt(fall));
 }
 
 /* Whether a fluid stands on something: a wall, a body, other fluid or a buffer. */
@@ -152,18 +157,20 @@ static void warn_of_weight(struct check *check, int fluid)
     const double depth = extent_along(scene, KIND_FLUID, fluid, down) + scene->top.dp;
     const double pressure = f->density * size * depth;
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
-        warn_of(check, &f->common, NULL,
-                "has a `surface`, but nothing is below it: the pressure at its lower end begins "
-                "with up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out "
-                "`surface`",
-                pressure);
+        warn_section(
+            check, &f->common, NULL,
+            "has a `surface`, but nothing is below it: the pressure at its lower end begins "
+            "with up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out "
+            "`surface`",
+            pressure);
     const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
-        warn_of(check, &f->common, NULL,
-                "begins without the pressure of its weight, %.3g Pa, so it falls onto its floor "
-                "and its pressure oscillates between 0 and twice this value; add %s",
-                pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
+        warn_section(
+            check, &f->common, NULL,
+            "begins without the pressure of its weight, %.3g Pa, so it falls onto its floor "
+            "and its pressure oscillates between 0 and twice this value; add %s",
+            pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
 }
 
 /* Fluid that faces a wall or body across a gap of one particle, not upwards. */
@@ -189,10 +196,11 @@ static void warn_of_start_gap(struct check *check, int fluid)
     if (n <= FEW) return;
     const int walls_from = p->kind[body] == KIND_WALL ? check->scene->n_solid : 0;
     const struct body other = body_at(check->scene, walls_from + p->section[body]);
-    warn_of(check, &check->scene->fluid[fluid].common, NULL,
-            "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run against it; "
-            "let their shapes touch, or leave a gap of 2 dp or more",
-            dp, other.word, other.common->name, p->x[first], p->y[first]);
+    warn_section(
+        check, &check->scene->fluid[fluid].common, NULL,
+        "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run against it; "
+        "let their shapes touch, or leave a gap of 2 dp or more",
+        dp, other.word, other.common->name, p->x[first], p->y[first]);
 }
 
 /* --- speeds near that of sound --- */
@@ -239,11 +247,12 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
     if (point_at(check, front, 0.75 * dp, POINT_FLUID) < 0 ||
         point_at(check, behind, 0.8 * dp, POINT_ANY) >= 0)
         return;
-    warn_of(check, o->common, NULL,
-            "ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the line "
-            "and is lost; add a [wall], or let the line end at a wall or at the surface",
-            o->from[0] + (last ? o->length * o->along[0] : 0),
-            o->from[1] + (last ? o->length * o->along[1] : 0));
+    warn_section(
+        check, o->common, NULL,
+        "ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the line "
+        "and is lost; add a [wall], or let the line end at a wall or at the surface",
+        o->from[0] + (last ? o->length * o->along[0] : 0),
+        o->from[1] + (last ? o->length * o->along[1] : 0));
 }
 
 /* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of
@@ -291,13 +300,14 @@ static void warn_of_balance(struct check *check)
         }
     if (fabs(more) <= 0.01 * volume) return;
     const struct scene_open o = scene_open_at(scene, n_open - 1);
-    warn_of(check, o.common, NULL,
-            "is one of the open boundaries whose velocities let %.3g m^2 more %s than %s by t = "
-            "%.3g s, %.2g %% of the fluid. There is no free surface, so %s; give one boundary a "
-            "`pressure` instead of a velocity",
-            fabs(more), more > 0 ? "in" : "out", more > 0 ? "out" : "in", n * step,
-            100 * fabs(more) / volume,
-            more > 0 ? "the pressure rises until a guard stops the run" : "voids open");
+    warn_section(
+        check, o.common, NULL,
+        "is one of the open boundaries whose velocities let %.3g m^2 more %s than %s by t = "
+        "%.3g s, %.2g %% of the fluid. There is no free surface, so %s; give one boundary a "
+        "`pressure` instead of a velocity",
+        fabs(more), more > 0 ? "in" : "out", more > 0 ? "out" : "in", n * step,
+        100 * fabs(more) / volume,
+        more > 0 ? "the pressure rises until a guard stops the run" : "voids open");
 }
 
 /* Whether fluid somewhere has nothing beside it. */
@@ -336,10 +346,11 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
         if (probe->quantity != PROBE_LEVEL)
             snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
                      quantity, 2 * scene->h);
-        warn_of(check, &probe->common, NULL,
-                "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "
-                "it to the face",
-                at[0], at[1], value);
+        warn_section(
+            check, &probe->common, NULL,
+            "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "
+            "it to the face",
+            at[0], at[1], value);
     }
 }
 
@@ -363,13 +374,13 @@ static void warn_of_turning(struct check *check)
                 asked |=
                     scene->probe[p].quantity == PROBE_FORCE && strcmp(name, b.common->name) == 0;
         if (turns && asked && b.slip == SLIP_NONE)
-            warn_of(check, b.common, NULL,
-                    "%s with slip = none: the viscous moment on it is off by 2 mu A omega (mu = "
-                    "%.3g Pa s, A: area of the body, omega: angular velocity); forces are right%s",
-                    solid ? "is free to turn" : "turns", nu * scene->rho0,
-                    solid
-                        ? ", but at low Reynolds numbers it turns up to twice as fast as it should"
-                        : "");
+            warn_section(
+                check, b.common, NULL,
+                "%s with slip = none: the viscous moment on it is off by 2 mu A omega (mu = "
+                "%.3g Pa s, A: area of the body, omega: angular velocity); forces are right%s",
+                solid ? "is free to turn" : "turns", nu * scene->rho0,
+                solid ? ", but at low Reynolds numbers it turns up to twice as fast as it should"
+                      : "");
     }
 }
 
@@ -385,11 +396,12 @@ static void warn_of_drift(struct check *check)
     if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || has_surface(check)) return;
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting > 0)
-            warn_of(check, &scene->fluid[k].common, NULL,
-                    "fills its periodic domain, so its mean pressure drifts with `shifting`, by "
-                    "about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, or a smaller "
-                    "`shifting`",
-                    scene->rho0 * square(scene->c0));
+            warn_section(
+                check, &scene->fluid[k].common, NULL,
+                "fills its periodic domain, so its mean pressure drifts with `shifting`, by "
+                "about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, or a smaller "
+                "`shifting`",
+                scene->rho0 * square(scene->c0));
 }
 
 /* --- flow past bodies that stick --- */
@@ -407,11 +419,11 @@ static void warn_of_streamlines(struct check *check)
     const struct body b = body_at(scene, k);
     for (k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting == 0)
-            warn_of(check, &scene->fluid[k].common, NULL,
-                    "sticks to [%s %s] and has no `shifting`: its particles align along "
-                    "streamlines and leave gaps beside bodies, which disturb the forces; set "
-                    "shifting = 10 and shifting_speed = largest",
-                    b.word, b.common->name);
+            warn_section(check, &scene->fluid[k].common, NULL,
+                         "sticks to [%s %s] and has no `shifting`: its particles align along "
+                         "streamlines and leave gaps beside bodies, which disturb the forces; set "
+                         "shifting = 10 and shifting_speed = largest",
+                         b.word, b.common->name);
 }
 
 enum err warn_of_fluid(struct check *check)

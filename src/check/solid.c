@@ -81,9 +81,9 @@ static enum err warn_of_loose_bodies(struct check *check)
                 ? "a [load] acts on it, so it is driven away unless something stops it"
                 : NULL;
         if (why)
-            warn_of(check, &b->common, NULL,
-                    "has no clamp, and %s; give it a `clamp` if it is fixed%s", why,
-                    falls ? ", or gravity = off" : "");
+            warn_section(check, &b->common, NULL,
+                         "has no clamp, and %s; give it a `clamp` if it is fixed%s", why,
+                         falls ? ", or gravity = off" : "");
     }
     return ERR_OK;
 }
@@ -147,10 +147,11 @@ static void warn_of_material(struct check *check, int body)
     const struct scene *const scene = check->scene;
     const struct scene_solid *const b = &scene->solid[body];
     if (b->density < LIGHTEST_FOAM)
-        warn_of(check, &b->common, NULL,
-                "has a density of %.4g kg/m^3, less than any foam, so it has hardly any inertia; "
-                "rubber has about 1100 kg/m^3",
-                b->density);
+        warn_section(
+            check, &b->common, NULL,
+            "has a density of %.4g kg/m^3, less than any foam, so it has hardly any inertia; "
+            "rubber has about 1100 kg/m^3",
+            b->density);
     /* Its own weight, or the water beside it. */
     double water = 0;
     for (int f = 0; f < scene->n_fluid; f++)
@@ -160,20 +161,22 @@ static void warn_of_material(struct check *check, int body)
     const double weight = extent_along(scene, KIND_SOLID, body, scene->top.gravity);
     const double own = b->gravity ? b->density * weight : 0, pressure = max2(own, water);
     if (pressure > 0.1 * b->young)
-        warn_of(check, &b->common, NULL,
-                "is too soft for %s of %.3g Pa, which is %.2g times its `young` = %.3g Pa: it may "
-                "collapse and a guard stop the run; check the unit, such as MPa",
-                own > water ? "its own weight" : "the pressure of the water", pressure,
-                pressure / b->young, b->young);
+        warn_section(
+            check, &b->common, NULL,
+            "is too soft for %s of %.3g Pa, which is %.2g times its `young` = %.3g Pa: it may "
+            "collapse and a guard stop the run; check the unit, such as MPa",
+            own > water ? "its own weight" : "the pressure of the water", pressure,
+            pressure / b->young, b->young);
     /* Where such a body meets another, no wave carries the load away. */
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_of(check, &b->common, "velocity",
-                "begins with up to %.4g m/s, faster than waves in it, sqrt(young/density) = %.3g "
-                "m/s: an impact crushes it and a guard stops the run; check the units of "
-                "`velocity`, `young` and `density`",
-                speed, sound);
+        warn_section(
+            check, &b->common, "velocity",
+            "begins with up to %.4g m/s, faster than waves in it, sqrt(young/density) = %.3g "
+            "m/s: an impact crushes it and a guard stops the run; check the units of "
+            "`velocity`, `young` and `density`",
+            speed, sound);
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
@@ -184,11 +187,12 @@ static void warn_of_flutter(const struct check *check, int body)
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
     if (b->hourglass_form == HOURGLASS_VARIATIONAL || !(b->hourglass > (quadratic ? 0 : 10)))
         return;
-    warn_of(check, &b->common, NULL,
-            "hourglass_form = printed with %s is unstable at any time step%s; use hourglass_form = "
-            "variational%s",
-            quadratic ? "gradient = quadratic" : "hourglass above 10",
-            quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
+    warn_section(
+        check, &b->common, NULL,
+        "hourglass_form = printed with %s is unstable at any time step%s; use hourglass_form = "
+        "variational%s",
+        quadratic ? "gradient = quadratic" : "hourglass above 10",
+        quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
 enum err warn_of_solids(struct check *check)

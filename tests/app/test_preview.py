@@ -139,7 +139,7 @@ def check(picture):
 
     texts = [text.text for text in picture.texts()]
     assert texts[0] == "a & b < c", texts[0]
-    assert "gravity (0, -9.81) m/s^2, 1 s; domain (-0." in texts[1], texts[1]
+    assert texts[1].endswith("gravity (0, -9.81) m/s^2, 1 s"), texts[1]
     # The legend numbers bodies and probes, and the number stands in the drawing where each is.
     names = "tank slope lid water post kite tip rise through".split()
     numbered = [t.text for t in picture.texts() if t.get("class") == "label"]
@@ -147,23 +147,17 @@ def check(picture):
     for kind, name in zip(["wall"] * 3 + ["fluid"] + ["solid"] * 2 + ["probe"] * 3, names):
         at = texts.index(picture.listed(f"{kind} {name}"))
         assert texts[at - 1] == str(names.index(name) + 1), (name, texts[at - 1])
-    assert picture.listed("fluid water") == \
-        "fluid water: 0.2 x 0.1 m, 200 particles; 1000 kg/m^3, c0 20 m/s"
-    assert picture.listed("wall lid") == "wall lid: 0.1 x 0.04 m, 40 particles; moved by down"
-    assert picture.listed("wall tank").endswith("; at rest")
-    assert picture.listed("solid post") == ("solid post: 0.04 x 0.19 m, 76 particles; 1100 kg/m^3, "
-                                            "E 1e+06 Pa, nu 0.4; 16 clamped (dark)")
-    assert picture.listed("solid kite").startswith("solid kite: 0.066 x 0.066 m, 25")
-    assert "25 particles; 900 kg/m^3" in picture.listed("solid kite")
-    assert picture.listed("solid kite").endswith("; 0 clamped (dark)")
-    assert picture.listed("probe rise") == "probe rise: level at (0.05, 0) m"
-    assert picture.listed("probe through") == "probe through: flux from (0.1, 0) to (0.15, 0.1) m"
+    for line in ("fluid water: 0.2 x 0.1 m, 200 particles", "wall lid: 0.1 x 0.04 m, 40 particles",
+                 "solid post: 0.04 x 0.19 m, 76 particles, 16 clamped (dark)",
+                 "solid kite: 0.066 x 0.066 m, 25 particles", "probe rise: level at (0.05, 0) m",
+                 "probe through: flux at (0.1, 0) m to (0.15, 0.1) m"):
+        assert picture.listed(line.partition(":")[0]) == line, line
 
     circles = [picture.metres(c.get("cx"), c.get("cy")) for c in picture.root.iter(NAME + "circle")]
     for place in ((0.22, 0.15), (0.05, 0), (0.1, 0), (0.15, 0.1)):
         assert any(math.dist(place, c) < pixel for c in circles), place
     assert len(circles) == 4
-    lines = [p.get("d") for p in picture.root.iter(NAME + "path") if p.get("class") == "probe"]
+    lines = [p.get("d") for p in picture.root.iter(NAME + "path") if p.get("class") == "mark"]
     assert len(lines) == 1
     ends = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
     near(ends[0] + ends[1], (0.1, 0, 0.15, 0.1), pixel)
@@ -188,8 +182,7 @@ def check_beam(picture):
     assert len(lines) == 1, lines
     places = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
     near(sum(places, ()), (0, 0, 0.3, 0, 0.4, 0.3), pixel)
-    assert picture.listed("beam plate") == ("beam plate: 0.4 x 0.3 m, 0 particles; 0.004 m thick, "
-                                            "2000 kg/m^3, E 1e+09 Pa, nu 0")
+    assert picture.listed("beam plate") == "beam plate: 0.4 x 0.3 m, 0 particles"
     assert not any(word in text.text for text in picture.texts() for word in ("inf", "nan"))
 
 

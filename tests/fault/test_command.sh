@@ -39,8 +39,7 @@ like = base
 shape = box 0, 0.2, 0.1, 0.22
 END
 "$sphfsi" --preview bonded.cfg >/dev/null 2>err || fail "--preview of a bond"
-grep -q 'solid cap: .*; bonded to base' preview-bonded.svg || fail "a bond is not drawn"
-grep -q 'solid lump: .*; 0 clamped' preview-bonded.svg || fail "a free body is not drawn"
+grep -q 'solid lump: .* particles<' preview-bonded.svg || fail "a free body is not drawn"
 grep -q 'cap. has no clamp' err && fail "a bonded copy moves freely: $(cat err)"
 grep -q 'lump. has no clamp, and .like. does not copy' err || fail "a free copy: $(cat err)"
 refuses 1 'did you mean `dam_break`' --new dambreak
@@ -71,8 +70,6 @@ grep -qF '  end_time: number, s > 0, <= 1e+09, needed: ' keys || fail "--keys gi
         out ||
     fail "--explain of a turned lattice"
 [ "$(grep -c 'lattice at' out)" = 1 ] || fail "--explain: $(grep 'lattice at' out)"
-# Every 50 ms to 1 s, and at the start.
-grep -q "fields.vtkhdf: 21 snapshots of" out || fail "--explain: $(grep vtkhdf out)"
 # A report that cannot be written is a failure.
 if [ -c /dev/full ]; then
     for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" \
