@@ -80,22 +80,6 @@ static void warn_of_motion_table(struct check *check, int k)
         motion->file, end, scene->top.end_time, end);
 }
 
-/* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. */
-static void warn_of_gravity_table(struct check *check)
-{
-    const struct scene *const scene = check->scene;
-    const struct scene_table *const table = &scene->gravity_data;
-    const int line = scene_line(scene, SECTION_top, 0, "gravity_file"), last = table->n - 1;
-    const bool acts = table->x[last] != 0 || table->y[last] != 0;
-    if (acts && table->t[last] < scene->top.end_time * (1 - 1e-9))
-        warn_at(check->diag, check->scene, line,
-                "gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
-                "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add "
-                "a row of zeros, or use end_time = %.6g s",
-                scene->top.gravity_file, table->t[last], scene->top.end_time, table->x[last],
-                table->y[last], table->t[last]);
-}
-
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
 {
     struct scene *const scene = check->scene;
@@ -151,7 +135,6 @@ void warn_of_values(struct check *check)
         warn_of_motion_of_nothing(check, &scene->motion[k]);
         if (*scene->motion[k].file) warn_of_motion_table(check, k);
     }
-    if (scene->gravity_data.n > 0) warn_of_gravity_table(check);
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)

@@ -413,22 +413,6 @@ static void test_a_table_that_ends_in_motion_is_warned_of(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
-static void test_a_table_of_gravity_that_goes_on_is_warned_of(void)
-{
-    static const char shaken[] =
-        "dp = 1 mm\nend_time = 1 s\ngravity_file = test_motion.tmp\n"
-        "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
-        "clamp = box 0, 0, 10 mm, 4 mm\n";
-    read_warned(shaken, "0, 0, 0\n0.5, 1, -2\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(warnings, "motion.cfg:3: gravity_file = test_motion.tmp ends at t = 0.5 s, before "
-                         "end_time = 1 s: the acceleration of its last row, (1, -2) m/s^2, then "
-                         "stays"),
-        warnings);
-    read_warned(shaken, "0, 0, 0\n0.5, 1, -2\n0.6, 0, 0\n");
-    TEST_ASSERT_EQUAL_STRING("", warnings);
-}
-
 static void test_no_motion_is_rest(void)
 {
     must_read("velocity = 1, 1\n");
@@ -454,7 +438,6 @@ int main(void)
     RUN_TEST(test_jumps_and_poles);
     RUN_TEST(test_bad_tables);
     RUN_TEST(test_a_table_that_ends_in_motion_is_warned_of);
-    RUN_TEST(test_a_table_of_gravity_that_goes_on_is_warned_of);
     RUN_TEST(test_a_table_with_a_zero_byte_is_refused);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
