@@ -5,6 +5,7 @@
 #include "output/probes.h"
 #include "output/series.h"
 #include "output/snapshot.h"
+#include "particles/kernel.h"
 #include "time/advance.h"
 #include "time/energy.h"
 #include "time/timestep.h"
@@ -15,118 +16,66 @@
 
 enum { FIRST_STEPS = 20, EVALUATIONS_MEASURED = 5 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured
- * steps; of steps with rows of a file; of one repeat. Repeats are short, so that other work on the
- * machine does not disturb all of them. */
-static const double first_seconds = 0.1, measured_seconds = 0.2, row_seconds = 0.05,
-                    repeat_seconds = 0.005;
+ * steps; of steps with rows of a file. */
+static const double first_seconds = 0.1, measured_seconds = 0.2, row_seconds = 0.05;
 
 /* --- measurement --- */
 
-/* Trial steps: the least time per step (of this thread on its core) and per phase (by the wall
- * clock) of all repeats, since other work on the machine can only add to it. Not every repeat
- * sorts, so sorting counts with its mean, limited to 5 % of a step. */
-struct trial {
-    double step, phase[PHASE_COUNT], sort_mean;
-    int64_t steps, substeps, evaluations, calls;
-    int64_t n_start;             /* fluid particles */
-    const struct probes *probes; /* whose rows are read before each call; NULL: none */
-    int file;                    /* of these; -1: the ledger */
-};
-
-/* Whether half of the fluid of the start is still there: what falls out of the domain costs
- * nothing. */
-static bool has_fluid_of_start(const struct simulation *sim, int64_t n_start)
+/* Whether trial steps go on: not for long, nor beyond the end, nor where less than half of the
+ * fluid of the start is left, since what falls out of the domain costs nothing. */
+static bool goes_on(const struct simulation *sim, double begin, double seconds)
 {
-    return 2 * sim->kind[KIND_FLUID].n >= n_start;
+    const int64_t n_start = sim->scene->points[KIND_FLUID].n;
+    return sim->state.time < sim->scene->top.end_time && thread_clock() - begin < seconds &&
+           2 * sim->kind[KIND_FLUID].n >= n_start;
 }
 
-static void read_row(const struct trial *trial, struct simulation *sim)
+/* A guard that stops the run after its first steps is not reported: the run will do it. */
+static enum err try_step(struct simulation *sim, struct diag *d)
 {
-    double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
-    if (trial->probes && trial->file < 0)
-        simulation_ledger(sim);
-    else if (trial->probes)
-        probes_sample(trial->probes, sim, trial->file, false, row, rate);
+    struct diag ignored = {.code = ERR_OK};
+    const enum err e = simulation_step(sim, (double)INFINITY, &ignored);
+    return e && e != ERR_GUARD ? diag_fail(d, e, "%s", ignored.text) : e;
 }
 
-static enum err take_steps(struct trial *trial, struct simulation *sim, struct diag *d)
-{
-    const double end = sim->scene->top.end_time, begin = thread_clock();
-    const struct state before = sim->state;
-    double phase[PHASE_COUNT], now;
-    memcpy(phase, sim->phase_seconds, sizeof phase);
-    do {
-        read_row(trial, sim);
-        TRY(simulation_step(sim, (double)INFINITY, d));
-        trial->calls++;
-        now = thread_clock();
-    } while (sim->state.time < end && now - begin < repeat_seconds &&
-             has_fluid_of_start(sim, trial->n_start));
-    const double steps = (double)(sim->state.steps - before.steps);
-    const double each = (now - begin) / steps;
-    trial->step = trial->steps ? min2(trial->step, each) : each;
-    for (int k = 0; k < PHASE_COUNT; k++) {
-        const double seconds = (sim->phase_seconds[k] - phase[k]) / steps;
-        trial->phase[k] = trial->steps ? min2(trial->phase[k], seconds) : seconds;
-    }
-    trial->sort_mean += sim->phase_seconds[PHASE_sort] - phase[PHASE_sort];
-    trial->steps += sim->state.steps - before.steps;
-    trial->substeps += sim->state.solid_substeps - before.solid_substeps;
-    trial->evaluations += sim->state.evaluations - before.evaluations;
-    return ERR_OK;
-}
-
-static void set_costs(struct unit_costs *c, struct trial *trial, const struct simulation *sim)
+/* Means over the steps, because some of what they do comes back after some of them only: sorting,
+ * gradients of the density, tests. Steps on trial with another number of threads, of which a run
+ * has fewer, are left out. Shares of phases are by the wall clock. Beside other programs a team of
+ * threads waits for each other, so that only an idle machine gives its time. */
+static enum err measure_steps(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
     const double n_fluid = (double)sim->kind[KIND_FLUID].n;
-    const double n_solid = (double)sim->kind[KIND_SOLID].n, steps = (double)trial->steps;
-    double all = 0;
-    trial->phase[PHASE_sort] = 0;
-    for (int k = 0; k < PHASE_COUNT; k++) all += trial->phase[k];
-    trial->phase[PHASE_sort] = min2(trial->sort_mean / steps, 0.05 * all);
-    all += trial->phase[PHASE_sort];
-    for (int k = 0; k < PHASE_COUNT; k++)
-        c->phase_fraction[k] = all > 0 ? trial->phase[k] / all : 0;
-    all = min2(all, trial->step);
-    const double solid =
-        n_fluid > 0 ? all * (c->phase_fraction[PHASE_solid] + c->phase_fraction[PHASE_contact])
-                    : all;
-    c->evaluations = (double)trial->evaluations / steps;
-    if (n_solid > 0 && trial->substeps > 0)
-        c->solid = solid * steps / (double)trial->substeps / n_solid;
-    if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;
-}
-
-/* Repeats for some seconds. A guard that stops the run in them is not reported: the run will do
- * it. */
-static enum err repeat_steps(struct trial *trial, struct simulation *sim, double seconds,
-                             struct diag *d)
-{
-    const double begin = thread_clock();
-    struct diag ignored = {.code = ERR_OK};
-    enum err e;
-    do {
-        e = take_steps(trial, sim, &ignored);
-    } while (!e && sim->state.time < sim->scene->top.end_time && thread_clock() - begin < seconds &&
-             has_fluid_of_start(sim, trial->n_start));
-    return e && e != ERR_GUARD ? diag_fail(d, e, "%s", ignored.text) : ERR_OK;
-}
-
-static enum err measure_steps(struct unit_costs *c, struct trial *trial, struct simulation *sim,
-                              struct diag *d)
-{
-    const double end = sim->scene->top.end_time;
-    sim->state.seeks_rest = 0; /* [relax] is not measured */
+    const double n_solid = (double)sim->kind[KIND_SOLID].n;
     /* The first steps include the first touch of memory and the first sort, and find the bounds of
      * the time step. A guard that stops the run in them is reported. */
-    const double start = thread_clock();
+    double begin = thread_clock(), seconds = 0, counted = 0, phase[PHASE_COUNT], all = 0;
     int first = 0;
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
-    } while (++first <= FIRST_STEPS && sim->state.time < end &&
-             has_fluid_of_start(sim, trial->n_start) && thread_clock() - start < first_seconds);
-    TRY(repeat_steps(trial, sim, measured_seconds, d));
-    if (trial->steps > 0) set_costs(c, trial, sim);
+    } while (++first <= FIRST_STEPS && goes_on(sim, begin, first_seconds));
+    const struct state before = sim->state;
+    memcpy(phase, sim->phase_seconds, sizeof phase);
+    enum err e = ERR_OK;
+    begin = thread_clock();
+    while (!e && goes_on(sim, begin, measured_seconds)) {
+        const bool usual = sim->team.now == sim->team.chosen;
+        const double start = thread_clock(), from = (double)sim->state.steps;
+        e = try_step(sim, d);
+        if (!usual) continue;
+        seconds += thread_clock() - start;
+        counted += (double)sim->state.steps - from;
+    }
+    if ((e && e != ERR_GUARD) || counted == 0) return e == ERR_GUARD ? ERR_OK : e;
+    for (int k = 0; k < PHASE_COUNT; k++) all += sim->phase_seconds[k] - phase[k];
+    for (int k = 0; k < PHASE_COUNT && all > 0; k++)
+        c->phase_fraction[k] = (sim->phase_seconds[k] - phase[k]) / all;
+    const double of_solid = c->phase_fraction[PHASE_solid] + c->phase_fraction[PHASE_contact],
+                 each = seconds / counted, solid = n_fluid > 0 ? each * of_solid : each,
+                 steps = (double)(sim->state.steps - before.steps),
+                 substeps = (double)(sim->state.solid_substeps - before.solid_substeps);
+    c->evaluations = (double)(sim->state.evaluations - before.evaluations) / steps;
+    if (n_solid > 0 && substeps > 0) c->solid = solid * steps / substeps / n_solid;
+    if (n_fluid > 0) c->fluid = (each - solid) / c->evaluations / n_fluid;
     return ERR_OK;
 }
 
@@ -145,24 +94,34 @@ static double expected_step(const struct simulation *sim)
     return single_rate ? min2(dt, sim->dt_solid) : dt;
 }
 
-/* The time of all rows of the run: by how much steps take longer that begin with a reading of the
- * state. They use what the reading has evaluated. A row lies between two states, and a state serves
- * all rows beside it. */
-static enum err measure_rows(struct unit_costs *c, const struct trial *plain,
-                             struct simulation *sim, struct diag *d)
+/* The time of all rows of the run. A row lies between two states, and a state serves all rows
+ * beside it. The evaluation that a reading needs is that of the next step. */
+static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time, dt = expected_step(sim);
+    double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
     struct probes probes;
     TRY(probes_create(&probes, sim, &sim->arena, d));
     for (int file = -1; file < probes.n_files; file++) {
-        struct trial trial = {.n_start = plain->n_start, .probes = &probes, .file = file};
-        TRY(repeat_steps(&trial, sim, row_seconds, d));
-        if (!trial.steps) continue;
-        const double longer = max2(0, trial.step - plain->step), /* a step */
-            per_row = longer * (double)trial.steps / (double)trial.calls;
         const double interval =
             file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
-        c->rows += per_row * min2(2 * end / interval, end / dt);
+        const double readings = min2(2 * end / interval, end / dt), begin = thread_clock();
+        double seconds = 0;
+        int n = 0;
+        enum err e;
+        do {
+            simulation_refresh(sim);
+            const double start = thread_clock();
+            if (file < 0)
+                simulation_ledger(sim);
+            else
+                probes_sample(&probes, sim, file, false, row, rate);
+            seconds += thread_clock() - start;
+            n++;
+            e = try_step(sim, d);
+        } while (!e && goes_on(sim, begin, row_seconds));
+        if (e && e != ERR_GUARD) return e;
+        c->rows += seconds / n * readings;
     }
     return ERR_OK;
 }
@@ -180,29 +139,43 @@ static enum err disorder(struct simulation *sim, struct diag *d)
     return sort_particles(sim, d);
 }
 
+/* The part of the run in which fluid that goes on to accelerate as it has until now has moved by
+ * the kernel's reach, so that its particles have other neighbours than on their lattice. */
+static double disordered_part(const struct simulation *sim)
+{
+    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    double speed2 = 0;
+    for (int64_t i = 0; i < particles->n; i++)
+        speed2 += square(particles->vx[i]) + square(particles->vy[i]);
+    const double acceleration = sqrt(speed2 / (double)particles->n) / sim->state.time;
+    const double ordered = sqrt(2 * KERNEL_REACH * sim->fluid.k.h / acceleration);
+    return max2(0, 1 - ordered / sim->scene->top.end_time);
+}
+
 /* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
  * within reach. Adds what an evaluation takes longer then. Leaves the particles so. */
 static void measure_disorder(struct unit_costs *c, struct simulation *sim)
 {
-    const double n_fluid = (double)sim->kind[KIND_FLUID].n;
+    const double n_fluid = (double)sim->kind[KIND_FLUID].n, part = disordered_part(sim);
     double least[2] = {HUGE_VAL, HUGE_VAL}, phases[PHASE_COUNT] = {0};
     struct diag ignored = {.code = ERR_OK};
+    thread_use(sim->team.chosen);
+    sim->fluid.threads = sim->team.chosen;
     for (int k = 0; k < 2 && !(k && disorder(sim, &ignored)); k++)
         for (int m = 0; m < EVALUATIONS_MEASURED; m++) {
             const double begin = thread_clock();
             fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, phases);
             least[k] = min2(least[k], thread_clock() - begin);
         }
-    if (least[1] < HUGE_VAL) c->fluid += max2(0, least[1] - least[0]) / n_fluid;
+    if (least[1] < HUGE_VAL) c->fluid += part * max2(0, least[1] - least[0]) / n_fluid;
 }
 
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
-    struct trial trial = {.n_start = sim->kind[KIND_FLUID].n};
     *c = (struct unit_costs){0};
-    TRY(measure_steps(c, &trial, sim, d));
+    TRY(measure_steps(c, sim, d));
     const struct fluid_extremes extremes = sim->fluid.extremes; /* for the step that is expected */
-    TRY(measure_rows(c, &trial, sim, d));
+    TRY(measure_rows(c, sim, d));
     c->snapshots = snapshots_seconds(sim) *
                    (1 + floor(sim->scene->top.end_time / sim->scene->output.snapshot_interval));
     if (sim->kind[KIND_FLUID].n) measure_disorder(c, sim);

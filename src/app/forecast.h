@@ -26,8 +26,8 @@ struct forecast {
     double memory, disk; /* bytes; disk: at most, while it runs */
 };
 
-/* Measures the scene's first steps for 0.3 s, then its outputs and disordered fluid, and takes the
- * least of several repeats. Leaves the simulation in a state of no meaning. */
+/* Measures the scene's first steps for 0.3 s, then its outputs and disordered fluid. Leaves the
+ * simulation in a state of no meaning. */
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -48,7 +48,7 @@ static void test_bytes_of_the_files(void)
 
 /* --- measurement --- */
 
-static double clock_step, now;
+static double clock_step, now, longer; /* longer: each eighth step, by this time, s */
 static int steps;
 
 double __real_thread_clock(void);
@@ -63,7 +63,7 @@ enum err __real_simulation_step(struct simulation *sim, double limit, struct dia
 enum err __wrap_simulation_step(struct simulation *sim, double limit, struct diag *d);
 enum err __wrap_simulation_step(struct simulation *sim, double limit, struct diag *d)
 {
-    steps++;
+    if (clock_step > 0 && ++steps % 8 == 0) now += longer;
     return __real_simulation_step(sim, limit, d);
 }
 
@@ -86,8 +86,8 @@ void __wrap_probes_sample(const struct probes *probes, struct simulation *sim, i
     __real_probes_sample(probes, sim, file, means, row, rate);
 }
 
-/* By a clock of 1 ms a reading each state takes 1 ms: two for each of 20 rows of the ledger; for
- * the 200 of the probes, more than there are steps, one a step. */
+/* By a clock of 1 ms a reading each state takes 2 ms, of itself and of the clock: two for each of
+ * 20 rows of the ledger; for the 200 of the probes, more than there are steps, one a step. */
 static void test_rows_are_measured(void)
 {
     struct unit_costs c;
@@ -96,13 +96,13 @@ static void test_rows_are_measured(void)
     clock_step = 0;
     const double steps_of_run = 0.02 / forecast_run(&c, &rig.sim).dt;
     TEST_ASSERT_TRUE(steps_of_run < 200);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 40e-3 + 1e-3 * steps_of_run, c.rows);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 80e-3 + 2e-3 * steps_of_run, c.rows);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5e-3, c.snapshots); /* five, of 1 ms each */
 }
 
 /* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then
- * repeats of 5 ms, of one reading at their begin and one for each step, until 0.2 s are over. */
-static void test_steps_are_measured_in_repeats(void)
+ * steps with three readings each, until 0.2 s or the run are over. */
+static void test_all_steps_are_measured(void)
 {
     struct unit_costs c;
     clock_step = 1e-4;
@@ -115,12 +115,27 @@ static void test_steps_are_measured_in_repeats(void)
     TEST_ASSERT_TRUE(now < 0.4);
 }
 
+/* A step in eight that takes 8 ms more counts as 1 ms in each. */
+static void test_work_of_some_steps_counts(void)
+{
+    struct unit_costs c;
+    clock_step = 1e-4;
+    longer = 8e-3;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, forecast_measure(&c, &rig.sim, &rig.diag));
+    clock_step = longer = 0;
+    const struct forecast f = forecast_run(&c, &rig.sim);
+    const double each =
+        c.fluid * f.evaluations / f.steps * 100 + c.solid * f.substeps / f.steps * 45;
+    TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, each);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_seconds);
     RUN_TEST(test_rows_are_measured);
     RUN_TEST(test_bytes_of_the_files);
-    RUN_TEST(test_steps_are_measured_in_repeats);
+    RUN_TEST(test_all_steps_are_measured);
+    RUN_TEST(test_work_of_some_steps_counts);
     return UNITY_END();
 }
