@@ -27,8 +27,10 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
         for (int b = 0; b < motion->n; b++)
             if (motion->body[b].section == scene_rigid_wall(scene, k))
                 rigid->body[k].wall = &motion->body[b];
-        rigid->state[k] = (struct rigid_state){
-            .v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1], scene->rigid[k].spin}};
+        rigid->state[k] =
+            (struct rigid_state){.v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1],
+                                       scene->rigid[k].spin},
+                                 .exchange = rigid->mean_time}; /* longer than any step */
     }
     TRY(rigid_hinges_create(rigid, a, d));
     TRY(rigid_springs_create(rigid, a, d));
@@ -67,10 +69,6 @@ void rigid_publish(const struct rigid *rigid, double time, double dt)
 
 /* --- the fluid --- */
 
-/* T-97: the fluid receives the impulse over this time, s. It is longer than any step, which
- * keeps the mean acceleration of a light body stable. */
-static double exchange_time(const struct rigid *rigid) { return 2 * rigid->mean_time; }
-
 /* The generalised vector of a vector w at a point: with its moment about the centre of mass. */
 static void with_moment(const struct motion_state *m, double x, double y, double wx, double wy,
                         double to[3])
@@ -100,8 +98,8 @@ static void find_fluid(const struct rigid *rigid, const struct rigid_body *body,
     }
 }
 
-/* T-97: the pressure that gives the fluid the impulse; `faster` is the velocity beyond the
- * expected one. */
+/* T-97: the pressure that gives the fluid the impulse: `left` of that before, and a new one;
+ * `faster` is the velocity beyond the expected one. */
 static void add_pressure(const struct rigid *rigid, const struct rigid_body *body, double left,
                          const double faster[3])
 {
@@ -117,11 +115,16 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 
 /* --- a step --- */
 
-/* The kick is this part of the time in which the fluid receives the impulse. */
-static double part_of(const struct rigid *rigid, double kick)
+/* T-35e: the time in which the fluid receives the impulse of a step. */
+static double exchange_after(const struct rigid_state *s, double dt)
 {
-    const double exchange = exchange_time(rigid);
-    return exchange > 0 ? kick / exchange : 0;
+    return max2(dt, s->exchange - dt);
+}
+
+/* The kick is this part of the time in which the fluid receives what waits. */
+static double part_of(const struct rigid *rigid, int k, double kick)
+{
+    return rigid->mean_time > 0 ? kick / rigid->state[k].exchange : 0;
 }
 
 /* The published motion goes on as without contact. */
@@ -134,13 +137,13 @@ static void publish_free(const struct rigid *rigid, int k, double kick)
     now->angular_acceleration = change[2] / kick;
 }
 
-static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now,
+static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
                          double kick)
 {
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     struct rigid_equations *const eq = &rigid->eq[k];
-    const double exchange = exchange_time(rigid), part = part_of(rigid, kick);
+    const double exchange = exchange_after(s, dt), part = part_of(rigid, k, kick);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
     find_fluid(rigid, body, force, impedance);
@@ -174,12 +177,18 @@ static void add_pushed(struct rigid *rigid, int k)
     }
 }
 
+/* What solids change in the velocity after the forces of a step that act at its start. */
+static double later(const struct rigid *rigid, int k, int c)
+{
+    return rigid->centred ? 0 : rigid->eq[k].pushed[c];
+}
+
 static void move_body(struct rigid *rigid, int k, double now, const struct rigid_step *step)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double kick = step->kick, part = part_of(rigid, kick);
+    const double kick = step->kick, part = part_of(rigid, k, kick);
     rigid_find_reaction(rigid, k, kick);
     body->work = body->passed = 0;
     body->driven = kick * rigid_hinge_power(rigid, k, now);
@@ -187,7 +196,7 @@ static void move_body(struct rigid *rigid, int k, double now, const struct rigid
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
         const double change = kick * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
-        body->mean[c] = eq->before[c] + 0.5 * change;
+        body->mean[c] = eq->before[c] + 0.5 * (change - later(rigid, k, c));
         body->work += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
@@ -199,7 +208,7 @@ static void move_body(struct rigid *rigid, int k, double now, const struct rigid
 }
 
 /* What follows from the velocity at the end of the step. */
-static void end_body(struct rigid *rigid, int k, double kick)
+static void end_body(struct rigid *rigid, int k, double dt, double kick)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
@@ -211,12 +220,15 @@ static void end_body(struct rigid *rigid, int k, double kick)
         const double steady = (s->v[c] - eq->start[c]) / kick - impact;
         /* The force that turns the velocity within the step is a reaction, too. */
         s->reaction[c] +=
-            body->mass[c] * (steady + impact - (body->mean[c] - eq->before[c]) * 2 / kick);
+            body->mass[c] *
+            (steady + impact - (2 * (body->mean[c] - eq->before[c]) + later(rigid, k, c)) / kick);
         /* Contact with solids is not half a step behind. */
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);
     }
-    if (rigid->impedance > 0) add_pressure(rigid, body, 1 - part_of(rigid, kick), eq->faster);
+    const double before = s->exchange, left = 1 - part_of(rigid, k, kick);
+    s->exchange = exchange_after(s, dt);
+    if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);
 }
 
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick)
@@ -229,7 +241,7 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
         struct rigid_body *const body = &rigid->body[k];
         memset(body->pushed, 0, sizeof body->pushed);
         memset(body->moved, 0, sizeof body->moved);
-        prepare_body(rigid, k, gravity, now, kick);
+        prepare_body(rigid, k, gravity, now, dt, kick);
         rigid_solve(rigid, k, rigid->end, kick);
         publish_free(rigid, k, kick);
     }
@@ -243,7 +255,7 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
     rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, &step);
     if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);
-    for (int k = 0; k < rigid->n; k++) end_body(rigid, k, kick);
+    for (int k = 0; k < rigid->n; k++) end_body(rigid, k, dt, kick);
     rigid_impulse_work(rigid);
 }
 

@@ -15,6 +15,7 @@ struct rigid_state {
     double impulse[3];  /* that the fluid has still to receive, N s/m and N s (T-97) */
     double rate[3];     /* of the impulse in the last step, N/m and N */
     double reaction[3]; /* of hinge and guide in the last step, N/m and N */
+    double exchange;    /* time in which the fluid receives the impulse (T-35e), s */
 };
 enum { RIGID_NUMBERS = sizeof(struct rigid_state) / sizeof(double) };
 
