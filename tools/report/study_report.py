@@ -16,8 +16,8 @@ from study import SCENES
 from study_presets import write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
                            main_error, percent)
-from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
-                          halving_table, knob_table, order_table, ranked_knobs, schemes_table)
+from study_tables import (aims_table, base_table, failures, forecast_table, halving_table,
+                          knob_table, ranked_knobs, schemes_table)
 
 
 # --- figures ---
@@ -69,12 +69,10 @@ def case_text(study, case):
     entry = study.cases[case]
     sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
                for e in entry["error"] if e.get("source")]
-    front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles"
-                      for p in study.front(case))
     return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""),
                 case=case, error=main_error(entry), against=against(entry["error"][0]),
                        references="\n".join(sources),
-                       table=base_table(study, case), front=front or "no finished point")
+                       table=base_table(study, case))
 
 
 def summary(study):
@@ -163,8 +161,8 @@ def write(data, out, evidence=None):
         circumstances=circumstances(study), note=rules.get("note", ""),
         repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),
         schemes=schemes_table(study),
-        cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),
-        halving=halving_table(study), knobs=knobs, best=best_knobs(study),
+        cases="\n".join(case_text(study, c) for c in study.cases),
+        halving=halving_table(study), knobs=knobs,
         forecast=forecast_section(data.with_name("forecast.json")),
         failures=failures(study), holes="\n".join(f"* {h}" for h in study.head["holes"]) or "None.")
     (out / "accuracy.md").write_text(re.sub(r" +\n", "\n", text), encoding="utf-8")

@@ -3,13 +3,9 @@
 
 import common
 from common import np
-from sphfsi.bands import band
-from study import SCENES
 from study_results import CROSSING, across, against, cost, finished, main_error, percent, seconds
 
 AIMS = (0.1, 0.05, 0.02, 0.01, 0.005)
-# Kinds of error whose reference is the value that the table of orders shows.
-SCALAR = ("period", "damped_period", "settled", "final")
 
 
 def table(head, rows):
@@ -85,28 +81,6 @@ def base_table(study, case):
     return table(head, rows)
 
 
-def order_table(study):
-    rows = []
-    for case, entry in study.cases.items():
-        base = sorted(study.base(case), key=lambda p: p["dp"])
-        for error in entry["error"]:
-            values = [(p["dp"], p["values"].get(error["name"])) for p in base]
-            values = [v for v in values if v[1] is not None]
-            if len(values) < 3 or error["kind"] == "noise":
-                continue
-            (h, *_), found = zip(*values[:3])
-            c = band([dp / h for dp, _ in values[:3]], found)
-            reference = error.get("reference") if error["kind"] in SCALAR else None
-            rows.append([entry.get("title", case), error["name"], against(error),
-                         *(f"{v:.5g}" for _, v in values[:3]),
-                         f"{c.order:.2f}" if c.order else f"none ({c.why})",
-                         f"{found[0] + c.shift:.5g}" if c.order else "-",
-                         percent(c.half / abs(found[0])),
-                         "-" if reference is None else f"{reference:.5g}"])
-    return table(["case", "quantity", "against", "finest", "middle", "coarsest", "observed order",
-                  "extrapolated", "90 % band of the finest (%)", "reference"], rows)
-
-
 def halving_table(study):
     rows = []
     for case, entry in study.cases.items():
@@ -172,16 +146,6 @@ def ranked_knobs(study, scene):
             crossed |= {(knob, value)} if zero else set()
     return sorted(((min(g), max(g), *k, k in crossed) for k, g in found.items() if min(g) > 0),
                   reverse=True)
-
-
-def best_knobs(study):
-    """Per scene the settings with the largest gain in all cases where they ran."""
-    rows = []
-    for scene, words in SCENES.items():
-        rows += [[words, study.label(knob, value) + (f" {CROSSING}" if zero else ""),
-                  " to ".join(dict.fromkeys(map(gain_text, (low, high))))]
-                 for low, high, knob, value, zero in ranked_knobs(study, scene)[:8]]
-    return table(["scene", "setting", "gain, least and most over its cases"], rows)
 
 
 def failures(study):
