@@ -384,12 +384,12 @@ static void find_yields(struct beams *beams)
 }
 
 /* Projected Gauss-Seidel, in the order of the touches: no force pulls. */
-void beams_correct_touches(struct beams *beams)
+bool beams_correct_touches(struct beams *beams)
 {
     enum { TURNS = 1000 };
     struct beam_contact *const contact = beams->contact;
-    double largest = (double)INFINITY;
-    if (contact->n == 0) return;
+    double largest = (double)INFINITY, first = 0;
+    if (contact->n == 0) return true;
     find_yields(beams);
     for (int j = 0; j < contact->n; j++)
         contact->open[j] = contact->touch[j].gap + along_touch(beams, &contact->touch[j]) +
@@ -409,7 +409,9 @@ void beams_correct_touches(struct beams *beams)
             for (int64_t r = 0; r < contact->rows && more != 0; r++)
                 beams->unknown[r] += more * column_of(contact, j)[r];
         }
+        if (turn == 0) first = largest;
     }
+    return largest <= first;
 }
 
 void beams_finish_touches(struct beams *beams, double time, double dt)

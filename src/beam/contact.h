@@ -21,8 +21,8 @@ void beams_add_touches(struct beams *beams);
 bool beams_keep_apart(const struct beams *beams);
 
 /* Adds to `unknown`, the correction without a change of the forces, what they change. The matrix
- * has its factors. */
-void beams_correct_touches(struct beams *beams);
+ * has its factors. false: there are no such forces, as of a matrix that is not positive. */
+bool beams_correct_touches(struct beams *beams);
 
 /* After the step: the work of walls that push, and the forces on rigid bodies. */
 void beams_finish_touches(struct beams *beams, double time, double dt);

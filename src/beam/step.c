@@ -174,14 +174,15 @@ static struct largest find_residual(struct beams *beams, double dt)
     return top;
 }
 
-static void correct(struct beams *beams)
+static bool correct(struct beams *beams)
 {
     envelope_solve(&beams->matrix, beams->unknown);
-    beams_correct_touches(beams);
+    if (!beams_correct_touches(beams)) return false;
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)
             if (beams->node[k].row[c] >= 0)
                 beams->step[k].d[c] += beams->unknown[beams->node[k].row[c]];
+    return true;
 }
 
 /* Newton's method; the matrix is found anew for each correction. */
@@ -194,7 +195,7 @@ static bool solve(struct beams *beams, double dt)
             return true;
         if (n == ITERATIONS || !isfinite(top.off) || envelope_factor(&beams->matrix) < 0)
             return false;
-        correct(beams);
+        if (!correct(beams)) return false;
         beams->iterations++;
     }
     return false;
