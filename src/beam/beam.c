@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * From [beam] sections to nodes and elements, and what output asks of them. */
 #include "beam/contact.h"
+#include "base/segment.h"
 #include "base/elementary.h"
 
 #include "case/params.h"
@@ -290,12 +291,9 @@ struct beam_place beam_find(const struct beams *beams, int beam, const double at
     struct beam_place best = {.distance = HUGE_VAL};
     for (int k = beams->beam[beam].first_element; k < beams->beam[beam].end_element; k++) {
         const struct beam_element *const e = &beams->element[k];
-        const double *const from = beams->node[e->node[0]].X;
-        const double x = at[0] - from[0], y = at[1] - from[1];
-        const double along = (x * e->between[0] + y * e->between[1]) / square(e->length);
-        const double part = max2(0, min2(1, along));
-        const double off = elementary_hypot(x - part * e->between[0], y - part * e->between[1]);
-        if (off < best.distance) best = (struct beam_place){k, part, off};
+        const struct segment_foot f =
+            segment_foot(at, beams->node[e->node[0]].X, beams->node[e->node[1]].X, 0);
+        if (f.distance < best.distance) best = (struct beam_place){k, f.part, f.distance};
     }
     return best;
 }

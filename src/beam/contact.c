@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "beam/contact.h"
-#include "base/elementary.h"
+#include "base/segment.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"
 
@@ -58,32 +58,25 @@ static void add_outlines(struct beam_contact *contact, int wall, const struct ou
     }
 }
 
-static int count_faces(const struct outlines *o)
-{
-    int n = 0;
-    for (int k = 0; k < o->n; k++) n += o->item[k].n ? o->item[k].n : 1;
-    return n;
-}
-
 static enum err create_faces(struct beams *beams, struct arena *a, struct arena *temp,
                              struct diag *d)
 {
     const struct scene *const scene = beams->scene;
     struct beam_contact *const contact = beams->contact;
     const size_t n = (size_t)contact->n_walls;
-    struct outlines *const o = arena_alloc(temp, 2 * n, sizeof *o, "beams", d);
+    struct body_outlines *const o = arena_alloc(temp, n, sizeof *o, "beams", d);
     int most = 0;
     if (!o) return ERR_MEMORY;
     for (int w = 0; w < contact->n_walls; w++) {
-        TRY(outlines_of(&o[2 * w], scene, &scene->wall[w].shape, temp, d));
-        TRY(outlines_of(&o[2 * w + 1], scene, &scene->wall[w].minus, temp, d));
-        most += count_faces(&o[2 * w]) + count_faces(&o[2 * w + 1]);
+        TRY(body_outlines_of(&o[w], scene, &scene->wall[w].shape, &scene->wall[w].minus, temp, d));
+        most += outlines_ends(&o[w].add) + outlines_ends(&o[w].minus);
         for (int k = 0; k < scene->wall[w].shape.n; k++) most += scene->wall[w].shape.item[k].n;
     }
     contact->face = arena_alloc(a, (size_t)most, sizeof *contact->face, "beams", d);
     if (!contact->face) return ERR_MEMORY;
     for (int w = 0; w < contact->n_walls; w++) {
-        for (int side = 0; side < 2; side++) add_outlines(contact, w, &o[2 * w + side]);
+        add_outlines(contact, w, &o[w].add);
+        add_outlines(contact, w, &o[w].minus);
         for (int k = 0; k < scene->wall[w].shape.n; k++) {
             const struct shape *const s = &scene->wall[w].shape.item[k];
             for (int j = 0; s->thin && j + 1 < s->n; j++)
@@ -137,23 +130,20 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
 
 /* --- touches --- */
 
-/* The nearest point of a segment. */
-static double foot_part(const double at[2], const double from[2], const double to[2])
-{
-    const double ex = to[0] - from[0], ey = to[1] - from[1], l2 = square(ex) + square(ey);
-    if (!(l2 > 0)) return 0;
-    return max2(0, min2(1, ((at[0] - from[0]) * ex + (at[1] - from[1]) * ey) / l2));
-}
+/* The nearest place of a segment, or of a circle with a `radius`: the normal there. */
+struct beam_near {
+    double part, normal[2], distance;
+};
 
-static double distance_to(const double at[2], const double from[2], const double to[2], double part,
-                          double radius, double normal[2])
+static struct beam_near nearest_of(const double at[2], const double from[2], const double to[2],
+                                   double radius)
 {
-    double way[2];
-    for (int c = 0; c < 2; c++) way[c] = at[c] - (from[c] + part * (to[c] - from[c]));
-    const double length = elementary_hypot(way[0], way[1]);
-    const double sign = length < radius ? -1 : 1;
-    for (int c = 0; c < 2; c++) normal[c] = length > 0 ? sign * way[c] / length : 0;
-    return sign * (length - radius);
+    const struct segment_foot foot = segment_foot(at, from, to, 0);
+    const double sign = foot.distance < radius ? -1 : 1;
+    struct beam_near near = {.part = foot.part, .distance = sign * (foot.distance - radius)};
+    for (int c = 0; c < 2 && foot.distance > 0; c++)
+        near.normal[c] = sign * foot.offset[c] / foot.distance;
+    return near;
 }
 
 static void node_now(const struct beams *beams, int k, double x[2])
@@ -209,23 +199,22 @@ static void touch_face(struct beams *beams, int k, const struct beam_face *face)
     const struct beam_contact *const contact = beams->contact;
     const int beam = beams->node[k].beam;
     const double layer = contact->layer[beam * beams->scene->n_wall + face->wall];
-    double x[2], from[2], to[2], moved[2][2], start[2];
+    double x[2], from[2], to[2], moved[2][2];
     if (isnan(layer)) return;
     node_now(beams, k, x);
     place_wall(contact, face->wall, face->from, from, moved[0]);
     place_wall(contact, face->wall, face->to, to, moved[1]);
-    const double part = foot_part(x, from, to);
+    const struct beam_near now = nearest_of(x, from, to, face->radius);
+    if (now.distance > half_of(beams, beam) + layer + beams->scene->top.dp) return;
+    const double at_start =
+        nearest_of(beams->node[k].X, face->from, face->to, face->radius).distance;
     struct beam_touch t = {.n = 1, .node = {k}, .part = {1}, .wall = face->wall};
-    const double distance = distance_to(x, from, to, part, face->radius, t.normal);
-    if (distance > half_of(beams, beam) + layer + beams->scene->top.dp) return;
-    const double *const X = beams->node[k].X;
-    const double at_start = distance_to(X, face->from, face->to, foot_part(X, face->from, face->to),
-                                        face->radius, start);
     for (int c = 0; c < 2; c++) {
         t.at[c] = x[c];
-        t.moved += t.normal[c] * ((1 - part) * moved[0][c] + part * moved[1][c]);
+        t.normal[c] = now.normal[c];
+        t.moved += t.normal[c] * ((1 - now.part) * moved[0][c] + now.part * moved[1][c]);
     }
-    t.gap = max2(0, distance - least_distance(half_of(beams, beam), layer, at_start)) - t.moved;
+    t.gap = max2(0, now.distance - least_distance(half_of(beams, beam), layer, at_start)) - t.moved;
     add_touch(beams, &t);
 }
 
@@ -252,7 +241,7 @@ static void touch_element(struct beams *beams, int element, int wall, const doub
               other = k < 0 ? wall : scene_beam_wall(beams->scene, beams->node[k].beam);
     const double layer = contact->layer[beam * n_wall + other];
     const double thick = half_of(beams, beam) + (k < 0 ? 0 : half_of(beams, beams->node[k].beam));
-    double at[2], from[2], to[2], moved[2] = {0}, start[2], away[2];
+    double at[2], from[2], to[2], moved[2] = {0};
     if (isnan(layer) || node[0] == k || node[1] == k) return;
     if (k < 0)
         place_wall(contact, wall, X, at, moved);
@@ -260,20 +249,19 @@ static void touch_element(struct beams *beams, int element, int wall, const doub
         node_now(beams, k, at);
     node_now(beams, node[0], from);
     node_now(beams, node[1], to);
-    const double part = foot_part(at, from, to);
-    const double distance = distance_to(at, from, to, part, 0, away);
-    if (distance > thick + layer + beams->scene->top.dp) return;
+    const struct beam_near now = nearest_of(at, from, to, 0);
+    if (now.distance > thick + layer + beams->scene->top.dp) return;
     if (k >= 0 && in_bend(beams, element, k, thick + layer)) return;
-    const double *const A = beams->node[node[0]].X, *const B = beams->node[node[1]].X;
-    const double at_start = distance_to(X, A, B, foot_part(X, A, B), 0, start);
+    const double at_start =
+        nearest_of(X, beams->node[node[0]].X, beams->node[node[1]].X, 0).distance;
     struct beam_touch t = {.n = k < 0 ? 2 : 3,
                            .node = {node[0], node[1], k < 0 ? 0 : k},
-                           .part = {1 - part, part, -1},
+                           .part = {1 - now.part, now.part, -1},
                            .wall = wall,
-                           .normal = {-away[0], -away[1]},
+                           .normal = {-now.normal[0], -now.normal[1]},
                            .at = {at[0], at[1]}};
     for (int c = 0; c < 2; c++) t.moved += t.normal[c] * moved[c];
-    t.gap = max2(0, distance - least_distance(thick, layer, at_start)) - t.moved;
+    t.gap = max2(0, now.distance - least_distance(thick, layer, at_start)) - t.moved;
     add_touch(beams, &t);
 }
 
@@ -449,10 +437,10 @@ int64_t beams_find_solid(const struct beams *beams, const struct particles *soli
             const struct box2 place = {{at[0], at[1]}, {at[0], at[1]}};
             if (!box2_near(&place, &box, most)) continue;
             for (int m = b->first_element; m < b->end_element; m++) {
-                double from[2], to[2], normal[2];
+                double from[2], to[2];
                 node_now(beams, beams->element[m].node[0], from);
                 node_now(beams, beams->element[m].node[1], to);
-                if (distance_to(at, from, to, foot_part(at, from, to), 0, normal) < most) return i;
+                if (segment_foot(at, from, to, 0).distance < most) return i;
             }
         }
     }

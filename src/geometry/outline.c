@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "geometry/outline.h"
+#include "base/segment.h"
 #include "base/elementary.h"
 
 #include "case/case.h"
@@ -239,6 +240,19 @@ int outlines_find(const struct outlines *o, double x, double y)
     return -1;
 }
 
+enum err body_outlines_of(struct body_outlines *o, const struct scene *scene,
+                          const struct shape_list *shape, const struct shape_list *minus,
+                          struct arena *a, struct diag *d)
+{
+    TRY(outlines_of(&o->add, scene, shape, a, d));
+    return outlines_of(&o->minus, scene, minus, a, d);
+}
+
+bool body_outlines_contain(const struct body_outlines *o, double x, double y)
+{
+    return outlines_find(&o->add, x, y) >= 0 && outlines_find(&o->minus, x, y) < 0;
+}
+
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
 {
     if (angle == 0) return ERR_OK;
@@ -377,16 +391,9 @@ enum err outlines_moments(const struct outlines *add, const struct outlines *min
     return ERR_OK;
 }
 
-static double distance2_of_edge(const double a[2], const double b[2], double x, double y)
-{
-    const double ex = b[0] - a[0], ey = b[1] - a[1], length2 = ex * ex + ey * ey;
-    const double along = (x - a[0]) * ex + (y - a[1]) * ey;
-    const double s = length2 > 0 ? min2(1, max2(0, along / length2)) : 0;
-    return square(a[0] + s * ex - x) + square(a[1] + s * ey - y);
-}
-
 bool outlines_edge_within(const struct outlines *o, double x, double y, double reach)
 {
+    const double place[2] = {x, y};
     const struct box2 at = {{x, y}, {x, y}};
     for (int k = 0; k < o->n; k++) {
         const struct outline *const piece = &o->item[k];
@@ -395,8 +402,8 @@ bool outlines_edge_within(const struct outlines *o, double x, double y, double r
                                   piece->radius) <= reach)
             return true;
         for (int j = 0; j < piece->n; j++)
-            if (distance2_of_edge(piece->pt[j], piece->pt[j + 1 < piece->n ? j + 1 : 0], x, y) <=
-                square(reach))
+            if (segment_foot(place, piece->pt[j], piece->pt[j + 1 < piece->n ? j + 1 : 0], 0)
+                    .distance <= reach)
                 return true;
     }
     return false;

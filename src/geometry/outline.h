@@ -33,6 +33,15 @@ double polygon_area(int n, double (*const pt)[2]);
 enum err outlines_of(struct outlines *o, const struct scene *scene, const struct shape_list *list,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
+/* The region of a section. */
+struct body_outlines {
+    struct outlines add, minus;
+};
+enum err body_outlines_of(struct body_outlines *o, const struct scene *scene,
+                          const struct shape_list *shape, const struct shape_list *minus,
+                          struct arena *a, struct diag *d) SPHFSI_CHECKED;
+bool body_outlines_contain(const struct body_outlines *o, double x, double y);
+
 /* The intervals [from[0], from[1]), [from[2], from[3]) ... of the line at height y inside a piece;
  * returns the count of numbers. `from` has memory for max(n, 2). Neighbours with a common edge
  * neither overlap nor leave a gap: both sides intersect an edge with the same arithmetic. */

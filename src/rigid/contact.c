@@ -10,7 +10,7 @@
 
 /* The outlines of a wall or rigid body at the start, and where it is. */
 struct rigid_shape {
-    struct outlines add, minus;
+    struct body_outlines of;
     int rigid, motion; /* numbers; -1: none */
     struct motion_state now;
 };
@@ -29,11 +29,6 @@ struct rigid_contact {
 };
 
 /* --- outlines --- */
-
-static bool is_inside(const struct rigid_shape *s, const double at[2])
-{
-    return outlines_find(&s->add, at[0], at[1]) >= 0 && outlines_find(&s->minus, at[0], at[1]) < 0;
-}
 
 /* A corner, in the axes of the section whose outline it is compared with. */
 struct approach {
@@ -86,7 +81,10 @@ static void add_touch(struct approach *a, const double at[2], const double n[2],
     /* A quarter of a spacing: deeper, the body passes through, of which a guard warns. */
     if (gap > contact->reach || gap < -contact->now->layer - 0.25 * contact->reach) return;
     if (a->inside ? distance > 1e-3 * near : deep) return;
-    if (is_inside(a->of[1], beyond) || !is_inside(a->of[1], before)) return;
+    const struct body_outlines *const o = &a->of[1]->of;
+    if (body_outlines_contain(o, beyond[0], beyond[1]) ||
+        !body_outlines_contain(o, before[0], before[1]))
+        return;
     struct rigid_row *to = deep ? a->deepest : NULL;
     if (to && gap <= to->gap) return;
     if (!to) {
@@ -142,17 +140,18 @@ static void approach_corner(struct rigid *rigid, const struct rigid_shape *of,
     struct approach a = {.rigid = rigid, .of = {of, other}, .radius = radius};
     a.at[0] = m->centre[0] + m->turn[0] * x + m->turn[1] * y;
     a.at[1] = m->centre[1] - m->turn[1] * x + m->turn[0] * y;
-    a.inside = is_inside(other, a.at);
-    for (int j = 0; j < other->add.n; j++) approach_piece(&a, &other->add.item[j], 1);
-    for (int j = 0; j < other->minus.n; j++) approach_piece(&a, &other->minus.item[j], -1);
+    a.inside = body_outlines_contain(&other->of, a.at[0], a.at[1]);
+    for (int j = 0; j < other->of.add.n; j++) approach_piece(&a, &other->of.add.item[j], 1);
+    for (int j = 0; j < other->of.minus.n; j++) approach_piece(&a, &other->of.minus.item[j], -1);
 }
 
 static void approach_shape(struct rigid *rigid, const struct rigid_shape *of,
                            const struct rigid_shape *other)
 {
-    for (int k = 0; k < of->add.n + of->minus.n; k++) {
-        const bool hole = k >= of->add.n;
-        const struct outline *const o = hole ? &of->minus.item[k - of->add.n] : &of->add.item[k];
+    for (int k = 0; k < of->of.add.n + of->of.minus.n; k++) {
+        const bool hole = k >= of->of.add.n;
+        const struct outline *const o =
+            hole ? &of->of.minus.item[k - of->of.add.n] : &of->of.add.item[k];
         if (!o->n && !hole) approach_corner(rigid, of, other, o->centre, o->radius);
         for (int i = 0; i < o->n; i++) approach_corner(rigid, of, other, o->pt[i], 0);
     }
@@ -188,12 +187,11 @@ static enum err shape_create(struct rigid *rigid, int w, struct arena *a, struct
 {
     const struct scene *const scene = rigid->scene;
     struct rigid_shape *const s = &rigid->contact->shape[w];
-    TRY(outlines_of(&s->add, scene, &scene->wall[w].shape, a, d));
-    TRY(outlines_of(&s->minus, scene, &scene->wall[w].minus, a, d));
+    TRY(body_outlines_of(&s->of, scene, &scene->wall[w].shape, &scene->wall[w].minus, a, d));
     s->rigid = w < scene_rigid_wall(scene, 0) ? -1 : w - scene_rigid_wall(scene, 0);
     s->motion = scene->wall[w].motion[0] ? scene_find_motion(scene, scene->wall[w].motion) : -1;
-    for (int j = 0; j < s->add.n; j++) rigid->contact->most += 4 * (s->add.item[j].n + 4);
-    for (int j = 0; j < s->minus.n; j++) rigid->contact->most += 4 * s->minus.item[j].n;
+    for (int j = 0; j < s->of.add.n; j++) rigid->contact->most += 4 * (s->of.add.item[j].n + 4);
+    for (int j = 0; j < s->of.minus.n; j++) rigid->contact->most += 4 * s->of.minus.item[j].n;
     return ERR_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "solid/contact_pair.h"
 
 #include "base/box2.h"
+#include "base/segment.h"
 #include "geometry/motion.h"
 #include "particles/kernel.h"
 
@@ -11,33 +12,19 @@
 
 /* --- distance --- */
 
-/* The place on an edge where the distance less the reach is smallest if the reach rises by
- * `rise` from a to b (T-61c). */
 static struct contact_closest closest_of(const struct contact *contact, int32_t point, int32_t edge,
                                          double rise)
 {
     const struct contact_point *const p = &contact->point[point],
                                       *const a = &contact->point[contact->edge[edge].a],
                                       *const b = &contact->point[contact->edge[edge].b];
-    const double ex = b->x[0] - a->x[0], ey = b->x[1] - a->x[1], length2 = ex * ex + ey * ey;
-    const double px = p->x[0] - a->x[0], py = p->x[1] - a->x[1];
-    struct contact_closest f = {.point = p, .a = a, .b = b, .offset = {px, py}};
-    if (length2 > 0) f.at = (px * ex + py * ey) / length2;
-    if (length2 > rise * rise)
-        f.at += fabs(px * ey - py * ex) / length2 * rise / sqrt(length2 - rise * rise);
-    else if (rise != 0)
-        f.at = rise > 0;
-    f.at = min2(1, max2(0, f.at));
-    /* At an end of an edge: bitwise equal to the result of the neighbouring edge. */
-    if (f.at == 1) {
-        f.offset[0] = p->x[0] - b->x[0];
-        f.offset[1] = p->x[1] - b->x[1];
-    } else if (f.at > 0) {
-        f.offset[0] -= f.at * ex;
-        f.offset[1] -= f.at * ey;
-    }
-    f.distance = sqrt(f.offset[0] * f.offset[0] + f.offset[1] * f.offset[1]);
-    return f;
+    const struct segment_foot foot = segment_foot(p->x, a->x, b->x, rise);
+    return (struct contact_closest){.point = p,
+                                    .a = a,
+                                    .b = b,
+                                    .at = foot.part,
+                                    .offset = {foot.offset[0], foot.offset[1]},
+                                    .distance = foot.distance};
 }
 
 struct contact_closest contact_nearest(const struct contact *contact, int32_t point, int32_t edge)

@@ -4,6 +4,7 @@
 #include "solid/contact_pair.h"
 
 #include "base/elementary.h"
+#include "base/segment.h"
 #include "geometry/outline.h"
 #include "particles/kernel.h"
 #include "solid/hinges.h"
@@ -223,22 +224,16 @@ static enum err find_surface(struct contact *contact, struct arena *a,
 
 /* --- how far surface points lie inside the outlines of the shapes that they sample (T-61b) --- */
 
-/* Shapes of a solid or wall. */
-struct body_outlines {
-    struct outlines add, minus;
-};
-
 static enum err find_regions(const struct contact *contact, struct body_outlines *region,
                              struct arena *a, struct diag *d)
 {
     const struct scene *const scene = contact->scene;
-    for (int k = 0; k < contact->n_bodies; k++) {
-        const int wall = k - contact->n_solids;
-        TRY(outlines_of(&region[k].add, scene,
-                        wall < 0 ? &scene->solid[k].shape : &scene->wall[wall].shape, a, d));
-        TRY(outlines_of(&region[k].minus, scene,
-                        wall < 0 ? &scene->solid[k].minus : &scene->wall[wall].minus, a, d));
-    }
+    for (int k = 0; k < contact->n_solids; k++)
+        TRY(body_outlines_of(&region[k], scene, &scene->solid[k].shape, &scene->solid[k].minus, a,
+                             d));
+    for (int k = 0; k < contact->n_walls; k++)
+        TRY(body_outlines_of(&region[contact->n_solids + k], scene, &scene->wall[k].shape,
+                             &scene->wall[k].minus, a, d));
     return ERR_OK;
 }
 
@@ -253,17 +248,16 @@ struct outline_search {
 static bool inside(const struct outline_search *n, double x, double y)
 {
     for (int k = 0; k < n->contact->n_bodies; k++)
-        if (n->contact->group[k] == n->group && outlines_find(&n->region[k].add, x, y) >= 0 &&
-            outlines_find(&n->region[k].minus, x, y) < 0)
+        if (n->contact->group[k] == n->group && body_outlines_contain(&n->region[k], x, y))
             return true;
     return false;
 }
 
 /* Takes a place of a piece if it is nearer and on the outline of the union: just beyond it is
  * outside. */
-static void try_place(struct outline_search *n, double x, double y)
+static void try_place(struct outline_search *n, double dx, double dy)
 {
-    const double dx = x - n->x, dy = y - n->y, distance = elementary_hypot(dx, dy);
+    const double distance = elementary_hypot(dx, dy);
     const double beyond = 1 + 1e-6;
     if (distance < n->distance && !inside(n, n->x + beyond * dx, n->y + beyond * dy))
         n->distance = distance;
@@ -276,18 +270,14 @@ static void try_piece(struct outline_search *n, const struct outline *o)
         return;
     if (o->n == 0) {
         const double dx = n->x - o->centre[0], dy = n->y - o->centre[1];
-        const double r = elementary_hypot(dx, dy);
-        if (r > 0)
-            try_place(n, o->centre[0] + o->radius / r * dx, o->centre[1] + o->radius / r * dy);
+        const double beyond = o->radius / elementary_hypot(dx, dy) - 1;
+        if (dx != 0 || dy != 0) try_place(n, beyond * dx, beyond * dy);
         return;
     }
     for (int k = 0; k < o->n; k++) {
         const double *const a = o->pt[k], *const b = o->pt[k + 1 < o->n ? k + 1 : 0];
-        const double ex = b[0] - a[0], ey = b[1] - a[1], length2 = ex * ex + ey * ey;
-        if (length2 == 0) continue;
-        const double along = (n->x - a[0]) * ex + (n->y - a[1]) * ey;
-        const double s = min2(1, max2(0, along / length2));
-        try_place(n, a[0] + s * ex, a[1] + s * ey);
+        const struct segment_foot f = segment_foot((const double[]){n->x, n->y}, a, b, 0);
+        if (a[0] != b[0] || a[1] != b[1]) try_place(n, -f.offset[0], -f.offset[1]);
     }
 }
 
