@@ -2,7 +2,6 @@
  * The search for a state of rest (T-78) by kinetic damping: where the kinetic energy has passed a
  * maximum, all velocities are set to zero. Its steps are those of a run, with forces at t = 0. */
 #include "time/relax.h"
-#include "base/box2.h"
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
@@ -102,21 +101,18 @@ static void judge(struct simulation *sim)
     if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) relax_end(sim);
 }
 
-/* The largest distance between walls and bodies at the start, m. */
-static double extent(const struct simulation *sim)
+/* The diagonal of the domain, m: all walls and bodies are in it. */
+static double domain_size(const struct scene *scene)
 {
-    const struct particles *const wall = &sim->kind[KIND_WALL], *const solid =
-                                                                    &sim->kind[KIND_SOLID];
-    struct box2 box = box2_empty();
-    for (int64_t i = 0; i < wall->n; i++) box2_include(&box, wall->x[i], wall->y[i]);
-    for (int64_t i = 0; i < solid->n; i++) box2_include(&box, solid->X[i], solid->Y[i]);
-    return elementary_hypot(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+    return elementary_hypot(scene->domain_upper[0] - scene->domain_lower[0],
+                            scene->domain_upper[1] - scene->domain_lower[1]);
 }
 
 /* A body whose particles have all moved further than that will meet nothing that could hold it. */
 static enum err check_fall(const struct simulation *sim, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const double size = domain_size(sim->scene);
     double least[SCENE_MAX_SECTIONS];
     for (int b = 0; b < sim->scene->n_solid; b++) least[b] = HUGE_VAL;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -126,13 +122,14 @@ static enum err check_fall(const struct simulation *sim, struct diag *d)
     for (int b = 0; b < sim->scene->n_solid; b++) {
         const struct scene_solid *const body = &sim->scene->solid[b];
         char place[LOCATION_TEXT];
-        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(extent(sim)))) continue;
+        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(size))) continue;
         scene_location(sim->scene, body->common.line, place);
-        return diag_fail(d, ERR_GUARD,
-                         "%s: [relax]: [solid %s] has moved by %.3g m as a whole, further than the "
-                         "scene is large (%.3g m): nothing holds it, so there is no state of rest; "
-                         "give it a `clamp`, put a [wall] below it, or leave [relax] out",
-                         place, body->common.name, sqrt(least[b]), extent(sim));
+        return diag_fail(
+            d, ERR_GUARD,
+            "%s: [relax]: [solid %s] has moved by %.3g m as a whole, more than the size "
+            "of the domain (%.3g m): nothing holds it, so there is no state of rest; "
+            "give it a `clamp`, put a [wall] below it, or leave [relax] out",
+            place, body->common.name, sqrt(least[b]), size);
     }
     return ERR_OK;
 }
@@ -143,7 +140,7 @@ static enum err check_held_fluid(const struct simulation *sim, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct scene *const scene = sim->scene;
-    double g[2], mean[2] = {0, 0}, size[2];
+    double g[2], mean[2] = {0, 0};
     char place[LOCATION_TEXT];
     if (!(sim->effects & FX_FLUID)) return ERR_OK;
     scene_location(scene, scene->fluid[0].common.line, place);
@@ -154,9 +151,8 @@ static enum err check_held_fluid(const struct simulation *sim, struct diag *d)
                          place);
     for (int64_t i = 0; i < particles->n; i++)
         mean[0] += particles->vx[i], mean[1] += particles->vy[i];
-    for (int c = 0; c < 2; c++) size[c] = scene->domain_upper[c] - scene->domain_lower[c];
     scene_gravity_at(scene, 0, g);
-    const double pull = elementary_hypot(g[0], g[1]), high = elementary_hypot(size[0], size[1]);
+    const double pull = elementary_hypot(g[0], g[1]), high = domain_size(scene);
     const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)particles->n);
     if (!(pull > 0 && fall > sqrt(2 * pull * high))) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
@@ -247,8 +243,4 @@ void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
             "between two stops, the speed stayed below %g of its largest value",
             st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
             sim->scene->relax.tolerance);
-    const size_t n = strlen(text);
-    if (st->lost > 0)
-        snprintf(text + n, RELAX_TEXT - n, "; %lld fluid particles have left the domain meanwhile",
-                 (long long)st->lost);
 }

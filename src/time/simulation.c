@@ -114,22 +114,18 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     return ERR_OK;
 }
 
-static enum err take_step(struct simulation *sim, double t_limit, struct diag *d)
-{
-    sim->solid.time = scene_time(sim, sim->state.time);
-    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    if (sim->effects & FX_FLUID) TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
-    TRY(advance(sim, t_limit, d));
-    return observe(sim, sim->state.time, d);
-}
-
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     const double begin = wall_clock();
     thread_use(sim->team.now);
     sim->fluid.threads = sim->team.now;
     if (sim->kind[KIND_SOLID].n >= SOLID_PARALLEL) sim->solid.threads = sim->team.now;
-    const enum err e = take_step(sim, t_limit, d);
+    sim->solid.time = scene_time(sim, sim->state.time);
+    rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
+    enum err e = ERR_OK;
+    if (sim->effects & FX_FLUID) e = observe(sim, sim->state.time + timestep_longest(sim), d);
+    if (!e) e = advance(sim, t_limit, d);
+    if (!e) e = observe(sim, sim->state.time, d);
     team_next(&sim->team, wall_clock() - begin);
     return e;
 }
