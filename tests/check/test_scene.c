@@ -353,14 +353,17 @@ static void test_flow_past_a_body_that_sticks(void)
     "[inflow in]\nfrom = 0, 0.05\nto = 0, 0\nspeed = 0.1\n"                                        \
     "[outflow out]\nfrom = 0.1, 0\nto = 0.1, 0.05\npressure = 0\n"
     read(STREAM("slip = none\n", ""));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
-                                        "[fluid water] sticks to [wall plates] and has no "
-                                        "`shifting`"),
-                                 warnings);
-    read(STREAM("slip = none\n", "shifting = 10\nshifting_speed = largest\n"));
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "`shifting`"), warnings);
+    TEST_ASSERT_EQUAL_DOUBLE(10, scene.fluid[0].shifting);
+    TEST_ASSERT_EQUAL_INT(SHIFTING_LARGEST, scene.fluid[0].shifting_speed);
+    read(STREAM("slip = none\n", "[numerics]\ncfl = 0.8\n"));
+    TEST_ASSERT_EQUAL_DOUBLE(5 / 0.8, scene.fluid[0].shifting);
+    read(STREAM("slip = none\n", "shifting = 0\n"));
+    TEST_ASSERT_EQUAL_DOUBLE(0, scene.fluid[0].shifting);
     read(STREAM("", ""));
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "`shifting`"), warnings);
+    TEST_ASSERT_EQUAL_DOUBLE(0, scene.fluid[0].shifting);
+    /* A free surface: the water ends below the upper plate. */
+    read(STREAM("slip = none\n", "minus = box 0, 0.03, 0.1, 0.05\n"));
+    TEST_ASSERT_EQUAL_DOUBLE(0, scene.fluid[0].shifting);
 }
 
 static void test_shifting_where_nothing_gives_way(void)
