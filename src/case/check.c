@@ -59,7 +59,7 @@ static enum err check_names(struct reader *r, const struct param *param, const v
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)
         return check_name(r, param, text, !one ? param->also : other_kind(r->scene, probe));
-    for (int k = 0; scene_word(text, k, name); k++) TRY(check_name(r, param, name, param->also));
+    for (int k = 0; scene_listed(text, k, name); k++) TRY(check_name(r, param, name, param->also));
     return ERR_OK;
 }
 
@@ -332,8 +332,8 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
         return bad_section(r, "needs `body`, the %s measured",
                            p->quantity == PROBE_FORCE ? "solids or walls that are"
                                                       : "solid that is");
-    for (int k = 0; scene_word(p->body, k, name); k++)
-        for (int n = 0; n < k && scene_word(p->body, n, other); n++)
+    for (int k = 0; scene_listed(p->body, k, name); k++)
+        for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)
                 return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
     if (p->quantity == PROBE_SECTION_FORCE && scene_find_beam(r->scene, p->body) < 0)

@@ -65,7 +65,7 @@ static int first_wall_force(const struct scene *scene)
     char name[SCENE_TEXT];
     for (int k = 0; k < scene->n_probe; k++)
         for (int n = 0;
-             scene->probe[k].quantity == PROBE_FORCE && scene_word(scene->probe[k].body, n, name);
+             scene->probe[k].quantity == PROBE_FORCE && scene_listed(scene->probe[k].body, n, name);
              n++)
             if (scene_find_solid(scene, name) < 0) return k;
     return -1;

@@ -129,6 +129,15 @@ double scene_contact_gap(const struct scene *scene, const struct scene_contact *
     return given || c->gap > 0 || !layer ? c->gap : scene->top.dp;
 }
 
+bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
+{
+    struct slice rest = slice_of(list), piece = rest;
+    for (; k >= 0; k--)
+        if (!slice_next(&rest, ',', &piece)) return false;
+    snprintf(name, SCENE_TEXT, "%.*s", (int)piece.length, piece.at);
+    return true;
+}
+
 bool scene_word(const char *list, int k, char word[SCENE_TEXT])
 {
     static const char blanks[] = " \t,";
@@ -141,8 +150,8 @@ bool scene_word(const char *list, int k, char word[SCENE_TEXT])
 bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 {
     char more[SCENE_TEXT];
-    return scene_word(text, 0, name[0]) && scene_word(text, 1, name[1]) &&
-           !scene_word(text, 2, more);
+    return scene_listed(text, 0, name[0]) && scene_listed(text, 1, name[1]) &&
+           !scene_listed(text, 2, more) && *name[0] && *name[1];
 }
 
 /* --- probes and snapshots --- */

@@ -391,7 +391,9 @@ const struct scene_contact *scene_contact_of(const struct scene *scene, int a, i
  * scheme. */
 double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 
-/* Word k of a list with commas or blanks between them; false: there are fewer. */
+/* Name k of a list with commas between them, or word k of one with blanks or commas; false: there
+ * are fewer. */
+bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);

@@ -370,7 +370,7 @@ static void warn_of_turning(struct check *check)
         bool asked = solid;
         char name[SCENE_TEXT];
         for (int p = 0; p < scene->n_probe && !solid; p++)
-            for (int n = 0; scene_word(scene->probe[p].body, n, name); n++)
+            for (int n = 0; scene_listed(scene->probe[p].body, n, name); n++)
                 asked |=
                     scene->probe[p].quantity == PROBE_FORCE && strcmp(name, b.common->name) == 0;
         if (turns && asked && b.slip == SLIP_NONE)

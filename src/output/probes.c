@@ -175,10 +175,10 @@ static enum err find_bodies(struct probe *probe, const struct scene *scene, cons
                             struct arena *a, struct diag *d)
 {
     char name[SCENE_TEXT];
-    while (scene_word(list, probe->n_bodies, name)) probe->n_bodies++;
+    while (scene_listed(list, probe->n_bodies, name)) probe->n_bodies++;
     probe->bodies = arena_alloc(a, (size_t)probe->n_bodies, sizeof *probe->bodies, "probe", d);
     if (!probe->bodies) return ERR_MEMORY;
-    for (int k = 0; k < probe->n_bodies && scene_word(list, k, name); k++)
+    for (int k = 0; k < probe->n_bodies && scene_listed(list, k, name); k++)
         probe->bodies[k] = find_body(scene, name);
     return ERR_OK;
 }

@@ -56,8 +56,7 @@ like = a
 shape = box 0.22, 0, 0.3, 0.05
 [contact all]
 END
-./sphfsi --explain solid.cfg --set output.snapshot_compression=0 >said 2>&1 || fail "$(cat said)"
-grep -q '(no compression)' said || fail "$(cat said)"
+./sphfsi --explain solid.cfg >said 2>&1 || fail "$(cat said)"
 ./sphfsi --explain tank.cfg --set numerics.multirate=off --set end_time=1e-4 >said 2>&1 ||
     fail "$(cat said)"
 exit 0
