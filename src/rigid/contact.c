@@ -25,7 +25,7 @@ struct rigid_contact {
     double reach;                /* a spacing, m */
     struct rigid_shape *shape;   /* [n_wall] */
     struct touch_law *law, *now; /* [rigid bodies][n_wall]; of the pair that is compared */
-    int n, most;                 /* places that touch */
+    int most;                    /* places that touch */
 };
 
 /* --- outlines --- */
@@ -56,16 +56,13 @@ static void set_rows(const struct approach *a, const double at[2], const double 
         row[t].other_rate = 0;
         for (int side = 0; side < 2; side++) {
             const struct motion_state *const of = &a->of[side]->now;
-            const double sign = side ? -1 : 1, x = place.x[0] - of->centre[0] - of->d[0],
-                         y = place.x[1] - of->centre[1] - of->d[1];
-            const double v[2] = {of->v[0] - of->rate * y, of->v[1] + of->rate * x};
-            if (row[t].body[side] < 0) {
-                row[t].other_rate += sign * (e[0] * v[0] + e[1] * v[1]);
-                continue;
-            }
-            row[t].along[side][0] = sign * e[0];
-            row[t].along[side][1] = sign * e[1];
-            row[t].along[side][2] = sign * (x * e[1] - y * e[0]);
+            const double arm[2] = {place.x[0] - of->centre[0] - of->d[0],
+                                   place.x[1] - of->centre[1] - of->d[1]};
+            const double v[2] = {of->v[0] - of->rate * arm[1], of->v[1] + of->rate * arm[0]};
+            if (row[t].body[side] < 0)
+                row[t].other_rate += (side ? -1 : 1) * (e[0] * v[0] + e[1] * v[1]);
+            else
+                rigid_row_along(&row[t], side, arm, e);
         }
     }
 }
@@ -89,8 +86,7 @@ static void add_touch(struct approach *a, const double at[2], const double n[2],
     if (to && gap <= to->gap) return;
     if (!to) {
         const int body[2] = {a->of[0]->rigid, a->of[1]->rigid};
-        if (contact->n == contact->most) return;
-        contact->n++;
+        if (a->rigid->n_rows == 2 * contact->most) return;
         to = rigid_add_row(a->rigid, RIGID_GAP, body);
         (void)rigid_add_row(a->rigid, RIGID_FRICTION, body);
     }
@@ -209,12 +205,12 @@ static void set_law(struct rigid *rigid, int k, int w)
     *law = (struct touch_law){.layer = (double)NAN};
     if (!from) return;
     *law = (struct touch_law){0, from->friction, from->restitution};
-    rigid->n_rows = contact->n = 0;
+    rigid->n_rows = 0;
     approach_pair(rigid, k, w);
     law->layer = scene_contact_gap(scene, from);
     for (int j = 0; j < rigid->n_rows; j += 2)
         law->layer = max2(0, min2(law->layer, rigid->row[j].gap));
-    if (contact->n && hinged) law->layer = (double)NAN;
+    if (rigid->n_rows && hinged) law->layer = (double)NAN;
 }
 
 enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag *d)
@@ -244,7 +240,6 @@ void rigid_add_touches(struct rigid *rigid, double time)
 {
     struct rigid_contact *const contact = rigid->contact;
     place_shapes(rigid, time);
-    contact->n = 0;
     for (int k = 0; k < rigid->n; k++)
         for (int w = 0; w < scene_rigid_wall(rigid->scene, k); w++) {
             contact->now = &contact->law[k * rigid->scene->n_wall + w];

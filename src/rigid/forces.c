@@ -178,6 +178,14 @@ static const double (*yields_in(const struct rigid_equations *eq, enum rigid_sta
     return stage == RIGID_IMPACT ? eq->alone : eq->yields;
 }
 
+void rigid_row_along(struct rigid_row *row, int side, const double arm[2], const double e[2])
+{
+    const double sign = side ? -1 : 1;
+    row->along[side][0] = sign * e[0];
+    row->along[side][1] = sign * e[1];
+    row->along[side][2] = sign * (arm[0] * e[1] - arm[1] * e[0]);
+}
+
 double rigid_row_change(const struct rigid *rigid, const struct rigid_row *row,
                         enum rigid_stage stage)
 {
@@ -291,7 +299,6 @@ static struct spring_end end_at(const struct rigid *rigid, const struct rigid_sp
 struct spring_now {
     struct spring_end end[2];
     double along[2], longer, tension;
-    bool slack;
 };
 
 /* T-100. A damper in a line that only pulls does not push. */
@@ -307,8 +314,7 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
     }
     now.longer = length - spring->length;
     now.tension = spring->given->stiffness * now.longer + spring->given->damping * rate;
-    now.slack = spring->given->slack && (now.longer <= 0 || now.tension <= 0);
-    if (now.slack) now.tension = 0;
+    if (spring->given->slack && (now.longer <= 0 || now.tension <= 0)) now.tension = 0;
     return now;
 }
 
@@ -324,12 +330,7 @@ void rigid_add_springs(struct rigid *rigid)
         row->shorter = -now.longer;
         row->later = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
-        for (int end = 0; end < 2; end++) {
-            const double *const arm = now.end[end].arm, sign = end ? -1 : 1;
-            row->along[end][0] = sign * now.along[0];
-            row->along[end][1] = sign * now.along[1];
-            row->along[end][2] = sign * (arm[0] * now.along[1] - arm[1] * now.along[0]);
-        }
+        for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);
     }
 }
 
@@ -362,20 +363,25 @@ double rigid_hinge_power(const struct rigid *rigid, int k, double time)
     return rigid->state[k].reaction[0] * at.v[0] + rigid->state[k].reaction[1] * at.v[1];
 }
 
+/* What a unit of a force on an end of a spring does to it at most, 1/kg. */
+static double end_yields(const struct rigid *rigid, const struct rigid_spring *spring, int end)
+{
+    if (spring->body[end] < 0) return 0;
+    const double *const mass = rigid->body[spring->body[end]].mass;
+    const struct spring_end at = end_at(rigid, spring, end);
+    return 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
+}
+
 double rigid_spring_rates(const struct rigid *rigid, double *damping)
 {
     double omega2 = 0;
     *damping = 0;
     for (int j = 0; j < rigid->n_springs; j++) {
         const struct rigid_spring *const spring = &rigid->spring[j];
-        double per_mass = 0;
-        for (int end = 0; end < 2 && spring->body[1] >= 0; end++) {
-            const double *const mass = rigid->body[spring->body[end]].mass;
-            const struct spring_end at = end_at(rigid, spring, end);
-            per_mass += 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
-        }
-        omega2 += spring->given->stiffness * per_mass;
-        *damping += spring->given->damping * per_mass;
+        if (spring->body[1] < 0) continue;
+        const double both = end_yields(rigid, spring, 0) + end_yields(rigid, spring, 1);
+        omega2 += spring->given->stiffness * both;
+        *damping += spring->given->damping * both;
     }
     return omega2;
 }
@@ -390,13 +396,10 @@ double rigid_longest_step(const struct rigid *rigid)
         rate2 = max2(rate2, elementary_hypot(g[0], g[1]) / sqrt(r2));
         rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
         rate2 = max2(rate2, body->given->hinge_stiffness / body->mass[2]);
-        for (int j = 0; j < rigid->n_springs; j++)
-            for (int end = 0; end < 2; end++) {
-                if (rigid->spring[j].body[end] != k) continue;
-                const struct spring_end at = end_at(rigid, &rigid->spring[j], end);
-                rate2 = max2(rate2, 2 * rigid->spring[j].given->stiffness / body->mass[0] *
-                                        (1 + (square(at.arm[0]) + square(at.arm[1])) / r2));
-            }
     }
+    for (int j = 0; j < rigid->n_springs; j++)
+        for (int end = 0; end < 2; end++)
+            rate2 = max2(rate2, 2 * rigid->spring[j].given->stiffness *
+                                    end_yields(rigid, &rigid->spring[j], end));
     return 1e-3 / sqrt(rate2);
 }

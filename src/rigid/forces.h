@@ -74,6 +74,9 @@ struct rigid_row {
 /* A row for the coming step, which its caller fills in. */
 struct rigid_row *rigid_add_row(struct rigid *rigid, enum rigid_law law, const int body[2]);
 
+/* Sets what a unit of a force along e is to a body; `arm`: from its centre of mass to the place. */
+void rigid_row_along(struct rigid_row *row, int side, const double arm[2], const double e[2]);
+
 /* Relative velocity along a row after a stage; what the stage has changed in it; and what a unit of
  * impulse adds. */
 double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,

@@ -55,17 +55,17 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
 static bool joins_bodies(const struct rigid_hinge *h) { return h->body[1] >= 0; }
 
 /* What a unit force along an axis, or a unit moment, is to both bodies. */
-static void find_along(const struct rigid *rigid, const struct rigid_hinge *h, int component,
-                       double along[2][3])
+static void find_along(const struct rigid *rigid, struct rigid_row *row)
 {
+    const int c = row->component;
     for (int side = 0; side < 2; side++) {
-        const double sign = side ? -1 : 1;
+        const int k = row->body[side];
         double arm[2];
-        memset(along[side], 0, sizeof along[side]);
-        if (h->body[side] < 0) continue;
-        rigid_arm(rigid, h->body[side], h->at, rigid->state[h->body[side]].x[2], arm);
-        along[side][component] = sign;
-        if (component < 2) along[side][2] = component ? sign * arm[0] : -sign * arm[1];
+        if (k < 0) continue;
+        row->along[side][2] = side ? -1 : 1;
+        if (c == 2) continue;
+        rigid_arm(rigid, k, row->hinge->at, rigid->state[k].x[2], arm);
+        rigid_row_along(row, side, arm, (const double[]){c == 0, c == 1});
     }
 }
 
@@ -84,7 +84,7 @@ static struct rigid_row *add_row(struct rigid *rigid, const struct rigid_hinge *
     struct rigid_row *const row = rigid_add_row(rigid, law, h->body);
     row->hinge = h;
     row->component = component;
-    find_along(rigid, h, component, row->along);
+    find_along(rigid, row);
     return row;
 }
 
@@ -177,7 +177,7 @@ void rigid_hinges_hold(struct rigid *rigid, double time, double kick)
     double largest = 1, first = 0;
     for (int k = 0; k < rigid->n_rows; k++) {
         struct rigid_row *const row = &rigid->row[k];
-        if (row->hinge) find_along(rigid, row->hinge, row->component, row->along);
+        if (row->hinge) find_along(rigid, row);
     }
     for (int k = 0; k < rigid->n && rigid->n_hinges; k++) rigid_find_alone(rigid, k, time);
     for (int turn = 0; turn < 1000 && largest > 1e-12 * first; turn++) {
