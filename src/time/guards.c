@@ -5,6 +5,7 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -52,12 +53,18 @@ static enum err complain(const struct simulation *sim, enum kind kind, struct fi
                      f.quantity, f.value, cause);
 }
 
-/* Whether a warning has not been given yet; it counts as given then. */
-static bool first_time(bool *warned)
+/* Says a sentence about the present state, if `warned` is not set yet. */
+static void SPHFSI_PRINTF(4, 5)
+    warn_once(const struct simulation *sim, bool *warned, struct diag *d, const char *format, ...)
 {
-    const bool first = !*warned;
+    char text[sizeof d->text];
+    va_list arguments;
+    if (*warned) return;
     *warned = true;
-    return first;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    diag_warn(d, "%s: %s", time_text(sim).text, text);
 }
 
 /* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
@@ -90,18 +97,17 @@ static enum err check_fluid(struct simulation *sim, struct diag *d)
         if (f.at >= 0)
             return complain(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
     }
-    if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0 &&
-        first_time(&sim->guard.warned_speed))
-        diag_warn(d,
-                  "%s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
+    if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0)
+        warn_once(sim, &sim->guard.warned_speed, d,
+                  "the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
                   "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
-                  time_text(sim).text, sim->state.speed_high, SPEED_WARNING, sim->scene->c0);
+                  sim->state.speed_high, SPEED_WARNING, sim->scene->c0);
     const double dens = max2(sim->state.dens_high, -sim->state.dens_low);
-    if (dens > DENS_WARNING && first_time(&sim->guard.warned_dens))
-        diag_warn(d,
-                  "%s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
+    if (dens > DENS_WARNING)
+        warn_once(sim, &sim->guard.warned_dens, d,
+                  "the fluid's density deviates by %.3g %% from its reference. 1 %% is "
                   "usual, and the run stops at %g %%; a higher sound_speed may help",
-                  time_text(sim).text, 100 * dens, 100 * sim->guard.dens_limit);
+                  100 * dens, 100 * sim->guard.dens_limit);
     return ERR_OK;
 }
 
@@ -167,23 +173,16 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
             "motion may help",
             time_text(sim).text, (long long)sim->state.steps, one, other, at->overlap, at->x,
             at->y);
-    if (first_time(&sim->guard.warned_contact))
-        diag_warn(d,
-                  "%s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
-                  "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
-                  time_text(sim).text, one, other, at->overlap, at->x, at->y);
+    warn_once(sim, &sim->guard.warned_contact, d,
+              "%s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
+              "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
+              one, other, at->overlap, at->x, at->y);
     return ERR_OK;
 }
 
 static enum err check_solid(struct simulation *sim, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
-    if (sim->solid.implicit && sim->solid.implicit->failed)
-        return diag_fail(d, ERR_GUARD,
-                         "%s: Newton's method finds no solution for the implicit step of the "
-                         "solid, %.3g s, nor for shorter ones (residual: %.2g of the largest "
-                         "force); a smaller fixed_step or solid_steps = explicit may help",
-                         time_text(sim).text, sim->state.dt, sim->solid.implicit->residual);
     const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
         return complain(sim, KIND_SOLID, fast,
@@ -199,13 +198,13 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
                         "the material is inverted; finer particles, more hourglass control or a "
                         "stiffer law may help",
                         d);
-    if (det.value < DET_WARNING && first_time(&sim->guard.warned_det))
-        diag_warn(
-            d,
-            "%s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
+    if (det.value < DET_WARNING)
+        warn_once(
+            sim, &sim->guard.warned_det, d,
+            "solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
             "the material is inverted and the run stops; a finer dp or a stiffer law may help",
-            time_text(sim).text, (long long)particles->id[det.at], particles->x[det.at],
-            particles->y[det.at], det.value);
+            (long long)particles->id[det.at], particles->x[det.at], particles->y[det.at],
+            det.value);
     return ERR_OK;
 }
 
@@ -237,11 +236,10 @@ static enum err check_step(struct simulation *sim, struct diag *d)
                          "%s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
                          time_text(sim).text, dt);
-    if (first_time(&sim->guard.warned_step))
-        diag_warn(d,
-                  "%s: the time step has fallen to %.3g s, limited by %s, and the run "
-                  "stops at %.3g s; %s",
-                  time_text(sim).text, dt, bound_names[bound], limit, step_remedy(sim, bound));
+    warn_once(sim, &sim->guard.warned_step, d,
+              "the time step has fallen to %.3g s, limited by %s, and the run "
+              "stops at %.3g s; %s",
+              dt, bound_names[bound], limit, step_remedy(sim, bound));
     return ERR_OK;
 }
 
@@ -289,14 +287,12 @@ static void check_voids(struct simulation *sim, struct diag *d)
         margin += scene->top.dp * scene_open_at(scene, k).length;
     const double start = area * (double)scene->points[KIND_FLUID].n, missing = start - volume;
     if (!(missing > VOIDS_SHARE * start + margin)) return;
-    sim->guard.warned_voids = true;
-    diag_warn(d,
-              "%s: %.2g %% of the channel is empty: voids have opened where the pressure of the "
+    warn_once(sim, &sim->guard.warned_voids, d,
+              "%.2g %% of the channel is empty: voids have opened where the pressure of the "
               "fluid fell below zero, and the flow around them is wrong. Only differences of "
               "pressure matter here, so raise the `pressure` of the open boundaries by about rho "
               "v^2/2 = %.3g Pa (v: largest speed so far)",
-              time_text(sim).text, 100 * missing / start,
-              0.5 * scene->rho0 * square(sim->state.speed_high));
+              100 * missing / start, 0.5 * scene->rho0 * square(sim->state.speed_high));
 }
 
 /* --- rigid bodies inside walls and each other --- */
@@ -335,13 +331,12 @@ static void check_rigid(struct simulation *sim, struct diag *d)
     for (int k = 0; k < sim->rigid.n; k++) {
         const int64_t at = find_entered(sim, k);
         if (at < 0) continue;
-        sim->guard.warned_rigid = true;
         const int other = p->body[at];
-        diag_warn(d,
-                  "%s: [rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
+        warn_once(sim, &sim->guard.warned_rigid, d,
+                  "[rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
                   "contact ends a quarter of a spacing inside and is absent at a hinge; hold the "
                   "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
-                  time_text(sim).text, sim->scene->rigid[k].common.name,
+                  sim->scene->rigid[k].common.name,
                   section_table[sim->scene->wall[other].common.section].word,
                   sim->scene->wall[other].common.name, p->x[at], p->y[at]);
         return;
@@ -350,12 +345,11 @@ static void check_rigid(struct simulation *sim, struct diag *d)
 
 static void warn_of_crowded(struct simulation *sim, struct diag *d)
 {
-    if (sim->guard.warned_beams || !sim->beams.crowded) return;
-    sim->guard.warned_beams = true;
-    diag_warn(d,
-              "%s: beams touch at more than %d places, and pass through the others; use a larger "
+    if (!sim->beams.crowded) return;
+    warn_once(sim, &sim->guard.warned_beams, d,
+              "beams touch at more than %d places, and pass through the others; use a larger "
               "`element`",
-              time_text(sim).text, BEAM_TOUCHES);
+              BEAM_TOUCHES);
 }
 
 /* A beam and a solid do not see each other. */
@@ -366,28 +360,30 @@ static void check_beams_in_solids(struct simulation *sim, struct diag *d)
     if (sim->guard.warned_beams || sim->state.steps % CHECK_INTERVAL) return;
     const int64_t i = beams_find_solid(&sim->beams, solid, 0.5 * sim->solid.dp, &beam);
     if (i < 0) return;
-    sim->guard.warned_beams = true;
-    diag_warn(
-        d,
-        "%s: [beam %s] has met [solid %s] near (%.6g, %.6g) m and passes through, since beams "
-        "and solids have no contact; make the solid a [rigid] or the beam a [solid]",
-        time_text(sim).text, sim->scene->beam[beam].common.name,
-        sim->scene->solid[solid->body[i]].common.name, solid->x[i], solid->y[i]);
+    warn_once(sim, &sim->guard.warned_beams, d,
+              "[beam %s] has met [solid %s] near (%.6g, %.6g) m and passes through, since beams "
+              "and solids have no contact; make the solid a [rigid] or the beam a [solid]",
+              sim->scene->beam[beam].common.name, sim->scene->solid[solid->body[i]].common.name,
+              solid->x[i], solid->y[i]);
 }
 
-static enum err check_beams(const struct simulation *sim, struct diag *d)
+static enum err check_newton(const struct simulation *sim, struct diag *d)
 {
-    if (!sim->beams.failed) return ERR_OK;
+    const struct implicit *const by = sim->solid.implicit;
+    const bool solid = by && by->failed;
+    if (!solid && !sim->beams.failed) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
-                     "%s: Newton's method finds no solution for the step of the beams of %.3g s or "
-                     "for parts of it (residual: %.2g of the largest force); a smaller fixed_step "
-                     "or more damping may help",
-                     time_text(sim).text, sim->state.dt, sim->beams.residual);
+                     "%s: Newton's method finds no solution for the implicit step of the %s, %.3g "
+                     "s, nor for shorter ones (residual: %.2g of the largest force); a smaller "
+                     "fixed_step or %s may help",
+                     time_text(sim).text, solid ? "solid" : "beams", sim->state.dt,
+                     solid ? by->residual : sim->beams.residual,
+                     solid ? "solid_steps = explicit" : "more damping");
 }
 
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
-    if (sim->effects & FX_BEAM) TRY(check_beams(sim, d));
+    TRY(check_newton(sim, d));
     if (sim->effects & FX_BEAM) warn_of_crowded(sim, d);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
@@ -498,12 +494,10 @@ enum err guards_penetration(struct simulation *sim, struct diag *d)
             time_text(sim).text, (long long)sim->state.steps, (long long)count,
             (long long)particles->id[first], particles->x[first], particles->y[first],
             elementary_hypot(particles->vx[first], particles->vy[first]));
-    if (first_time(&sim->guard.warned_crossing))
-        diag_warn(d,
-                  "%s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
-                  "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may "
-                  "keep it out",
-                  time_text(sim).text, (long long)particles->id[first], particles->x[first],
-                  particles->y[first]);
+    warn_once(sim, &sim->guard.warned_crossing, d,
+              "fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
+              "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may "
+              "keep it out",
+              (long long)particles->id[first], particles->x[first], particles->y[first]);
     return ERR_OK;
 }
