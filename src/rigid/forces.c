@@ -68,14 +68,14 @@ void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[
     for (int c = 0; c < 2; c++) x[c] = at.x[c] - arm[c] - body->centre[c];
 }
 
-void rigid_hold(struct rigid *rigid, int k, double time)
+void rigid_hold(struct rigid *rigid, int k, double place, double speed)
 {
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
-    const struct freedom f = freedom_of(rigid, k, time);
+    const struct freedom f = freedom_of(rigid, k, speed);
     double v[3];
     if (body->fixed) {
-        rigid_follow_hinge(rigid, k, time, s->x);
+        rigid_follow_hinge(rigid, k, place, s->x);
         for (int c = 0; c < 3; c++) v[c] = f.base[c] + f.B[c][0] * s->v[2];
     } else if (f.n == 3) {
         return;

@@ -13,9 +13,10 @@ double rigid_spring_energy(const struct rigid *rigid, int k);
 /* Power of the motion of a wall on the body that is hinged to it, W/m. */
 double rigid_hinge_power(const struct rigid *rigid, int k, double time);
 
-/* Position and velocity of a body as its hinge in place or on a wall, or its guide, allows them at
- * a time: of its angle, or of its place along the line. */
-void rigid_hold(struct rigid *rigid, int k, double time);
+/* Position and velocity of a body as its hinge in place or on a wall, or its guide, allows them:
+ * of its angle, or of its place along the line. The hinge is where it is at the time `place`, with
+ * the velocity that it has at the time `speed`. */
+void rigid_hold(struct rigid *rigid, int k, double place, double speed);
 /* The displacement of a body on such a hinge from its angle. */
 void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[3]);
 

@@ -189,6 +189,34 @@ void rigid_hinges_hold(struct rigid *rigid, double time, double kick)
     }
 }
 
+double rigid_hinge_gap(const struct rigid *rigid, int *worst)
+{
+    double largest = 0;
+    for (int j = 0; j < rigid->n_hinges; j++) {
+        const struct rigid_hinge *const h = &rigid->hinge[j];
+        const struct rigid_body *const body = &rigid->body[h->body[0]];
+        double place[2][2] = {{0}}, off = 0;
+        for (int side = 0; side < 2 && joins_bodies(h); side++) {
+            const int k = h->body[side];
+            rigid_arm(rigid, k, h->at, rigid->state[k].x[2], place[side]);
+            for (int c = 0; c < 2; c++)
+                place[side][c] += rigid->body[k].centre[c] + rigid->state[k].x[c];
+        }
+        if (h->drive >= 0) {
+            const struct motion_state wall = motion_at(rigid->scene, h->wall_motion, rigid->end),
+                                      drive = motion_at(rigid->scene, h->drive, rigid->end);
+            off = angle_of(rigid, h, wall.angle) - drive.angle +
+                  motion_at(rigid->scene, h->drive, 0).angle;
+        }
+        const double gap =
+            max2(fabs(off) * sqrt(body->mass[2] / body->mass[0]),
+                 elementary_hypot(place[0][0] - place[1][0], place[0][1] - place[1][1]));
+        if (gap > largest) *worst = h->body[0];
+        largest = max2(largest, gap);
+    }
+    return largest;
+}
+
 bool rigid_share_hinge(const struct rigid *rigid, int one, int other)
 {
     for (int k = 0; k < rigid->n_hinges; k++) {

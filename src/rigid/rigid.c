@@ -34,7 +34,7 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
     }
     TRY(rigid_hinges_create(rigid, a, d));
     TRY(rigid_springs_create(rigid, a, d));
-    for (int k = 0; k < rigid->n; k++) rigid_hold(rigid, k, 0);
+    for (int k = 0; k < rigid->n; k++) rigid_hold(rigid, k, 0, 0);
     TRY(rigid_contact_create(rigid, a, d));
     rigid_add_hinges(rigid, 0);
     rigid_hinges_hold(rigid, 0, 0);
@@ -147,7 +147,8 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
     find_fluid(rigid, body, force, impedance);
-    rigid_hold(rigid, k, now);
+    /* The body resists all that the hinge's velocity changes in the step (T-99). */
+    rigid_hold(rigid, k, now, rigid->end - dt);
     for (int c = 0; c < 3; c++) {
         const double heavy = c < 2 && body->given->gravity ? body->mass[c] * gravity[c] : 0;
         eq->before[c] = s->v[c];
@@ -183,15 +184,14 @@ static double later(const struct rigid *rigid, int k, int c)
     return rigid->centred ? 0 : rigid->eq[k].pushed[c];
 }
 
-static void move_body(struct rigid *rigid, int k, double now, const struct rigid_step *step)
+static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double kick = step->kick, part = part_of(rigid, k, kick);
     rigid_find_reaction(rigid, k, kick);
-    body->work = body->passed = 0;
-    body->driven = kick * rigid_hinge_power(rigid, k, now);
+    body->work = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
@@ -204,7 +204,7 @@ static void move_body(struct rigid *rigid, int k, double now, const struct rigid
         s->x[c] += step->late * (s->v[c] - eq->pushed[c]) + body->moved[c] +
                    step->dt * eq->touch[RIGID_PUSH][c];
     }
-    rigid_hold(rigid, k, rigid->end);
+    rigid_hold(rigid, k, rigid->end, rigid->end);
 }
 
 /* What follows from the velocity at the end of the step. */
@@ -226,6 +226,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);
     }
+    body->driven += kick * rigid_hinge_power(rigid, k, rigid->end - 0.5 * dt);
     const double before = s->exchange, left = 1 - part_of(rigid, k, kick);
     s->exchange = exchange_after(s, dt);
     if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);
@@ -253,7 +254,7 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
     const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) add_pushed(rigid, k);
     rigid_find_impulses(rigid, now, &step);
-    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, now, &step);
+    for (int k = 0; k < rigid->n; k++) move_body(rigid, k, &step);
     if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);
     for (int k = 0; k < rigid->n; k++) end_body(rigid, k, dt, kick);
     rigid_impulse_work(rigid);

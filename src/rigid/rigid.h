@@ -96,6 +96,10 @@ void rigid_kick(struct rigid *rigid, double time, double dt);
 /* The force of a spring at its end `to`, and where that is. */
 void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);
 
+/* After a step: how far the places of a hinge on its bodies are apart, or its angle from a driven
+ * one, at the radius of gyration, m; the largest of all hinges, and its body. */
+double rigid_hinge_gap(const struct rigid *rigid, int *worst);
+
 /* Whether a hinge joins two bodies: they may overlap there. */
 bool rigid_share_hinge(const struct rigid *rigid, int one, int other);
 

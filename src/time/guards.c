@@ -343,6 +343,22 @@ static void check_rigid(struct simulation *sim, struct diag *d)
     }
 }
 
+/* Of dp. Hinges are met to round-off, unless they contradict each other or contact. */
+#define HINGE_GAP 1e-3
+
+static enum err check_hinges(struct simulation *sim, struct diag *d)
+{
+    int k = 0;
+    const double gap = rigid_hinge_gap(&sim->rigid, &k), dp = sim->scene->top.dp;
+    if (gap < HINGE_GAP * dp) return ERR_OK;
+    sim->guard.case_at_fault = true;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: the hinges of [rigid %s] miss each other or a driven angle by %.2g m: "
+                     "hinges of a closed chain, or contact, contradict each other; leave out a "
+                     "`hinge_motion` or a hinge",
+                     time_text(sim).text, sim->scene->rigid[k].common.name, gap);
+}
+
 static void warn_of_crowded(struct simulation *sim, struct diag *d)
 {
     if (!sim->beams.crowded) return;
@@ -387,6 +403,7 @@ enum err guards_check(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_BEAM) warn_of_crowded(sim, d);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
+    if (sim->effects & FX_RIGID) TRY(check_hinges(sim, d));
     if (sim->effects & FX_RIGID) check_rigid(sim, d);
     if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));
     if (!(sim->effects & FX_MOTION)) check_voids(sim, d);

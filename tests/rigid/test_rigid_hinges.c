@@ -182,6 +182,48 @@ static void test_a_hinge_is_driven(void)
     assert_near(1e-4, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
 }
 
+/* A bar hangs on a carriage that accelerates: it turns by m a s/I of the time squared, over two. */
+static void test_a_hinge_on_a_carriage(void)
+{
+#define CARRIAGE                                                                            \
+    "[wall w]\nshape = box -0.1, 0, 0.1, 0.1\nmotion = m\n[motion m]\nkind = expression\n"  \
+    "x = 0.05*(1 - cos(4*t))\n[rigid a]\nshape = box -0.05, -0.6, 0.05, 0\ndensity = 600\n" \
+    "hinge = 0, 0, w\n"
+    rig_open(&rig, FREE CARRIAGE, "motion m.x=0.5*t^2", NULL);
+    const double m = 36, s = 0.3, inertia = m * (0.36 + 0.01) / 12 + m * s * s;
+    rig_run(&rig, 0.05);
+    assert_near(1e-6, -0.5 * m * s / inertia * 0.05 * 0.05, state()->x[2], "angle");
+    /* The work of the carriage, and of a drive on it. */
+    for (int driven = 0; driven < 2; driven++) {
+        rig_open(&rig,
+                 driven ? "gravity = 0, -9.81\n" FREE CARRIAGE
+                          "hinge_motion = n\n[motion n]\nkind = expression\n"
+                          "turn = 0.1*(1 - cos(20*t))\n"
+                        : "gravity = 0, -9.81\n" FREE CARRIAGE,
+                 NULL);
+        energy_begin(&rig.sim);
+        rig_run(&rig, 0.8);
+        assert_at_most(1e-4, rig.sim.state.gain_share, "gain");
+    }
+}
+
+/* Three bars and two hinges in place have one angle that is free: a second drive contradicts it. */
+static void test_drives_of_a_closed_loop(void)
+{
+#define LOOP(drive)                                                                               \
+    FREE "[motion m]\nkind = rotation\nangle_amplitude = 0.2\nperiod = 4 s\ncentre = 9, 9\n"      \
+         "[rigid a]\nshape = box -0.06, 0, 0.06, 1\nmass = 2\nhinge = 0, 0\nhinge_motion = m\n"   \
+         "[rigid b]\nshape = box 0.06, 0.94, 0.94, 1.06\nmass = 1\nhinge = 0.06, 0.96, a\n" drive \
+         "[rigid c]\nshape = box 0.94, 0, 1.06, 1\nmass = 1\nhinge = 0.94, 0.96, b\n"             \
+         "hinge = 1, 0\n"
+    rig_open(&rig, LOOP(""), NULL);
+    rig_run(&rig, 0.2);
+    assert_near(1e-9, 0.2 * sin(0.1 * acos(-1)), state()->x[2], "driven angle");
+    rig_open(&rig, LOOP("hinge_motion = m\n"), NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, simulation_step(&rig.sim, 0.2, &rig.diag));
+    TEST_ASSERT_NOT_NULL(strstr(rig.diag.text, "the hinges of [rigid b] miss"));
+}
+
 /* A body that falls on the end of a bar on a hinge, and a hinge of both: the impact reaches all. */
 static void test_an_impact_passes_through_hinges(void)
 {
@@ -223,6 +265,8 @@ int main(void)
     RUN_TEST(test_a_spring_between_two_bodies);
     RUN_TEST(test_friction_between_two_bodies);
     RUN_TEST(test_a_hinge_is_driven);
+    RUN_TEST(test_a_hinge_on_a_carriage);
+    RUN_TEST(test_drives_of_a_closed_loop);
     RUN_TEST(test_an_impact_passes_through_hinges);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
