@@ -90,6 +90,8 @@ struct sphfsi_requests {
     volatile sig_atomic_t stop; /**< not 0: write a checkpoint and stop */
     volatile sig_atomic_t
         checkpoint; /**< not 0: write a checkpoint and continue; reset when done */
+    volatile sig_atomic_t
+        begun; /**< set by the run when it begins to write files; until then a stop waits */
 };
 
 /** What to simulate and how. Zero-initialise, then set what is needed. The library does not refer

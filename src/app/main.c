@@ -33,7 +33,7 @@ static const char usage[] =
     "  --keys [--json]   print all sections and keys of a case file\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
-    "             129, 130 or 143 interrupted with a checkpoint\n"
+    "             129, 130 or 143 interrupted with a checkpoint, or before the first step\n"
     "SIGUSR1: write a checkpoint and continue\n";
 
 /* What the program does: RUN unless an option says otherwise. */
@@ -70,8 +70,10 @@ struct command {
 
 static struct sphfsi_requests requests;
 
+/* While the case is sampled, nothing is written and there is nothing to save. */
 static void on_signal(int number)
 {
+    if (number != SIGUSR1 && !requests.begun) _exit(128 + number);
     if (number == SIGUSR1)
         requests.checkpoint = 1;
     else

@@ -506,6 +506,7 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
     TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
                         &r->arena, r->diag));
     r->record.references = &r->references;
+    if (r->options->requests) r->options->requests->begun = 1;
     TRY(run_dir_open(&r->dir, path, use, r->diag));
     TRY(begin_run(r));
     return simulate(r);

@@ -99,6 +99,25 @@ wait $pid
 [ $? = 129 ] && ls hangup/*.ckpt >/dev/null || fail "SIGHUP leaves no checkpoint"
 grep -q 'to go on: .* --restart' out || fail "--quiet hides the command that goes on"
 
+# While a large case is sampled, a stop is immediate and leaves nothing.
+cat >large.cfg <<'EOF'
+dp = 1 mm
+end_time = 1
+[fluid w]
+shape = box 0, 0, 2, 1
+minus = circle 1, 0.5, 0.2
+sound_speed = 40
+[wall c]
+shape = circle 1, 0.5, 0.2
+EOF
+"$sphfsi" large.cfg --threads 1 --out large >out 2>err & pid=$!
+sleep 1
+kill -TERM $pid
+began=$SECONDS
+wait $pid
+[ $? = 143 ] && [ $((SECONDS - began)) -le 2 ] && [ ! -e large ] ||
+    fail "a stop while a case is sampled waits $((SECONDS - began)) s, or leaves a folder"
+
 # In a file there is a line for each tenth of the run, so none yet.
 "$sphfsi" cantilever.cfg --threads 1 --out lines >out 2>err & pid=$!
 while [ ! -s lines/ledger.csv ]; do sleep 0.05; done
