@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Holds what --explain foresees against what runs take: steps and wall time of the shipped cases,
-each cut short by --until so that it takes about as long as --seconds says.
+"""Holds what --explain foresees against what runs take: steps, and wall time of the program from
+its start to its end, of the shipped cases, the templates, the elastica and FSI2. Each is cut short
+by --until so that it takes about as long as --seconds says.
 
 Writes docs/results/forecast.json, one run a line, and the accuracy report, which shows it. A case
-that fails is shown as that. Examples:
+that fails is shown as that. Examples, on an idle machine:
 
-  tools/report/forecast.py                     the cases in cases/, one thread and all
-  tools/report/forecast.py --seconds 60 gate   longer, and only cases whose name begins like this
+  tools/report/forecast.py                      all of these, one thread and all
+  tools/report/forecast.py --seconds 60 gate    longer, and only cases whose name begins like this
+  tools/report/forecast.py templates/ turek     all templates and FSI2
 """
 
 import os
@@ -22,6 +24,7 @@ from study import machine
 from study_tables import forecast_cells
 
 UNITS = {"s": 1, "min": 60, "h": 3600}
+CASES = ["*.cfg", "templates/*.cfg", "turek_hron/fsi2.cfg", "verify/elastica.cfg"]
 
 
 def arguments():
@@ -58,20 +61,25 @@ def taken(case, threads, more, folder):
         raise BadFile(said.splitlines()[-1] if said else f"exit status {status}")
     summary = load(folder / "summary.json")
     return {"steps": summary["steps"], "solid_steps": summary.get("solid_substeps"),
-            "seconds": summary["wall_seconds"], "cpu": timing["cpu"], "load": timing["load"],
+            "seconds": timing["wall"], "cpu": timing["cpu"], "load": timing["load"],
             "version": summary["version"]}
 
 
+def name_of(case):
+    """Its path below cases/ without an ending."""
+    return str(case.relative_to(ROOT / "cases").with_suffix(""))
+
+
 def compare(case, threads, seconds):
-    row = {"case": case.stem, "threads": threads}
+    row = {"case": name_of(case), "threads": threads}
     with tempfile.TemporaryDirectory() as folder:
         try:
             end = end_time(case)
             whole = foreseen(case, threads, [])
             until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
-            more = ["--until", repr(until)]
+            more = ["--until", repr(until)] if until < end else []
             row.update(end=end, until=until, whole=whole["seconds"],
-                       foreseen=foreseen(case, threads, more),
+                       foreseen=foreseen(case, threads, more) if more else whole,
                        taken=taken(case, threads, more, Path(folder) / "run"))
         except (BadFile, OSError, KeyError, ValueError) as problem:
             row["failed"] = str(problem)
@@ -81,10 +89,10 @@ def compare(case, threads, seconds):
 def main():
     args = arguments()
     all_threads = args.threads or sorted({1, os.cpu_count() or 1})
-    cases = [case for case in sorted((ROOT / "cases").glob("*.cfg"))
-             if not args.cases or any(case.stem.startswith(name) for name in args.cases)]
+    cases = [case for pattern in CASES for case in sorted((ROOT / "cases").glob(pattern))
+             if not args.cases or name_of(case).startswith(tuple(args.cases))]
     if not cases:
-        raise BadFile(f"no case in cases/ is called {' or '.join(args.cases)}")
+        raise BadFile(f"no case of {', '.join(CASES)} begins with {' or '.join(args.cases)}")
     rows = []
     for case in cases:
         for threads in all_threads:

@@ -5,7 +5,7 @@
 #                        where it was interrupted
 #   make accuracy        run what is missing of the accuracy study, write docs/results/accuracy.md (ARGS=--list)
 #   make coverage        whether the bands of tools/refine.py hold known answers: docs/results/coverage.md
-#   make forecast        what --explain foresees against what the shipped cases take: docs/results/accuracy.md
+#   make forecast        what --explain foresees against what runs take (idle machine): docs/results/accuracy.md
 #   make stability       run the hard cases in their long form and write docs/results/stability.md; goes on where
 #                        it was interrupted
 #   make stability-map   1440 plates over density, thickness and stiffness: docs/results/stability_map.json, picture

@@ -131,9 +131,8 @@ def forecast_section(path):
         return "Not measured: `make forecast` does it."
     try:
         data = json.loads(read_text(path))
-        return ("The table compares the forecast of `--explain` with runs of the shipped cases "
-                "(`make "
-                "forecast`). "
+        return ("The table compares the forecast of `--explain` with the wall time of whole runs "
+                "of the program, its start and the reading of the case included (`make forecast`). "
                 f"Runs were cut short to about {data['seconds']:g} s. "
                 f"{machine_text(data['machine'])}.\n\n"
                 f"{forecast_table(data)}")
