@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
 
+#include "base/box2.h"
 #include "implicit/implicit.h"
 #include "output/probes.h"
 #include "output/series.h"
@@ -128,7 +129,7 @@ static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struc
 
 /* Each particle somewhere in its own square of dp: the R2 sequence (Roberts 2018) has no order that
  * a lattice has. */
-static enum err disorder(struct simulation *sim, struct diag *d)
+static void disorder(struct simulation *sim)
 {
     struct particles *const particles = &sim->kind[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
@@ -136,38 +137,75 @@ static enum err disorder(struct simulation *sim, struct diag *d)
         particles->x[i] += sim->fluid.k.dp * (u - floor(u) - 0.5);
         particles->y[i] += sim->fluid.k.dp * (v - floor(v) - 0.5);
     }
-    return sort_particles(sim, d);
 }
 
-/* The part of the run in which fluid that goes on to accelerate as it has until now has moved by
- * the kernel's reach, so that its particles have other neighbours than on their lattice. */
-static double disordered_part(const struct simulation *sim)
+/* A body of water with a free surface fills the breadth between the outermost walls, less deep by
+ * as much. Returns by how much it becomes wider. */
+static double spread(struct simulation *sim)
 {
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
-    double speed2 = 0;
-    for (int64_t i = 0; i < particles->n; i++)
-        speed2 += square(particles->vx[i]) + square(particles->vy[i]);
-    const double acceleration = sqrt(speed2 / (double)particles->n) / sim->state.time;
-    const double ordered = sqrt(2 * KERNEL_REACH * sim->fluid.k.h / acceleration);
-    return max2(0, 1 - ordered / sim->scene->top.end_time);
+    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const wall =
+                                                                      &sim->kind[KIND_WALL];
+    const double *const g = sim->scene->top.gravity, reach = KERNEL_REACH * sim->fluid.k.h;
+    const int up = fabs(g[0]) < fabs(g[1]), across = !up;
+    struct box2 water = box2_empty(), walls = box2_empty();
+    for (int64_t i = 0; i < fluid->n; i++) box2_include(&water, fluid->x[i], fluid->y[i]);
+    for (int64_t i = 0; i < wall->n; i++) box2_include(&walls, wall->x[i], wall->y[i]);
+    const double now = water.high[across] - water.low[across],
+                 then = walls.high[across] - walls.low[across] - 2 * reach;
+    if (!(then > now) || g[up] == 0 || sim->effects & (FX_OPEN | FX_PERIODIC)) return 0;
+    const double bottom = (g[up] < 0 ? water.low : water.high)[up];
+    double *const x[2] = {fluid->x, fluid->y};
+    for (int64_t i = 0; i < fluid->n; i++) {
+        const double share = (x[across][i] - water.low[across]) / now;
+        x[across][i] = walls.low[across] + reach + share * then;
+        x[up][i] = bottom + (x[up][i] - bottom) * now / then;
+    }
+    return then - now;
+}
+
+/* The part of the run after fluid that goes on to accelerate as it has until now has moved so far.
+ */
+static double part_after(const struct simulation *sim, double speed, double way)
+{
+    return max2(0, 1 - sqrt(2 * way * sim->state.time / speed) / sim->scene->top.end_time);
+}
+
+static double evaluation_seconds(struct simulation *sim)
+{
+    double least = HUGE_VAL, phases[PHASE_COUNT] = {0};
+    for (int m = 0; m < EVALUATIONS_MEASURED; m++) {
+        const double begin = thread_clock();
+        fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, phases);
+        coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
+        least = min2(least, thread_clock() - begin);
+    }
+    return least;
 }
 
 /* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
- * within reach. Adds what an evaluation takes longer then. Leaves the particles so. */
-static void measure_disorder(struct unit_costs *c, struct simulation *sim)
+ * within reach, once it has moved by the kernel's reach. And it wets more walls, in proportion to
+ * time, as if it wetted all from half of that time on: a quarter of its way. Adds what an
+ * evaluation takes longer then. Leaves the particles so. */
+static void measure_flow(struct unit_costs *c, struct simulation *sim)
 {
-    const double n_fluid = (double)sim->kind[KIND_FLUID].n, part = disordered_part(sim);
-    double least[2] = {HUGE_VAL, HUGE_VAL}, phases[PHASE_COUNT] = {0};
+    const struct particles *const fluid = &sim->kind[KIND_FLUID];
+    const double n_fluid = (double)fluid->n;
     struct diag ignored = {.code = ERR_OK};
+    double speed2 = 0;
+    for (int64_t i = 0; i < fluid->n; i++)
+        speed2 += (square(fluid->vx[i]) + square(fluid->vy[i])) / n_fluid;
     thread_use(sim->team.chosen);
     sim->fluid.threads = sim->team.chosen;
-    for (int k = 0; k < 2 && !(k && disorder(sim, &ignored)); k++)
-        for (int m = 0; m < EVALUATIONS_MEASURED; m++) {
-            const double begin = thread_clock();
-            fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, phases);
-            least[k] = min2(least[k], thread_clock() - begin);
-        }
-    if (least[1] < HUGE_VAL) c->fluid += part * max2(0, least[1] - least[0]) / n_fluid;
+    const double ordered = evaluation_seconds(sim);
+    disorder(sim);
+    if (sort_particles(sim, &ignored)) return;
+    const double disordered = evaluation_seconds(sim);
+    const double part = part_after(sim, sqrt(speed2), KERNEL_REACH * sim->fluid.k.h);
+    c->fluid += part * max2(0, disordered - ordered) / n_fluid;
+    const double way = spread(sim);
+    if (way == 0 || sort_particles(sim, &ignored)) return;
+    const double wet = max2(0, evaluation_seconds(sim) - disordered);
+    c->fluid += part_after(sim, sqrt(speed2), 0.25 * way) * wet / n_fluid;
 }
 
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
@@ -178,7 +216,7 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
     TRY(measure_rows(c, sim, d));
     c->snapshots = snapshots_seconds(sim) *
                    (1 + floor(sim->scene->top.end_time / sim->scene->output.snapshot_interval));
-    if (sim->kind[KIND_FLUID].n) measure_disorder(c, sim);
+    if (sim->kind[KIND_FLUID].n) measure_flow(c, sim);
     sim->fluid.extremes = extremes;
     return ERR_OK;
 }

@@ -129,6 +129,29 @@ static void test_work_of_some_steps_counts(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, each);
 }
 
+/* A column of water of a quarter of the tank's breadth is measured as it will lie on its bed, too:
+ * a quarter as deep, with its particles scattered by half a spacing. */
+static void test_water_is_measured_where_it_will_be(void)
+{
+    struct unit_costs c;
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.1, 0.2\nsurface = 0.2\nsound_speed = 20\n"
+             "[wall tank]\nshape = polyline: 0, 0.3; 0, 0; 0.4, 0; 0.4, 0.3\n",
+             NULL);
+    clock_step = 1e-2; /* a few steps */
+    TEST_ASSERT_EQUAL_INT(ERR_OK, forecast_measure(&c, &rig.sim, &rig.diag));
+    clock_step = 0;
+    const struct particles *const water = &rig.sim.kind[KIND_FLUID];
+    double last = 0, top = 0;
+    for (int64_t i = 0; i < water->n; i++) {
+        last = fmax(last, water->x[i]);
+        top = fmax(top, water->y[i]);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 0.4, last);
+    TEST_ASSERT_DOUBLE_WITHIN(0.015, 0.05, top);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -137,5 +160,6 @@ int main(void)
     RUN_TEST(test_bytes_of_the_files);
     RUN_TEST(test_all_steps_are_measured);
     RUN_TEST(test_work_of_some_steps_counts);
+    RUN_TEST(test_water_is_measured_where_it_will_be);
     return UNITY_END();
 }
