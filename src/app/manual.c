@@ -65,10 +65,9 @@ void manual_example(const struct param *param, char *text, size_t size)
     const char *const word = section_table[param->section].word;
     const size_t length = strlen(word);
     bool inside = param->section == SECTION_top;
-    for (const char *line = embedded_text("src/app/data/key_examples.cfg"), *next; line;
-         line = next) {
+    const char *line = embedded_text("src/app/data/key_examples.cfg");
+    for (; *line; line = csv_next_line(line)) {
         const int end = (int)strcspn(line, "\n");
-        next = line[end] ? line + end + 1 : NULL;
         if (line[0] == '[')
             inside = strncmp(line + 1, word, length) == 0 && line[length + 1] == ']';
         if (!inside || !gives(line, param->key)) continue;

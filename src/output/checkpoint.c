@@ -443,7 +443,7 @@ struct image_info checkpoint_info(const struct image *m)
     return info;
 }
 
-double checkpoint_number(const struct block *b, int64_t k)
+static double number_of(const struct block *b, int64_t k)
 {
     double number;
     int64_t whole;
@@ -472,7 +472,7 @@ static enum err load_part(const struct image *m, const struct part *part, struct
                          " items of type %d, but this case needs %zu of type %d",
                          part->name, b.count, b.item, part->count, part->item);
     for (int64_t k = 0; k < b.count && isfinite(part->low); k++) {
-        const double number = checkpoint_number(&b, k);
+        const double number = number_of(&b, k);
         if (number >= part->low && number <= part->high) continue;
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: %s of %s, item %" PRId64

@@ -74,7 +74,6 @@ struct block {
 /* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at.
  * Returns false if no whole block begins there. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block *b);
-double checkpoint_number(const struct block *b, int64_t k);
 
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
  * the new case is loaded as at rest. Used by the two functions below. */
