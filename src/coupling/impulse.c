@@ -8,6 +8,13 @@
 
 #include "solid/loads.h"
 
+/* T-35f: fluid beside a body that is thinner than two of its spacings receives impulses of both
+ * sides. */
+static double impedance_of(const struct coupling *coupling, const struct solid_body *body)
+{
+    return coupling->impedance * min2(1, body->thickness / (2 * coupling->scene->top.dp));
+}
+
 /* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
  * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
  * velocity of T-35 in the middle of the kicks. Zero for dry and clamped particles. dt = 0: the root
@@ -18,7 +25,7 @@ static void find_normal(const struct coupling *coupling, struct particles *parti
     const struct solid_body *const body = &coupling->solid->body[particles->body[i]];
     const double wet =
         sqrt(square(particles->wet_x[i]) + square(particles->wet_y[i])) * particles->free[i];
-    const double k = (dt > 0 ? dt : 1) * coupling->impedance * wet / body->mass;
+    const double k = (dt > 0 ? dt : 1) * impedance_of(coupling, body) * wet / body->mass;
     const double root = wet > 0 ? sqrt(dt > 0 ? k / (1 + k) : k) / wet : 0;
     particles->face_x[i] = root * particles->wet_x[i];
     particles->face_y[i] = root * particles->wet_y[i];
