@@ -41,14 +41,13 @@ static void place_end(const struct beams *beams, const struct beam_element *e, i
     for (int c = 0; c < 3; c++) x[c] = s->x[c] + since * s->w[c];
     const double cosine = elementary_cos(x[2]), sine = elementary_sin(x[2]);
     const double t[2] = {e->between[0] / e->length, e->between[1] / e->length};
-    const bool felt = beams->scene->numerics.sides == SIDES_BOTH; /* T-105: unstable with L-6 */
     *end = (struct line_end){
         .x = {node->X[0] + x[0], node->X[1] + x[1]},
         .normal = {-(sine * t[0] + cosine * t[1]), cosine * t[0] - sine * t[1]},
         .v = {s->w[0], s->w[1]},
         .rate = s->w[2],
-        .a = {felt * s->a[0], felt * s->a[1]},
-        .angular_acceleration = felt * s->a[2],
+        .a = {s->a[0], s->a[1]},
+        .angular_acceleration = s->a[2],
     };
 }
 

@@ -111,6 +111,9 @@ enum err case_check_beam(struct reader *r, const void *section)
     const struct scene_beam *const beam = section;
     if (*beam->motion && beam->clamp.n + beam->hinge.n == 0)
         return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves");
+    if (r->scene->n_fluid && r->scene->numerics.sides == SIDES_ONE)
+        return bad_section(r, "would gain energy in fluid with numerics.sides = one; use sides = "
+                              "both: each side of a beam has dummies of its own");
     TRY(check_line(r, beam));
     if (beam->shape.n) TRY(check_extent(r, beam));
     TRY(check_values(r, beam));

@@ -108,6 +108,11 @@ static void test_snapshots_have_what_is_in_the_section(void)
     }
 }
 
+static void test_one_side_is_refused(void)
+{
+    rig_refuses(COLUMN "[numerics]\nsides = one\n", "would gain energy in fluid with");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -115,5 +120,6 @@ int main(void)
     RUN_TEST(test_momentum_is_exchanged);
     RUN_TEST(test_snapshots_have_what_is_in_the_section);
     RUN_TEST(test_a_violent_exchange_gains_little);
+    RUN_TEST(test_one_side_is_refused);
     return UNITY_END();
 }
