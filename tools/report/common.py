@@ -108,8 +108,10 @@ def summary_of(case, sets, *more, **options):
 
 
 def case_of(scene, folder):
-    """The case of a scene: of cases/verify, cases or tests/stability, or a template, which is
-    written to the folder."""
+    """The case of a scene: its text, a case of cases/verify, cases or tests/stability, or a
+    template, which is written to the folder."""
+    if "\n" in scene:
+        return scene
     for part in ("cases/verify", "cases", "tests/stability"):
         path = ROOT / part / f"{scene}.cfg"
         if path.is_file():
@@ -126,10 +128,12 @@ def options(doc):
 
 
 def measure_scene(scene, variants, measure):
-    """measure(runs) of runs of a scene, one for each list of settings, and their processor time."""
+    """measure(runs) of runs of a scene, one for each list of settings, and their processor time. A
+    list of scenes has one for each run."""
+    scenes = scene if isinstance(scene, list) else [scene] * len(variants)
     with tempfile.TemporaryDirectory() as folder:
         runs = [CaseRun(case_of(scene, folder), settings, Path(folder) / f"run{k}")
-                for k, settings in enumerate(variants)]
+                for k, (scene, settings) in enumerate(zip(scenes, variants))]
         return measure(runs), round(sum(run.seconds for run in runs), 1)
 
 
@@ -247,14 +251,15 @@ def figures_report(known):
                              [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
 
 
-def run_figures(doc, scenes, path, slow=()):
+def run_figures(doc, scenes, path, slow=(), stops=False):
     """run_scenes for scenes whose measure gives rows of figures: `scenes` has for each name a case,
-    the settings of each of its runs, and measure(runs), which gives (words, value, limit)."""
+    the settings of each of its runs, and measure(runs), which gives (words, value, limit). `stops`:
+    measure knows runs that a guard stopped, whose value is NaN."""
     def run_scene(name):
         scene, variants, measure = scenes[name]
 
         def finished(runs):
-            if any(run.stopped for run in runs):
+            if not stops and any(run.stopped for run in runs):
                 raise BadFile(f"a guard stopped {scene}")
             return measure(runs)
         figures, seconds = measure_scene(scene, variants, finished)

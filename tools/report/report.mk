@@ -13,6 +13,7 @@
 #   make verify-contact  restitution, pressure, friction, stacks, folds: docs/results/contact_verification.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/results/open_verification.md
 #   make verify-rigid    heave, water entry, waves and their damping: docs/results/rigid_verification.md
+#   make verify-beam     beams alone, in water, for the gate, the baffle and the bar: docs/results/beam_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/results/manufactured.md
 #   make exact-fsi       bodies and fluid against exact solutions: docs/results/exact_fsi.md
 #   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
@@ -32,6 +33,7 @@ verify-fluid_TOOL        := tools/report/verify_fluid.py
 verify-contact_TOOL      := tools/report/verify_contact.py
 verify-open_TOOL         := tools/report/verify_open.py
 verify-rigid_TOOL        := tools/report/verify_rigid.py
+verify-beam_TOOL         := tools/report/verify_beam.py
 verify-manufactured_TOOL := tools/report/manufactured.py
 exact-fsi_TOOL           := tools/report/exact_fsi.py
 turek-hron_TOOL          := tools/report/turek_hron.py
