@@ -75,11 +75,16 @@ enum err case_check_names(struct reader *r)
 
 /* --- fluid --- */
 
+/* The largest speed of Eq. 3; 0: not known. */
+static double largest_speed(const struct scene_fluid *f)
+{
+    return max2(f->max_speed, sqrt(f->max_pressure / f->density));
+}
+
 /* c0 as given, or by Eq. 3. */
 static double sound_speed(const struct scene *scene, const struct scene_fluid *f)
 {
-    const double largest = max2(f->max_speed, sqrt(f->max_pressure / f->density));
-    return f->sound_speed > 0 ? f->sound_speed : scene->numerics.sound_factor * largest;
+    return f->sound_speed > 0 ? f->sound_speed : scene->numerics.sound_factor * largest_speed(f);
 }
 
 /* This section and another that must have the same value of a key; sound_speed: that of Eq. 3 if it
@@ -123,6 +128,8 @@ static enum err check_fluid(struct reader *r, const void *section)
         scene->c0 = c0;
         scene->rho0 = f->density;
     }
+    const double c_u = min2(c0, largest_speed(f) > 0 ? 10 * largest_speed(f) : c0);
+    scene->c_u = max2(scene->c_u, c_u);
     for (int k = 0; k < PARAM_COUNT; k++) {
         const struct param *const param = &param_table[k];
         const bool number = param->type == PARAM_REAL || param->type == PARAM_CHOICE;

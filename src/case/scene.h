@@ -249,6 +249,7 @@ struct scene {
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h;                                     /* smoothing length */
     double c0, rho0;    /* speed of sound and density of the fluid; 0: no fluid */
+    double c_u;         /* of L-7: at most c0; ten times the largest speed of Eq. 3, if known */
     double given_speed; /* largest that walls, open boundaries and the start give it, m/s */
     double domain_lower[2], domain_upper[2]; /* in effect */
     bool full;        /* there are open boundaries and, at the start, no free surface */

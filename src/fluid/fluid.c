@@ -13,6 +13,7 @@ static struct fluid_constants constants_of(const struct scene *scene)
         .model = fluid,
         .h = scene->h,
         .c0 = scene->c0,
+        .c_u = scene->c_u,
         .rho0 = scene->rho0,
         .mass = scene->rho0 * square(scene->top.dp),
         .dp = scene->top.dp,

@@ -17,6 +17,7 @@
 struct fluid_constants {
     const struct scene_fluid *model; /* coefficients of the effects, as the case has them */
     double h, c0, rho0;
+    double c_u;  /* of L-7 */
     double mass; /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double dp;   /* particle spacing, m */
     double shifting_speed; /* m/s, the same for all particles; 0: each particle's own speed */

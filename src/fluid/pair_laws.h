@@ -29,7 +29,7 @@ struct exchange {
 struct vector_constants {
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
-    vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
+    vreal repulsion;      /* beta rho0 c_u^2 of fx_repulsion, Pa */
     vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
     vreal lowest;         /* pressure of walls and structures, Pa */
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
@@ -49,7 +49,7 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
         .laminar = vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / fk->h)),
         .tensile = vset((real)fk->model->tensile_control),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
-        .repulsion = vset((real)(fk->model->wall_repulsion * fk->rho0 * square(fk->c0))),
+        .repulsion = vset((real)(fk->model->wall_repulsion * fk->rho0 * square(fk->c_u))),
         .wall_damping = vset((real)(fk->model->wall_damping * fk->rho0 * fk->c0)),
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
@@ -113,15 +113,15 @@ SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal li
 SPHFSI_INLINE vreal fx_one_sided_rate(const struct pair *q) { return vset(2) * fx_continuity(q); }
 
 /* Used in place of the boundary force of Monaghan 1994, between fluid and dummies nearer than r0: a
- * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2, inv =
- * h^2/(r^2 + eta^2). */
+ * pressure beta rho0 c_u^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2,
+ * inv = h^2/(r^2 + eta^2). */
 SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_constants *k)
 {
     return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
-/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the one-sided
- * Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c0^2. */
+/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the
+ * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
 SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
                                     const struct vector_constants *k)
 {

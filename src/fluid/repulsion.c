@@ -67,7 +67,7 @@ void fluid_repulsion_energy(const struct fluid *fluid, const struct particles ki
                                     add_repulsion, &at);
             }
             of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
-                                      k->model->wall_repulsion * square(k->c0) * at.sum;
+                                      k->model->wall_repulsion * square(k->c_u) * at.sum;
         }
     }
 }

@@ -31,7 +31,7 @@ static double bound_value(const struct simulation *sim, enum bound k,
         return bound_decay(sim, sim->integrator->velocity_decay,
                            2.3 * f->model->artificial_viscosity);
     case BOUND_repulsion: /* of two dummies where L-7 is steepest */
-        return square(f->h / f->dp) * f->h / (8.1 * sqrt(f->model->wall_repulsion) * f->c0);
+        return square(f->h / f->dp) * f->h / (8.1 * sqrt(f->model->wall_repulsion) * f->c_u);
     case BOUND_viscous: { /* L-6b gives pairs with a surface twice the weight */
         const double weight = sim->effects & FX_NO_SLIP && sim->effects & FX_ONE_SIDED ? 2 : 1;
         const double inside = 0.125 * square(f->h) / (weight * f->model->laminar_viscosity);
