@@ -102,7 +102,7 @@ void rigid_add_springs(struct rigid *rigid);
 enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 /* With walls where they are at a time. */
 void rigid_add_hinges(struct rigid *rigid, double time);
-/* T-99a: what is left of the distance of both places, or of the driven angle, after the step, as a
+/* T-99a: the rest of the distance of both places, or of the driven angle, after the step, as a
  * velocity. */
 double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late);
 /* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
