@@ -472,7 +472,7 @@ static enum err check_solid_steps(struct reader *r)
     return ERR_OK;
 }
 
-/* 0 stands for h_over_dp, which has the same bounds. */
+/* 0 stands for h_over_dp. */
 static enum err check_numerics(struct reader *r, const void *section)
 {
     const double value = ((const struct scene_numerics *)section)->solid_h_over_dp;

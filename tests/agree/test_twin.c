@@ -203,6 +203,7 @@ static void agree_for_all_effects(const char *precision, double tolerance)
     agree(scene, precision, "water.diffusion_form=fourtakas", "water.density_diffusion=0.5",
           tolerance);
     agree(scene, precision, "numerics.h_over_dp=2", "numerics.skin=0", tolerance);
+    agree(scene, precision, "numerics.h_over_dp=2.6", "numerics.skin=0", tolerance);
     agree(channel, precision, "water.artificial_viscosity=0", "water.density_diffusion=0",
           tolerance);
     agree(channel, precision, "water.artificial_viscosity=0.05", "numerics.suction=on", tolerance);
