@@ -4,7 +4,6 @@
 import argparse
 import shlex
 import sys
-import traceback
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,24 +27,14 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
-    from sphfsi.files import (CASES, BadFile, Error, Reference, Run, check_increasing, make_runs,
-                              read_case, read_table, read_text, references)
-    from sphfsi.style import COLOURS, STYLE, WIDTH, scaled_unit
+    from sphfsi.files import (BadFile, Error, Reference, Run, make_runs, read_case, read_table,
+                              read_text)
+    from sphfsi.style import COLOURS, STYLE, WIDTH
 except ImportError as missing:
     sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; {remedy()}")
 
-__all__ = ["CASES", "COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "check_increasing",
-           "make_runs", "np", "plt", "read_case", "read_table", "read_text", "references",
-           "run_tool", "save", "scaled_unit", "sentence"]
-
-
-def sentence(problem):
-    """What went wrong, for the user, while an exception is handled. Of one that nobody foresaw the
-    kind is said, and the place in the program goes to stderr."""
-    if isinstance(problem, BadFile):
-        return str(problem)
-    traceback.print_exc()
-    return f"{type(problem).__name__}: {problem}"
+__all__ = ["COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "make_runs", "np", "options",
+           "plt", "read_case", "read_table", "read_text", "run_tool", "save"]
 
 
 def options(text, example=""):

@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import packages
 with packages():
     import numpy as np
-    import verify_contact as tool
+    from common import figures_report
     import verify_contact_measures as of
     import verify_contact_reference as reference
 
@@ -68,16 +68,14 @@ def test_points_in_a_polygon():
     assert of.inside(points, square) == 2
 
 
-def test_the_order_of_an_error():
-    assert tool.order([4.0, 1.0], [4, 8]) == "2.0"
-    assert tool.order([4.0, -1.0], [4, 8]) == "" and tool.order([1.0, 2.0], [4, 8]) == ""
-
-
 def test_the_answer_counts_every_resolution():
-    scene = {"name": "s", "levels": (1, 2)}
-    lines = tool.answer([(scene, "figure", [3.0, 1.0], 2),
-                         (scene, "not judged", [9.0, 9.0], None)]).splitlines()
-    assert lines[0] == "1 of 2 limits are kept." and "* s, figure, at 1: 3, limit 2" in lines, lines
+    known = {"s": {"figures": {level: [["figure", value, 2], ["not judged", 9.0, None]]
+                               for level, value in (("1 across", 3.0), ("2 across", 1.0))},
+                   "seconds": {"1 across": 1, "2 across": 2}}}
+    lines = figures_report(known)["answer"].splitlines()
+    assert lines[0] == "1 of 2 limits are kept.", lines
+    assert "* s, figure, 1 across: 3, limit 2" in lines, lines
+    assert figures_report(known, "2 across")["answer"] == "1 of 1 limits are kept."
 
 
 def test_a_block_that_slides():

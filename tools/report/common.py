@@ -2,8 +2,6 @@
 """What all reports share: the program, runs of it in folders that are read at once, kept results as
 JSON, and tables in Markdown."""
 
-import argparse
-import csv
 import json
 import math
 import os
@@ -18,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import runfiles  # noqa: E402  finds the package of the clone
 from runfiles import *  # noqa: E402,F403
-from runfiles import BadFile, np  # noqa: E402
+from runfiles import BadFile, read_table  # noqa: E402
 
 # Where reports go; in their quick form (QUICK=1) to a folder to be looked at.
 QUICK = os.environ.get("QUICK", "") not in ("", "0")
@@ -91,10 +89,7 @@ class CaseRun:
                           if re.fullmatch(r"[-+.\de]+", value)}
 
     def table(self, name="probes.csv"):
-        with open(self.folder / name, encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        return {column: np.array([float(row[k] or "nan") for row in rows[1:]])
-                for k, column in enumerate(rows[0])}
+        return read_table(self.folder / name, finite=False)[0]
 
 
 def in_scratch(measure, case, sets, *more, **options):
@@ -121,19 +116,15 @@ def case_of(scene, folder):
     return path
 
 
-def options(doc):
-    """A parser that shows the tool's own text."""
-    return argparse.ArgumentParser(description=doc,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
-
-
-def measure_scene(scene, variants, measure):
+def measure_scene(scene, settings, measure, stops):
     """measure(runs) of runs of a scene, one for each list of settings, and their processor time. A
-    list of scenes has one for each run."""
-    scenes = scene if isinstance(scene, list) else [scene] * len(variants)
+    list of scenes has one for each run. Whether a guard may stop a run."""
+    scenes = scene if isinstance(scene, list) else [scene] * len(settings)
     with tempfile.TemporaryDirectory() as folder:
-        runs = [CaseRun(case_of(scene, folder), settings, Path(folder) / f"run{k}")
-                for k, (scene, settings) in enumerate(zip(scenes, variants))]
+        runs = [CaseRun(case_of(scene, folder), sets, Path(folder) / f"run{k}")
+                for k, (scene, sets) in enumerate(zip(scenes, settings))]
+        if not stops and any(run.stopped for run in runs):
+            raise BadFile(f"a guard stopped {scene}")
         return measure(runs), round(sum(run.seconds for run in runs), 1)
 
 
@@ -192,6 +183,11 @@ def write(path, template, **values):
 
 
 # --- reports of many small scenes ---
+def single(measure):
+    """For a scene of one run."""
+    return lambda runs: measure(runs[0])
+
+
 def judged(rows):
     """The first lines of a report: how many limits are kept, and which are missed. `rows` are
     (words, value, limit)."""
@@ -202,68 +198,70 @@ def judged(rows):
     return "\n".join([text, "", "Missed:", "", *missed] if missed else [text])
 
 
-def limit_text(limit):
-    return "" if limit is None else number(limit)
-
-
 def last_cost(report, name):
     """Seconds that a scene took when the committed report was written."""
-    seconds = load(ROOT / "docs/results" / report.replace(".md", ".json"), {}).get(
-        name, {}).get("seconds", math.inf)
-    seconds = seconds.values() if isinstance(seconds, dict) else seconds
-    return seconds if isinstance(seconds, (int, float)) else sum(seconds)
+    scene = load(ROOT / "docs/results" / report.replace(".md", ".json"), {}).get(name)
+    return sum(variants(scene["seconds"]).values()) if scene else math.inf
 
 
-def run_scenes(doc, names, run_scene, path, report, slow=()):
-    """The command line of such a report. run_scene(name) gives the figures of a scene for JSON;
-    those of all scenes are kept beside the report at `path`, so that --only runs some anew, and
-    nothing else runs the slow ones.
-    report(known) gives the values of its text, which lies beside the tool under the name of
-    `path`."""
+def variants(scene):
+    """By their names; a scene of one has no name for it."""
+    return scene if isinstance(scene, dict) else {"": scene}
+
+
+def figures_report(known, asked=None):
+    """The answer and the tables of a report; the limits hold for the variant `asked` or for all."""
+    rows, answer = [], []
+    for name, scene in known.items():
+        figures = variants(scene["figures"])
+        for k, (what, _, limit) in enumerate(next(iter(figures.values()))):
+            values = {variant: of[k][1] for variant, of in figures.items()}
+            answer += [(", ".join(filter(None, (name, what, variant != asked and variant))),
+                        value, limit)
+                       for variant, value in values.items() if asked in (None, variant)]
+            rows.append([name, what, *([", ".join(values)] if any(values) else []),
+                         ", ".join(cell(value, limit) for value in values.values()),
+                         "" if limit is None else number(limit)])
+    head = ["scene", "figure", "with", "found", "limit"]
+    return {"answer": judged(answer),
+            "figures": table(head if len(rows[0]) == len(head) else head[:2] + head[3:], rows),
+            "seconds": table(["scene", "processor time, s"],
+                             [[name, ", ".join(f"{seconds:.0f}" for seconds in
+                                               variants(scene["seconds"]).values())]
+                              for name, scene in known.items()])}
+
+
+def run_figures(doc, scenes, path, slow=(), stops=False, asked=None):
+    """The command line of such a report. `scenes` has for each name a case, the settings of each of
+    its runs, and measure(runs), which gives rows (words, value, limit or None); or several of
+    these, {name of a variant: ...}. A limit is kept if |value| <= limit. `stops`: measure knows
+    runs that a guard stopped, whose value is NaN. Figures are kept beside the report at `path`, so
+    that --only runs some scenes anew, and nothing else runs the slow ones. The text lies beside
+    the tool under the name of `path`."""
     parser = options(doc)
     parser.add_argument("--list", action="store_true", help="say which scenes there are")
-    parser.add_argument("--only", default="", help="part of a scene's name")
-    args = parser.parse_args()
+    parser.add_argument("--only", default="", help="part of a scene's name: runs these again, "
+                        "keeps the figures of the others")
+    args, results = parser.parse_args(), path.with_suffix(".json")
     if args.list:
-        print("\n".join(names))
+        print("\n".join(scenes))
         return
-    results = path.with_suffix(".json")
-    if QUICK:
-        names = [min(names, key=lambda name: last_cost(path.name, name))]
-    for name in (name for name in names
+    chosen = [min(scenes, key=lambda name: last_cost(path.name, name))] if QUICK else scenes
+    for name in (name for name in chosen
                  if args.only in name and (args.only or name not in slow)):
-        found = {"version": program_version(), **run_scene(name)}
-        store(results, {**load(results, {}), name: found})
+        figures, seconds = {}, {}
+        for variant, (scene, settings, measure) in variants(scenes[name]).items():
+            figures[variant], seconds[variant] = measure_scene(scene, settings, measure, stops)
+            for what, value, _ in figures[variant]:
+                print(name, variant, what, number(value), flush=True)
+        found = {"figures": figures, "seconds": seconds}
+        if "" in figures:
+            found = {key: of[""] for key, of in found.items()}
+        store(results, {**load(results, {}), name: {"version": program_version(), **found}})
     known = load(results, {})
-    known = {name: known[name] for name in names if name in known}
+    known = {name: known[name] for name in scenes if name in known}
     versions = ", ".join(sorted({entry["version"] for entry in known.values()}))
-    write(path, path.name, versions=versions, **report(known))
-
-
-def figures_report(known):
-    """The answer and the tables of a report whose scenes each have rows of figures."""
-    rows = [(name, *figure) for name, scene in known.items() for figure in scene["figures"]]
-    return {"answer": judged([(f"{name}, {what}", *rest) for name, what, *rest in rows]),
-            "figures": table(["scene", "figure", "found", "limit"],
-                             [[name, what, cell(found, limit), limit_text(limit)]
-                              for name, what, found, limit in rows]),
-            "seconds": table(["scene", "processor time, s"],
-                             [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
-
-
-def run_figures(doc, scenes, path, slow=(), stops=False):
-    """run_scenes for scenes whose measure gives rows of figures: `scenes` has for each name a case,
-    the settings of each of its runs, and measure(runs), which gives (words, value, limit). `stops`:
-    measure knows runs that a guard stopped, whose value is NaN."""
-    def run_scene(name):
-        scene, variants, measure = scenes[name]
-
-        def finished(runs):
-            if not stops and any(run.stopped for run in runs):
-                raise BadFile(f"a guard stopped {scene}")
-            return measure(runs)
-        figures, seconds = measure_scene(scene, variants, finished)
-        for what, value, _ in figures:
-            print(name, what, number(value), flush=True)
-        return {"figures": figures, "seconds": seconds}
-    run_scenes(doc, scenes, run_scene, path, figures_report, slow)
+    absent = ", ".join(name for name in scenes if name not in known)
+    values = figures_report(known, asked)
+    values["answer"] += f"\n\nNot run yet: {absent}." * (bool(absent) and not QUICK)
+    write(path, path.name, versions=versions, **values)

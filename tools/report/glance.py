@@ -12,10 +12,9 @@ import statistics
 import tomllib
 
 from common import COLOURS, IMAGES, OUT, QUICK, ROOT, in_scratch, options, plt, run_tool
-from palette import shrink
+from palette import save
 from study_results import Study, cost
 
-IMG = IMAGES
 EFFECTS = OUT / "effects.csv"
 # Cases of the accuracy study that both schemes have: label, main error, what it is against.
 CASES = {"still": ("still water: pressure", "pressure (L2)"),
@@ -66,7 +65,7 @@ def draw_accuracy():
     axes.set_yticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
     axes.set_title("solid: scheme = standard, the default;  dashed: scheme = paper, the article's",
                    fontsize=9, loc="left")
-    save(figure, "accuracy")
+    save(figure, IMAGES / "glance_accuracy.png", dpi=130)
 
 
 def scenes():
@@ -108,7 +107,7 @@ def draw_stability():
     axes.tick_params(top=False, left=False, right=False)
     axes.set_title(f"{len(found)} hard scenes: {good} stable with defaults, {cured} with a setting "
                    f"(orange), {len(found) - good - cured} unstable", fontsize=9, loc="right")
-    save(figure, "stability")
+    save(figure, IMAGES / "glance_stability.png", dpi=130)
 
 
 def gate(elastic):
@@ -154,13 +153,7 @@ def draw_effects():
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(top=False, right=False, left=False)
     axes.set_title("An effect costs only a scene that names it", fontsize=9, loc="left")
-    save(figure, "effects")
-
-
-def save(figure, name):
-    path = IMG / f"glance_{name}.png"
-    figure.savefig(path, dpi=130)
-    shrink(path)
+    save(figure, IMAGES / "glance_effects.png", dpi=130)
 
 
 def main():

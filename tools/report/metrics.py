@@ -4,6 +4,20 @@
 import math
 
 from common import BadFile, np
+from sphfsi.snapshots import KINDS, Snapshots
+
+
+def water(run):
+    """Time, positions and velocities of the fluid in each snapshot of a run."""
+    shots = Snapshots(run.folder / "fields.vtkhdf")
+    for step, time in enumerate(shots.times):
+        fluid = shots.load(step, "kind") == KINDS["fluid"]
+        yield (time, shots.load(step, "Points")[fluid, :2], shots.load(step, "velocity")[fluid, :2])
+
+
+def foremost(run):
+    """Times of the snapshots, and the largest x of the fluid in each."""
+    return np.array([(time, x[:, 0].max()) for time, x, _ in water(run)]).T
 
 
 def order(sizes, errors):

@@ -46,6 +46,11 @@ def indexed(image, size=256):
     return small
 
 
+def save(figure, path, **look):
+    figure.savefig(path, **look)
+    shrink(path)
+
+
 def shrink(path, texts=None, width=1500):
     """Makes a picture file small: at most `width` pixels wide, from a palette. `texts` are written
     into it, {name: text}."""

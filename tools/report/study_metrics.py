@@ -152,19 +152,9 @@ def hydrostatic(error, run, _finest, _root):
     return None, np.sqrt(np.mean((p - weight * depth)**2)) / (weight * depth.max())
 
 
-def places(run):
-    """Times of the snapshots, and positions of the water's foremost particle."""
-    shots = Snapshots(Run(run).folder / "fields.vtkhdf")
-    found = []
-    for step in range(len(shots.times)):
-        fluid = shots.load(step, "kind") == PARTICLES["fluid"]
-        found.append(shots.load(step, "Points")[fluid, 0].max())
-    return np.array(shots.times), np.array(found)
-
-
 def front(error, run, _finest, root):
     """Position of the foremost particle against measured rows of time and position."""
-    time, place = places(run)
+    time, place = metrics.foremost(Run(run))
     table, _ = read_table(root / error["file"])
     when, wanted = table.values()
     when, wanted = when * error.get("time_unit", 1), wanted * error.get("length_unit", 1)
@@ -176,7 +166,7 @@ def front(error, run, _finest, root):
 
 
 def front_finest(_error, run, finest, _root):
-    (time, place), (when, wanted) = places(run), places(finest)
+    (time, place), (when, wanted) = (metrics.foremost(Run(of)) for of in (run, finest))
     off = np.interp(when, time, place) - wanted
     return place[-1], np.sqrt(np.mean(off**2)) / wanted.max()
 

@@ -2,6 +2,8 @@
 """The report of the accuracy study (docs/results/accuracy.md and its figures) from its collected
 results."""
 
+import csv
+import io
 import json
 import os
 import re
@@ -10,12 +12,11 @@ from pathlib import Path
 
 from matplotlib.ticker import LogFormatter
 
-from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
-from palette import shrink
+from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, fill, load, np, plt, read_text
+from palette import save
 from study import SCENES
-from study_presets import write_evidence
-from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
-                           main_error, percent)
+from study_results import (CROSSING, Study, across, against, cost, machine_text, main_error,
+                           percent)
 from study_tables import (aims_table, base_table, failures, forecast_table, halving_table,
                           knob_table, ranked_knobs, schemes_table)
 
@@ -59,7 +60,6 @@ def draw_case(study, case, path):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(PlainLog(minor_thresholds=(1, 0.5)))
     save(figure, path)
-    shrink(path)
     plt.close(figure)
 
 
@@ -139,6 +139,31 @@ def forecast_section(path):
     except (ValueError, KeyError, TypeError) as problem:
         raise BadFile(f"{path}: not the forecasts of tools/report/forecast.py "
                       f"({problem})") from None
+
+
+# --- the file of evidence in the program: what --explain says of errors ---
+
+def write_evidence(study, path):
+    """Errors of the presets by case and resolution, and those of make coverage."""
+    coverage = load(OUT / "coverage.json", {"version": "-", "evidence": []})
+    text = io.StringIO(f"# Written by make accuracy: errors in the study of program "
+                       f"{', '.join(study.head['versions'])}, and in make coverage of "
+                       f"{coverage['version']}; percent of the exact or finest result.\n")
+    text.seek(0, io.SEEK_END)
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow("scene accuracy case error resolution what percent".split())
+    for preset, knobs in study.definition.get("preset", {}).items():
+        for case, entry in study.cases.items():
+            knob, _, value = knobs.get(entry["scene"], "base").partition("=")
+            points = sorted(study.of(case, knob, value), key=lambda p: p["level"])
+            rows.writerows([entry["scene"], preset, entry.get("title", case), main_error(entry),
+                            f"{across(entry, p):.3g}", entry.get("what", "across"),
+                            f"{100 * study.error(p):.3g}"]
+                           for p in points if study.error(p) is not None)
+    rows.writerows(coverage["evidence"])
+    if not path.exists() or path.read_text(encoding="utf-8") != text.getvalue():
+        path.write_text(text.getvalue(), encoding="utf-8")
+        print(f"written {path}; make puts it into the program")
 
 
 def write(data, out, evidence=None):

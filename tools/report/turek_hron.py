@@ -18,7 +18,7 @@ from pathlib import Path
 
 from common import (COLOURS, IMAGES, OUT, ROOT, Run, load, np, options, plt, run_tool, store, table,
                     write)
-from palette import shrink
+from palette import save
 from runs import Job
 
 CASES = ROOT / "cases" / "turek_hron"
@@ -400,9 +400,7 @@ def draw_history(run):
     axes[0].set_title("last four periods; grey: range of the reference", fontsize=15)
     axes[-1].set_xlabel("time, s", fontsize=15)
     fig.align_ylabels()
-    path = IMAGES / f"turek_hron_{run.name.replace('-', '_')}.png"
-    fig.savefig(path, dpi=110, bbox_inches="tight")
-    shrink(path)
+    save(fig, IMAGES / f"turek_hron_{run.name.replace('-', '_')}.png", dpi=110, bbox_inches="tight")
 
 
 def main():

@@ -11,11 +11,6 @@ def snapshots(run):
     return Snapshots(run.folder / "fields.vtkhdf")
 
 
-def water(file, step):
-    """Positions of the water in a snapshot."""
-    return file.load(step, "Points")[file.load(step, "kind") == 0][:, :2]
-
-
 def balance(run):
     """From the ledger: the available energy, the dissipated energy, the largest spurious gain;
     momentum and relative change of the mass at the end; the largest relative deviation of the
@@ -88,11 +83,9 @@ def bore(run):
     snapshots: the front is where it stands halfway between the water ahead and Stoker's bore."""
     start, still = 0.503, 0.03
     least = 0.5 * (still + metrics.wet_bed_bore(0.15, still)[0])
-    file, dp = snapshots(run), run.spacing()
+    dp, front, depths = run.spacing(), [], []
     at = np.arange(start + 0.02, start + 0.29, 2 * dp)
-    front, depths = [], []
-    for step, time in enumerate(file.times):
-        x = water(file, step)
+    for time, x, _ in metrics.water(run):
         height = metrics.surface_height(x[x[:, 1] < 0.2], dp, at)
         ahead = np.flatnonzero(height > least)
         if len(ahead) and at[ahead[-1]] < at[-1] - 0.02 and ahead[-1] > 3:
@@ -109,9 +102,8 @@ def bore(run):
 def front_speed(run):
     """Speed of the foremost water over most of the tank behind the plate."""
     start, end = 0.55, 1.45
-    file = snapshots(run)
-    way = np.array([water(file, step)[:, 0].max() for step in range(len(file.times))])
+    times, way = metrics.foremost(run)
     k = np.flatnonzero((way > start) & (way < end))
     if len(k) < 2:
         raise BadFile(f"{run.folder}: too few snapshots of the front")
-    return {"speed": (way[k[-1]] - way[k[0]]) / (file.times[k[-1]] - file.times[k[0]])}
+    return {"speed": (way[k[-1]] - way[k[0]]) / (times[k[-1]] - times[k[0]])}

@@ -4,18 +4,13 @@
 on one core): large deflection, frequencies, energy; frequencies in water of a plate with water on
 one side or both; the elastic gate, the baffle and the bar in a channel as beams.
 
-examples:
-  tools/report/verify_beam.py               writes docs/results/beam_verification.md
-  tools/report/verify_beam.py --only gate   runs these scenes again, keeps the other figures
-
 The scenes are texts in this tool, and cases/gate.cfg, wet_baffle.cfg and turek_hron with a beam for
 their solid. The figures are kept in docs/results/beam_verification.json."""
 import math
 import re
 
-from common import (COLOURS, IMAGES, OUT, ROOT, figures_report, load, np, plt, run_figures,
-                    run_tool)
-from palette import shrink
+from common import COLOURS, IMAGES, OUT, ROOT, load, np, plt, run_figures, run_tool
+from palette import save
 from turek_hron import REFERENCE, columns, period, summary
 
 REPORT = OUT / "beam_verification.md"
@@ -381,8 +376,7 @@ def draw(known):
     axes.set(xscale="log", yscale="log", xlabel="mass of the water over that of the plate",
              ylabel="frequency in water over that in vacuum")
     axes.legend(fontsize=8, ncol=2)
-    figure.savefig(IMAGES / "beam_wet.png", dpi=130, bbox_inches="tight")
-    shrink(IMAGES / "beam_wet.png")
+    save(figure, IMAGES / "beam_wet.png", dpi=130, bbox_inches="tight")
 
 
 def main():

@@ -1,27 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Runs small scenes of still water, waves, impact, openings and bodies with both schemes of the
-fluid and says how far each is off (make verify-fluid, ten minutes on one core).
-
-  tools/report/verify_fluid.py                     writes docs/results/fluid_verification.md
-  tools/report/verify_fluid.py --only 'still water'   runs these scenes again, keeps the figures of
-  the others
-  tools/report/verify_fluid.py --list              says which scenes there are
-
-The scenes are those of cases/verify, shipped cases and templates.
-tools/report/verify_fluid_measures.py says how each figure is taken. The figures are kept in
-docs/results/fluid_verification.json."""
+fluid and says how far each is off (make verify-fluid, ten minutes on one core). The scenes are
+those of cases/verify, shipped cases and templates; tools/report/verify_fluid_measures.py says how
+each figure is taken. Figures are kept in docs/results/fluid_verification.json."""
 import verify_fluid_measures as of
-from common import (OUT, cell, kept, limit_text, measure_scene, number, run_scenes, run_tool,
-                    table)
+from common import OUT, run_figures, run_tool, single
 
 REPORT = OUT / "fluid_verification.md"
 SCHEMES = ("paper", "standard")
-
-
-def single(measure):
-    """For scenes of one run."""
-    return lambda runs: measure(runs[0])
 
 
 def skins(*settings):
@@ -84,46 +71,13 @@ RUNS = [
 ]
 
 
-def rows_of(known):
-    """(scene, words, limit, {scheme: value}) of each figure."""
-    for name, scene in known.items():
-        for k, (what, _, limit) in enumerate(scene["figures"]["standard"]):
-            yield name, what, limit, {scheme: figures[k][1]
-                                      for scheme, figures in scene["figures"].items()}
+def both_schemes(scene, name, variants, measure):
+    return {scheme: (scene, [[f"scheme={scheme}", *settings] for settings in variants], measure)
+            for scheme in SCHEMES[standard_only(name):]}
 
 
-def answer(rows):
-    """The first lines: which limits the standard scheme keeps."""
-    rows = [row for row in rows if row[2] is not None]
-    missed = [f"* {name}, {what}: {number(values['standard'])}, limit {number(limit)}"
-              for name, what, limit, values in rows if not kept(values["standard"], limit)]
-    paper = [kept(values["paper"], limit) for _, _, limit, values in rows if "paper" in values]
-    text = (f"The standard scheme keeps {len(rows) - len(missed)} of {len(rows)} limits; "
-            f"of {len(paper)} that were run with it the paper's keeps {sum(paper)}.")
-    return "\n".join([text, "", "It misses:", "", *missed] if missed else [text])
-
-
-def report(known):
-    rows = list(rows_of(known))
-    figures = table(["scene", "figure", "limit", *SCHEMES],
-                    [[name, what, limit_text(limit),
-                      *(cell(values[s], limit) if s in values else "" for s in SCHEMES)]
-                     for name, what, limit, values in rows])
-    seconds = table(["scene", *SCHEMES], [[name, *(scene["seconds"].get(s, "") for s in SCHEMES)]
-                                          for name, scene in known.items()])
-    return {"answer": answer(rows), "figures": figures, "seconds": seconds}
-
-
-def run_scene(name):
-    scene, _, variants, measure = next(row for row in RUNS if row[1] == name)
-    now = {"figures": {}, "seconds": {}}
-    for scheme in SCHEMES[standard_only(name):]:
-        now["figures"][scheme], now["seconds"][scheme] = measure_scene(
-            scene, ([f"scheme={scheme}", *settings] for settings in variants), measure)
-    for _, what, _, values in rows_of({name: now}):
-        print(name, what, *map(number, values.values()), flush=True)
-    return now
+SCENES = {row[1]: both_schemes(*row) for row in RUNS}
 
 
 if __name__ == "__main__":
-    run_tool(lambda: run_scenes(__doc__, [row[1] for row in RUNS], run_scene, REPORT, report))
+    run_tool(lambda: run_figures(__doc__, SCENES, REPORT, stops=True, asked="standard"))

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The figures of tools/report/verify_fluid.py: how each is taken from a finished run. A figure is
 (words, value, limit or None); it is kept if |value| <= limit."""
-import csv
 import math
 
 import metrics
-from common import ROOT, np
+from common import ROOT, np, read_table
 from sphfsi.snapshots import KINDS, Snapshots
 
 G = 9.81
@@ -14,9 +13,7 @@ FLUID = KINDS["fluid"]
 
 def reference(name):
     """Columns of a table of cases/reference, in order."""
-    with open(ROOT / "cases" / "reference" / name, encoding="utf-8") as file:
-        rows = [row for row in csv.reader(line for line in file if not line.startswith("#"))]
-    return np.array(rows[1:], dtype=float).T
+    return np.array(list(read_table(ROOT / "cases" / "reference" / name)[0].values()))
 
 
 def snapshots(run):
@@ -267,11 +264,8 @@ def measure_front(run):
     instant of its release is known, so the time counts from where the front is at 1.44 a, a point
     of the series."""
     time, place = reference("dam_break_martin_moyce_1952.csv")
-    width, t, x = 0.05715, [], []
-    for shots, step in snapshots(run):
-        t.append(shots.times[step] * math.sqrt(G / width))
-        x.append(float(shots.load(step, "Points")[shots.load(step, "kind") == FLUID, 0].max()) /
-                 width)
+    width = 0.05715
+    t, x = metrics.foremost(run) / np.array([[math.sqrt(width / G)], [width]])
     known = float(np.interp(1.44, place, time))
     shift = float(np.interp(1.44, x, t)) - known
     late = time >= known

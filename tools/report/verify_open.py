@@ -2,31 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Runs small scenes with open boundaries and says how far each is off (make verify-open, some
 minutes on one core): a vortex that leaves, a weir with given discharge, a flow that reverses
-periodically, a jet on a plate, a cylinder in a stream.
-
-examples:
-  tools/report/verify_open.py               writes docs/results/open_verification.md
-  tools/report/verify_open.py --only weir   runs these scenes again, keeps the figures of the others
-  tools/report/verify_open.py --only "Re = 100, 20"   one of the long runs of the cylinder, with 20
-                                            or 40 spacings across: half an hour to five hours
-
-The scenes are cases/verify/open_*.cfg and cylinder.cfg. The figures are kept in
-docs/results/open_verification.json."""
+periodically, a jet on a plate, a cylinder in a stream. The scenes are cases/verify/open_*.cfg and
+cylinder.cfg, whose long runs of half an hour to five hours --only runs alone ("Re = 100, 20").
+Figures are kept in docs/results/open_verification.json."""
 import math
 
 from common import OUT, np, run_figures, run_tool
-from sphfsi.snapshots import KINDS, Snapshots
+from metrics import water
 
 REPORT = OUT / "open_verification.md"
 G = 9.81
-
-
-def fluid(run):
-    """Times, and for each the positions and velocities of the fluid."""
-    shots = Snapshots(run.folder / "fields.vtkhdf")
-    for step, time in enumerate(shots.times):
-        water = shots.load(step, "kind") == KINDS["fluid"]
-        yield (time, shots.load(step, "Points")[water, :2], shots.load(step, "velocity")[water, :2])
 
 
 def on_grid(points, x, values, reach):
@@ -46,7 +31,7 @@ def measure_vortex(runs):
     grid = np.array([(x, y) for x in np.arange(-0.6, 0.701, 0.05)
                      for y in np.arange(-0.4, 0.41, 0.05)])
     most, left, left_long = 0.0, 0.0, 0.0
-    for (t, x, v), (_, far_x, far_v) in zip(*map(fluid, runs)):
+    for (t, x, v), (_, far_x, far_v) in zip(*map(water, runs)):
         if t < 0.49:
             continue
         near, far = on_grid(grid, x, v, 2 * dp), on_grid(grid, far_x, far_v, 2 * dp)
@@ -84,7 +69,7 @@ def measure_reversal(runs):
     Particles of the buffers do not count: the last row of each comes and goes."""
     omega = 2 * math.pi / 4
     off, size, count = [], [], []
-    for t, x, v in fluid(runs[0]):
+    for t, x, v in water(runs[0]):
         count.append(int(((x[:, 0] > 0) & (x[:, 0] < 2)).sum()))
         if t < 3.99:
             continue
@@ -113,7 +98,7 @@ def measure_jet(runs):
     ideal, half, d = 1000 * 2**2 * 0.04, 0.4, 0.04
     p = runs[0].table()
     force = -p["plate_fy_N_per_m"][p["time_s"] > 0.3].mean()
-    v = np.concatenate([v[abs(x[:, 0]) > half + d] for t, x, v in fluid(runs[0]) if t > 0.3])
+    v = np.concatenate([v[abs(x[:, 0]) > half + d] for t, x, v in water(runs[0]) if t > 0.3])
     return [("force on the plate, % of rho U^2 d too high", 100 * (float(force) / ideal - 1), 3),
             ("angle of the sheets behind it, degrees upwards",
              math.degrees(math.atan2(v[:, 1].sum(), abs(v[:, 0]).sum())), 2)]

@@ -4,10 +4,6 @@
 cylinder that heaves, a box that rolls, a wedge that enters water, waves of a piston that leave, a
 floating box, a body as dense as water.
 
-examples:
-  tools/report/verify_rigid.py               writes docs/results/rigid_verification.md
-  tools/report/verify_rigid.py --only wedge  runs these scenes again, keeps the other figures
-
 The scenes are cases/verify/rigid_*.cfg and wave_piston.cfg, and the template floating_box. The
 figures are kept in docs/results/rigid_verification.json."""
 import math
