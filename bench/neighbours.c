@@ -194,7 +194,7 @@ static enum err clusters_create(struct diag *d)
     for (int i = 0; i < N; i++)
         particles->x[i] = (double)field[X][i], particles->y[i] = (double)field[Y][i],
         particles->id[i] = i;
-    TRY(cells_create(&grid, &arena, lower, upper, 2 * (double)H, 0.75 * (double)H, kinds, d));
+    TRY(cells_create(&grid, &arena, lower, upper, 1, 2 * (double)H, 0.75 * (double)H, kinds, d));
     TRY(cluster_boxes_create(&boxes, &arena, cells_clusters(&grid, N), d));
     packed = arena_alloc(&arena, (size_t)cells_clusters(&grid, N),
                          sizeof *packed * FIELDS * CLUSTER, "packed fields", d);

@@ -31,29 +31,31 @@ static enum err list_create(struct cell_list *list, struct arena *a, const struc
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
-/* Side of a cell over the reach. In wider cells each cluster tests more boxes; in narrower ones
- * more clusters are only partly filled. LEAST_SIDE applies to domains of up to three cells. */
+/* Side of a cell over the reach, as nearly as whole squares of SQUARE x SQUARE particles of a
+ * lattice allow: these form clusters that are squares, too, which have fewest neighbours. In wider
+ * cells each cluster tests more boxes; in narrower ones more clusters are only partly filled. */
 #define SIDE 1.6
 #define LEAST_SIDE 1.05
+enum { SQUARE = 4 };
 
 enum err cells_create(struct cells *cells, struct arena *a, const double lower[2],
-                      const double upper[2], double reach, double skin,
+                      const double upper[2], double dp, double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d)
 {
     memset(cells, 0, sizeof *cells);
     cells->skin = skin;
     double n[2];
+    const double side = SQUARE * dp * max2(1, round(SIDE * reach / (SQUARE * dp)));
     for (int k = 0; k < 2; k++) {
         cells->lower[k] = lower[k];
-        const double width = upper[k] - lower[k], wide = floor(width / (SIDE * reach)),
-                     narrow = floor(width / (LEAST_SIDE * reach));
-        n[k] = max2(1, max2(wide, min2(3, narrow)));
+        const double width = upper[k] - lower[k], most = floor(width / (LEAST_SIDE * reach));
+        n[k] = max2(1, min2(most, max2(3, round(width / side))));
         if (!(n[k] <= MORTON_CELLS))
             return diag_fail(
                 d, ERR_INPUT,
                 "the domain is %.6g m in %c, more than %d cells of %.3g m; make [domain] "
                 "smaller or dp larger",
-                width, k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
+                width, k ? 'y' : 'x', MORTON_CELLS, side);
         cells->side[k] = width / n[k];
         cells->skin = min2(cells->skin, max2(0, 0.5 * (cells->side[k] - reach)));
     }

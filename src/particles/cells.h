@@ -67,10 +67,11 @@ struct cells {
     void *scratch; /* 8 bytes for each particle of the largest kind */
 };
 
-/* Creates the grid over [lower, upper) for interactions within `reach`, and allocates lists for the
- * capacities of the kinds. `skin` is reduced where the domain is too narrow for it. */
+/* Creates the grid over [lower, upper) for interactions within `reach` of particles `dp` apart, and
+ * allocates lists for the capacities of the kinds. `skin` is reduced where cells are too narrow for
+ * it. */
 enum err cells_create(struct cells *cells, struct arena *a, const double lower[2],
-                      const double upper[2], double reach, double skin,
+                      const double upper[2], double dp, double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
 
 /* Makes an axis periodic. It needs three cells, so that no two cells are neighbours twice. */

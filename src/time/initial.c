@@ -143,8 +143,8 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
     const double reach = KERNEL_REACH * scene->h, stray = scene->numerics.skin * scene->h;
-    TRY(cells_create(&sim->cells, &sim->arena, scene->domain_lower, scene->domain_upper, reach,
-                     stray, sim->kind, d));
+    TRY(cells_create(&sim->cells, &sim->arena, scene->domain_lower, scene->domain_upper,
+                     scene->top.dp, reach, stray, sim->kind, d));
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&sim->cells, axis, reach, d));
     TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->effects, sim->kind, &sim->cells, d));

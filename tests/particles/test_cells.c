@@ -11,7 +11,7 @@
 
 enum { N = 1500 };
 static const double lower[2] = {-0.3, 0.1}, upper[2] = {1.15, 0.92};
-static const double reach = 0.0731, stray = 0.02;
+static const double reach = 0.0731, dp = 0.0304, stray = 0.02;
 
 static struct arena arena;
 static struct diag diag;
@@ -57,8 +57,8 @@ static void scatter(bool with_lost)
         kinds[KIND_FLUID].x[17] = lower[0];
         kinds[KIND_FLUID].y[17] = lower[1];
     }
-    TEST_ASSERT_EQUAL_INT(ERR_OK,
-                          cells_create(&cells, &arena, lower, upper, reach, stray, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&cells, &arena, lower, upper, dp, reach, stray,
+                                               kinds, &diag));
 }
 
 static int32_t at(enum kind kind, int32_t place)
@@ -72,22 +72,23 @@ static bool adjacent(int32_t a, int32_t b)
            abs(cell_y(&cells, a) - cell_y(&cells, b)) <= 1;
 }
 
-/* 1.6 times the reach, but three cells where a narrow domain has room for them: particles stray
- * less. */
-static void test_cells_are_no_smaller_than_the_reach(void)
+/* Four particles or eight, whatever is nearer to 1.6 times the reach; but three cells where a
+ * narrow domain has room for them: particles stray less. */
+static void test_cells_hold_squares_of_the_lattice(void)
 {
     scatter(false);
-    for (int k = 0; k < 2; k++) {
-        TEST_ASSERT_TRUE(cells.side[k] >= 1.6 * reach);
-        TEST_ASSERT_TRUE(cells.side[k] < 3.2 * reach);
-    }
+    for (int k = 0; k < 2; k++) TEST_ASSERT_TRUE(fabs(cells.side[k] - 4 * dp) < 0.3 * dp);
+    struct cells wide;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&wide, &arena, lower, upper, 0.5 * dp, reach, stray,
+                                               kinds, &diag));
+    for (int k = 0; k < 2; k++) assert_near(0, cells.side[k], wide.side[k], "side");
     assert_near(1e-12, upper[0] - lower[0], cells.nx * cells.side[0], "width");
     assert_near(1e-12, upper[1] - lower[1], cells.ny * cells.side[1], "height");
     assert_near(0, stray, cells.skin, "stray");
     const double near[2] = {lower[0] + 3.3 * reach, lower[1] + 2.9 * reach};
     struct cells narrow;
-    TEST_ASSERT_EQUAL_INT(ERR_OK,
-                          cells_create(&narrow, &arena, lower, near, reach, stray, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&narrow, &arena, lower, near, dp, reach, stray,
+                                               kinds, &diag));
     TEST_ASSERT_EQUAL_INT(3, narrow.nx);
     TEST_ASSERT_EQUAL_INT(2, narrow.ny);
     assert_near(1e-12, 0.5 * (narrow.side[0] - reach), narrow.skin, "stray");
@@ -100,8 +101,8 @@ static void test_a_long_channel_is_sorted(void)
     scatter(false);
     struct cells channel;
     struct particles *const particles = &kinds[KIND_FLUID];
-    TEST_ASSERT_EQUAL_INT(ERR_OK,
-                          cells_create(&channel, &arena, lower, end, reach, stray, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&channel, &arena, lower, end, dp, reach, stray,
+                                               kinds, &diag));
     uint64_t seed = 3;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x[i] = lower[0] + 1000 * reach * (1 + noise(&seed));
@@ -363,7 +364,7 @@ static void test_resume_rebuilds_the_same_list(void)
         /* Particles have moved on since the sorting; the list must not notice. */
         for (int64_t i = 0; i < N; i++) kinds[kind].x[i] += 0.05;
         struct cells fresh;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&fresh, &arena, lower, upper, reach, stray,
+        TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&fresh, &arena, lower, upper, dp, reach, stray,
                                                    kinds, &diag));
         cells_rebuild(&fresh, (enum kind)kind, &kinds[kind]);
         const struct cell_list *const a = &cells.kind[kind], *const b = &fresh.kind[kind];
@@ -379,8 +380,8 @@ static void test_resume_rebuilds_the_same_list(void)
 static void test_a_domain_of_too_many_cells_is_refused(void)
 {
     const double far[2] = {1e6, 1};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
-                          cells_create(&cells, &arena, lower, far, 0.01, stray, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, cells_create(&cells, &arena, lower, far, 0.004, 0.01, stray,
+                                                  kinds, &diag));
     TEST_ASSERT_TRUE(diag.text[0]);
 }
 
@@ -419,7 +420,7 @@ static void test_threads_share_whole_cells(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_cells_are_no_smaller_than_the_reach);
+    RUN_TEST(test_cells_hold_squares_of_the_lattice);
     RUN_TEST(test_a_long_channel_is_sorted);
     RUN_TEST(test_no_pair_is_missed);
     RUN_TEST(test_clusters_of_a_lattice_are_squares);
