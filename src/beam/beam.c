@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * From [beam] sections to nodes and elements, and what output asks of them. */
 #include "beam/contact.h"
+#include "beam/joints.h"
 #include "base/segment.h"
 #include "base/elementary.h"
 
@@ -106,6 +107,13 @@ static void place_nodes(struct beams *beams)
 
 /* --- clamps, hinges, loads --- */
 
+/* -1: no rigid body. */
+static int rigid_of(const struct scene *scene, const char *name)
+{
+    const int k = *name ? scene_find_wall(scene, name) - scene_rigid_wall(scene, 0) : -1;
+    return k >= 0 && k < scene->n_rigid ? k : -1;
+}
+
 static int mover_of(const struct scene *scene, const struct scene_beam *beam, const char *other)
 {
     const int wall = *other ? scene_find_wall(scene, other) : -1;
@@ -154,6 +162,16 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
             TRY(join(beams, e->node[place.part > 0.5], at, turns, d));
             continue;
         }
+        const int body = rigid_of(beams->scene, at->other);
+        if (node->body >= 0 || (body >= 0 && node->row[0] < 0))
+            return fail_at(d, beams->scene, at->line,
+                           "[beam %s] %s = %g, %g, %s: another `clamp` or `hinge` holds this "
+                           "point; a point has one where one of them is on a [rigid]",
+                           given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
+                           at->other);
+        node->body = body;
+        node->pivots = turns;
+        if (body >= 0) continue;
         for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
         node->mover = mover_of(beams->scene, given, at->other);
     }
@@ -258,7 +276,8 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     if (!beams->node || !beams->state || !beams->step || !beams->element || !beams->start ||
         !beams->load)
         return ERR_MEMORY;
-    for (size_t k = 0; k < n; k++) beams->node[k].mover = beams->node[k].joined = -1;
+    for (size_t k = 0; k < n; k++)
+        beams->node[k].mover = beams->node[k].joined = beams->node[k].body = -1;
     place_nodes(beams);
     for (int k = 0; k < beams->n; k++) {
         TRY(hold(beams, k, &beams->beam[k].given->hinge, true, d));
@@ -267,6 +286,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     for (int k = 0; k < scene->n_load; k++) TRY(find_load(beams, k, temp, d));
     TRY(number_unknowns(beams, a, temp, d));
     set_start(beams);
+    TRY(beams_joints_create(beams, a, d));
     return beams_contact_create(beams, a, d);
 }
 

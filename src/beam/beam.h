@@ -32,6 +32,8 @@ struct beam_node {
     int mover;      /* motion of its clamp or hinge; -1: in place */
     int joined;     /* node of another beam that has its place; -1: none */
     bool turns;     /* joined by a hinge */
+    int body;       /* rigid body that it is joined to; -1: none */
+    bool pivots;    /* by a hinge */
 };
 
 /* In a step: see beam_advance. */
@@ -41,7 +43,7 @@ struct beam_step {
     double force[3];              /* of the elements against the displacement, N/m and N */
     double fluid[3], resisted[3]; /* in fluid: its force, and its resistance (T-105) */
     double d[3];                  /* displacement; twice the tangent of half the rotation */
-    double touch[2];              /* of contact (T-106), N/m */
+    double touch[3];              /* of contact (T-106) and joints (T-107), N/m and N */
     double faster[3];             /* in fluid: its mean velocity less that of the step before */
 };
 
@@ -80,10 +82,11 @@ struct beams {
     double ahead;    /* steps that the fluid is evaluated after the start of a step */
     bool alternates; /* the fluid has two solutions, which share the forces */
     struct beam_contact *contact;
-    struct rigid *rigid; /* NULL: none */
-    bool crowded;        /* more places touch than the memory holds */
-    bool pushed;         /* a beam has pushed a rigid body; the account resets it */
-    bool failed;         /* no solution, however short the step */
+    struct beam_joints *joints; /* with rigid bodies; NULL: none */
+    struct rigid *rigid;        /* NULL: none */
+    bool crowded;               /* more places touch than the memory holds */
+    bool pushed;                /* a beam has pushed a rigid body; the account resets it */
+    bool failed;                /* no solution, however short the step */
 };
 
 enum err beams_create(struct beams *beams, struct arena *a, const struct scene *scene,

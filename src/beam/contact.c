@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "beam/contact.h"
+#include "beam/joints.h"
 #include "base/segment.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"
@@ -122,6 +123,10 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
             contact->layer[k * scene->n_wall + w] =
                 from ? scene_contact_gap(scene, from) : (double)NAN;
         }
+    for (int k = 0; k < beams->n_nodes; k++) /* none with a body that it is joined to */
+        if (beams->node[k].body >= 0)
+            contact->layer[beams->node[k].beam * scene->n_wall +
+                           scene_rigid_wall(scene, beams->node[k].body)] = (double)NAN;
     struct arena temp = {.limit = a->limit};
     const enum err e = create_faces(beams, a, &temp, d);
     arena_free(&temp);
@@ -365,6 +370,7 @@ static void find_yields(struct beams *beams)
                 if (row >= 0) column[row] += t->part[k] * t->normal[c];
             }
         envelope_solve(&beams->matrix, column);
+        beams_resist_joints(beams, column);
         for (int i = 0; i < contact->n; i++)
             contact->yields[(size_t)i * (size_t)contact->most + (size_t)j] =
                 along_unknowns(beams, &contact->touch[i], column);

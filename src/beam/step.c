@@ -2,6 +2,7 @@
  * Implicit steps of beams (T-104): the midpoint rule with forces of which the work is exactly the
  * change of energy, solved by Newton's method. */
 #include "beam/contact.h"
+#include "beam/joints.h"
 #include "beam/wet.h"
 #include "base/elementary.h"
 #include "geometry/motion.h"
@@ -146,6 +147,7 @@ static struct largest find_residual(struct beams *beams, double dt)
     struct largest top = {0};
     add_elements(beams, dt, &top);
     beams_add_touches(beams);
+    beams_add_joints(beams);
     memset(beams->unknown, 0, (size_t)beams->matrix.n * sizeof *beams->unknown);
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
@@ -153,14 +155,13 @@ static struct largest find_residual(struct beams *beams, double dt)
         for (int c = 0; c < 3; c++) {
             if (node->row[c] < 0) continue;
             const double scale = c < 2 ? 1 : 1 / node->length, push = inertia(beams, k, c, dt);
-            const double touch = c < 2 ? s->touch[c] : 0;
             const double off =
-                s->load[c] + s->fluid[c] + touch - s->force[c] - s->resisted[c] - push;
+                s->load[c] + s->fluid[c] + s->touch[c] - s->force[c] - s->resisted[c] - push;
             const double stiff =
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
             beams->unknown[node->row[c]] += off;
             envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
-            top.force = max2(top.force, scale * max2(fabs(s->load[c] + touch), fabs(push)));
+            top.force = max2(top.force, scale * max2(fabs(s->load[c] + s->touch[c]), fabs(push)));
             top.force = max2(top.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
             top.rounding = max2(top.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
         }
@@ -177,6 +178,7 @@ static struct largest find_residual(struct beams *beams, double dt)
 static bool correct(struct beams *beams)
 {
     envelope_solve(&beams->matrix, beams->unknown);
+    beams_correct_joints(beams);
     if (!beams_correct_touches(beams)) return false;
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)
@@ -191,7 +193,8 @@ static bool solve(struct beams *beams, double dt)
     for (int n = 0; n <= ITERATIONS; n++) {
         const struct largest top = find_residual(beams, dt);
         beams->residual = top.force > 0 ? top.off / top.force : 0;
-        if (top.off <= TOLERANCE * top.force + ROUNDING * top.rounding && beams_keep_apart(beams))
+        if (top.off <= TOLERANCE * top.force + ROUNDING * top.rounding && beams_keep_apart(beams) &&
+            beams_stay_joined(beams))
             return true;
         if (n == ITERATIONS || !isfinite(top.off) || envelope_factor(&beams->matrix) < 0)
             return false;
@@ -234,8 +237,8 @@ static double finish_held(struct beams *beams, int k, const double v[3], double 
     double work = 0;
     for (int c = 0; c < 3; c++) {
         if (node->row[c] >= 0) continue;
-        const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] -
-                             (c < 2 ? s->touch[c] : 0) + node->mass[c] * damping * s->d[c] / dt;
+        const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] - s->touch[c] +
+                             node->mass[c] * damping * s->d[c] / dt;
         now->v[c] = v[c];
         now->reaction[c] = node->mass[c] * (v[c] - s->v[c]) / dt + other;
         work += other * s->d[c] + 0.5 * node->mass[c] * (square(v[c]) - square(s->v[c]));
@@ -273,10 +276,12 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
     const double dt = times->dt;
     find_loads(beams, time + 0.5 * dt);
     if (beams->line) beams_find_fluid(beams, times);
+    beams_begin_joints(beams, time, dt);
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
         beams_finish_touches(beams, time, dt);
+        beams_finish_joints(beams, dt);
         if (beams->line) beams_return_impulse(beams, times);
         return true;
     }
@@ -290,7 +295,9 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 {
     beams->iterations = 0;
     for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
+    beams_take_bodies(beams, time, times->dt);
     beams->failed |= !step(beams, time, times, HALVINGS);
+    beams_return_bodies(beams, times->dt);
 }
 
 /* --- the longest period --- */

@@ -73,11 +73,11 @@ static enum err check_supports(struct reader *r, const struct scene_beam *beam,
         const int wall = *other ? scene_find_wall(r->scene, other) : 0;
         const bool joined = scene_find_beam(r->scene, other) >= 0;
         if (joined && strcmp(other, beam->common.name) != 0) continue;
-        if (*other && (wall < 0 || wall >= scene_rigid_wall(r->scene, 0)))
+        if (*other && (wall < 0 || wall >= scene_beam_wall(r->scene, 0)))
             return bad_line(
                 r, list->item[k].line,
-                "[beam %s] %s: %s is no [wall] and no other [beam]; a beam is held in place, "
-                "by a [wall] or by another [beam]",
+                "[beam %s] %s: %s is no [wall], [rigid] or other [beam], which may hold a "
+                "beam",
                 beam->common.name, key, other);
     }
     return ERR_OK;

@@ -169,11 +169,12 @@ static bool lies_in(const struct part *p, const struct region *region, double dp
     return false;
 }
 
-static bool is_on_face(const struct region *region, const double at[2], double dp)
+/* Whether a region has points at a distance from a place. */
+static bool is_about(const struct region *region, const double at[2], double distance)
 {
     for (int k = 0; k < 8; k++) {
-        const double x = at[0] + beside * dp * elementary_cos(PI * (k + 0.5) / 4),
-                     y = at[1] + beside * dp * elementary_sin(PI * (k + 0.5) / 4);
+        const double x = at[0] + distance * elementary_cos(PI * (k + 0.5) / 4),
+                     y = at[1] + distance * elementary_sin(PI * (k + 0.5) / 4);
         if (geometry_covers(region, x, y)) return true;
     }
     return false;
@@ -192,7 +193,7 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
                            "[beam %s] lies in [%s %s] or on its face, at (%.6g, %.6g) m; end its "
                            "line at the face of the body",
                            beam->common.name, region->word, region->name, at[0], at[1]);
-        if (is_on_face(region, line->pt[k], dp) && !is_held(check, beam, line->pt[k], NULL))
+        if (is_about(region, line->pt[k], beside * dp) && !is_held(check, beam, line->pt[k], NULL))
             return fail_at(check->diag, check->scene, line->line,
                            "[beam %s] touches [%s %s] with a free point, at (%.6g, %.6g) m; hold "
                            "it there by `clamp` or `hinge`, or leave a gap",
@@ -215,6 +216,23 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
     return ERR_OK;
 }
 
+/* Joints of a beam on a body that is further away than a spacing. */
+static enum err refuse_far(const struct check *check, const struct scene_beam *beam,
+                           const struct hinge_list *list, const struct region *region)
+{
+    for (int k = 0; k < list->n; k++) {
+        const struct hinge_point *const h = &list->item[k];
+        if (strcmp(h->other, region->name) != 0 || is_about(region, h->at, check->scene->top.dp))
+            continue;
+        return fail_at(check->diag, check->scene, h->line,
+                       "[beam %s] %s = %.6g, %.6g, %s: [%s %s] is more than a spacing from it; "
+                       "choose a point of the beam at the face of the body",
+                       beam->common.name, list == &beam->clamp ? "clamp" : "hinge", h->at[0],
+                       h->at[1], h->other, region->word, region->name);
+    }
+    return ERR_OK;
+}
+
 enum err refuse_beams(const struct check *check)
 {
     const struct scene *const scene = check->scene;
@@ -223,7 +241,11 @@ enum err refuse_beams(const struct check *check)
         for (int j = 0; j <= k; j++) TRY(refuse_meeting(check, &scene->beam[k], &scene->beam[j]));
         for (int r = 0; r < first; r++) {
             const bool apart = r < scene->n_solid || scene_contact_of(scene, first + k, r);
-            if (apart) TRY(refuse_in_body(check, &scene->beam[k], &check->shapes.regions[r]));
+            const struct region *const region = &check->shapes.regions[r];
+            if (apart) TRY(refuse_in_body(check, &scene->beam[k], region));
+            if (r < scene->n_solid + scene_rigid_wall(scene, 0)) continue;
+            TRY(refuse_far(check, &scene->beam[k], &scene->beam[k].clamp, region));
+            TRY(refuse_far(check, &scene->beam[k], &scene->beam[k].hinge, region));
         }
     }
     return ERR_OK;

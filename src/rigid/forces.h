@@ -30,6 +30,7 @@ struct rigid_equations {
     double impulse[3], fluid[3][3];
     double from_fluid[3];             /* the fluid's part of the impulse */
     double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
+    double at_start[3];               /* velocity at the time of the start */
     double change[3], faster[3];      /* of the velocity before, and delta */
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
     double pushed[3];                 /* change by contact with solids */

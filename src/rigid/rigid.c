@@ -146,6 +146,8 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     const double exchange = exchange_after(s, dt), part = part_of(rigid, k, kick);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
+    memcpy(eq->at_start, rigid->scene->rigid_motion[k].now.v, 2 * sizeof(double));
+    eq->at_start[2] = rigid->scene->rigid_motion[k].now.rate;
     find_fluid(rigid, body, force, impedance);
     /* The body resists all that the hinge's velocity changes in the step (T-99). */
     rigid_hold(rigid, k, now, rigid->end - dt);
@@ -293,6 +295,25 @@ void rigid_kick(struct rigid *rigid, double time, double dt)
             body->moved[c] += (rigid->end - time) * change[c];
         }
     }
+}
+
+/* --- beams on bodies --- */
+
+void rigid_free_motion(const struct rigid *rigid, int k, double time, double dt, double x[3],
+                       double v[3], double mean[3])
+{
+    const struct rigid_body *const body = &rigid->body[k];
+    const struct rigid_equations *const eq = &rigid->eq[k];
+    const double moved = rigid->centred ? 0.5 : 0;
+    memcpy(x, rigid->state[k].x, sizeof rigid->state[k].x);
+    velocity_by(eq, body->pushed, v);
+    for (int c = 0; c < 3; c++) {
+        x[c] -= moved * dt * eq->start[c];
+        v[c] += eq->at_start[c];
+        mean[c] = moved * eq->start[c] + (1 - moved) * (eq->before[c] + eq->change[c]) +
+                  body->moved[c] / dt;
+    }
+    if (body->fixed) rigid_follow_hinge(rigid, k, time, x);
 }
 
 /* --- energy --- */
