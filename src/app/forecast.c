@@ -80,16 +80,22 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     return ERR_OK;
 }
 
-/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its
- * mean was 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
+/* Of pairs that approach, and of the fastest particle. In the five shipped flows its mean was 0.6
+ * to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
+static double expected_speed(const struct simulation *sim, double so_far)
+{
+    double speed = 0;
+    for (int k = 0; k < sim->scene->n_fluid; k++)
+        speed = max2(speed, sim->scene->fluid[k].max_speed);
+    return max2(0.75 * speed, so_far);
+}
+
+/* The step of Eq. 28b. */
 static double expected_step(const struct simulation *sim)
 {
     const double limit = timestep_longest(sim);
     if (!(sim->effects & FX_FLUID) || sim->scene->numerics.fixed_step > 0) return limit;
-    double speed = 0;
-    for (int k = 0; k < sim->scene->n_fluid; k++)
-        speed = max2(speed, sim->scene->fluid[k].max_speed);
-    const double approach = max2(0.75 * speed, sim->fluid.extremes.approach);
+    const double approach = expected_speed(sim, sim->fluid.extremes.approach);
     const double dt = limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
     const bool single_rate = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
     return single_rate ? min2(dt, sim->dt_solid) : dt;
@@ -139,6 +145,24 @@ static void disorder(struct simulation *sim)
     }
 }
 
+static struct box2 box_of(int64_t n, const double *x, const double *y)
+{
+    struct box2 box = box2_empty();
+    for (int64_t i = 0; i < n; i++) box2_include(&box, x[i], y[i]);
+    return box;
+}
+
+/* By how much the water has become wider or higher since the start. */
+static double widened(const struct simulation *sim)
+{
+    const struct scene_points *const start = &sim->scene->points[KIND_FLUID];
+    const struct particles *const fluid = &sim->kind[KIND_FLUID];
+    const struct box2 then = box_of(start->n, start->x, start->y),
+                      now = box_of(fluid->n, fluid->x, fluid->y);
+    return max2(now.high[0] - now.low[0] - (then.high[0] - then.low[0]),
+                now.high[1] - now.low[1] - (then.high[1] - then.low[1]));
+}
+
 /* A body of water with a free surface fills the breadth between the outermost walls, less deep by
  * as much. Returns by how much it becomes wider. */
 static double spread(struct simulation *sim)
@@ -147,9 +171,8 @@ static double spread(struct simulation *sim)
                                                                       &sim->kind[KIND_WALL];
     const double *const g = sim->scene->top.gravity, reach = KERNEL_REACH * sim->fluid.k.h;
     const int up = fabs(g[0]) < fabs(g[1]), across = !up;
-    struct box2 water = box2_empty(), walls = box2_empty();
-    for (int64_t i = 0; i < fluid->n; i++) box2_include(&water, fluid->x[i], fluid->y[i]);
-    for (int64_t i = 0; i < wall->n; i++) box2_include(&walls, wall->x[i], wall->y[i]);
+    const struct box2 water = box_of(fluid->n, fluid->x, fluid->y),
+                      walls = box_of(wall->n, wall->x, wall->y);
     const double now = water.high[across] - water.low[across],
                  then = walls.high[across] - walls.low[across] - 2 * reach;
     if (!(then > now) || g[up] == 0 || sim->effects & (FX_OPEN | FX_PERIODIC)) return 0;
@@ -163,11 +186,11 @@ static double spread(struct simulation *sim)
     return then - now;
 }
 
-/* The part of the run after fluid that goes on to accelerate as it has until now has moved so far.
- */
-static double part_after(const struct simulation *sim, double speed, double way)
+/* The part of the run after a way that grows as the square of time and is `moved` now. */
+static double part_after(const struct simulation *sim, double moved, double way)
 {
-    return max2(0, 1 - sqrt(2 * way * sim->state.time / speed) / sim->scene->top.end_time);
+    if (!(moved > 0)) return 0;
+    return max2(0, 1 - sim->state.time * sqrt(way / moved) / sim->scene->top.end_time);
 }
 
 static double evaluation_seconds(struct simulation *sim)
@@ -183,29 +206,36 @@ static double evaluation_seconds(struct simulation *sim)
 }
 
 /* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
- * within reach, once it has moved by the kernel's reach. And it wets more walls, in proportion to
- * time, as if it wetted all from half of that time on: a quarter of its way. Adds what an
- * evaluation takes longer then. Leaves the particles so. */
+ * within reach, once it has moved by the kernel's reach. It is sorted
+ * as soon as its fastest particle has crossed the skin, more often than at the start. And it wets
+ * more walls, in proportion to time, as if it wetted all from half of that time on: a quarter of
+ * its way. Adds what a step takes longer then. Leaves the particles so. */
 static void measure_flow(struct unit_costs *c, struct simulation *sim)
 {
     const struct particles *const fluid = &sim->kind[KIND_FLUID];
-    const double n_fluid = (double)fluid->n;
+    const double n_fluid = (double)fluid->n, wider = widened(sim), dt = expected_step(sim);
+    const double sorts = (double)(sim->state.sorts - 1) / (double)sim->state.steps;
     struct diag ignored = {.code = ERR_OK};
     double speed2 = 0;
     for (int64_t i = 0; i < fluid->n; i++)
         speed2 += (square(fluid->vx[i]) + square(fluid->vy[i])) / n_fluid;
+    const double moved = 0.5 * sqrt(speed2) * (double)sim->state.time;
     thread_use(sim->team.chosen);
     sim->fluid.threads = sim->team.chosen;
     const double ordered = evaluation_seconds(sim);
     disorder(sim);
+    const double begin = thread_clock(), fastest = sqrt(sim->extremes.speed2);
     if (sort_particles(sim, &ignored)) return;
+    const double sort = thread_clock() - begin,
+                 more = expected_speed(sim, fastest) * dt / sim->sorting.skin_left - sorts;
+    c->fluid += sort * max2(0, more) / c->evaluations / n_fluid;
     const double disordered = evaluation_seconds(sim);
-    const double part = part_after(sim, sqrt(speed2), KERNEL_REACH * sim->fluid.k.h);
+    const double part = part_after(sim, moved, KERNEL_REACH * sim->fluid.k.h);
     c->fluid += part * max2(0, disordered - ordered) / n_fluid;
     const double way = spread(sim);
     if (way == 0 || sort_particles(sim, &ignored)) return;
     const double wet = max2(0, evaluation_seconds(sim) - disordered);
-    c->fluid += part_after(sim, sqrt(speed2), 0.25 * way) * wet / n_fluid;
+    c->fluid += part_after(sim, wider, 0.25 * way) * wet / n_fluid;
 }
 
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)

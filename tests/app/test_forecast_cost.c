@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run from given costs of a step, bytes of its files; and how costs are measured. The
  * linker puts these in between:
- * --wrap: thread_clock simulation_step simulation_ledger probes_sample */
+ * --wrap: thread_clock simulation_step simulation_ledger probes_sample sort_particles */
 #include "app/forecast.h"
 #include "output/probes.h"
+#include "time/advance.h"
 #include "time/energy.h"
 
 #include "rig.h"
@@ -65,6 +66,16 @@ enum err __wrap_simulation_step(struct simulation *sim, double limit, struct dia
 {
     if (clock_step > 0 && ++steps % 8 == 0) now += longer;
     return __real_simulation_step(sim, limit, d);
+}
+
+static double sorting; /* what a sort takes, s */
+
+enum err __real_sort_particles(struct simulation *sim, struct diag *d);
+enum err __wrap_sort_particles(struct simulation *sim, struct diag *d);
+enum err __wrap_sort_particles(struct simulation *sim, struct diag *d)
+{
+    now += sorting;
+    return __real_sort_particles(sim, d);
 }
 
 struct ledger __real_simulation_ledger(struct simulation *sim);
@@ -129,6 +140,25 @@ static void test_work_of_some_steps_counts(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, each);
 }
 
+/* Water that starts from rest will flow at 0.75 of 10 m/s, and is sorted when it has crossed the
+ * skin, although no trial step does that: a sort takes 10 s. */
+static void test_sorts_of_the_flow_count(void)
+{
+    struct unit_costs c;
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.4, 0.2\nsurface = 0.2\nmax_speed = 10\n"
+             "[wall tank]\nshape = polyline: 0, 0.3; 0, 0; 0.4, 0; 0.4, 0.3\n",
+             NULL);
+    clock_step = 1e-3; /* some 60 steps */
+    sorting = 10;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, forecast_measure(&c, &rig.sim, &rig.diag));
+    clock_step = sorting = 0;
+    const struct forecast f = forecast_run(&c, &rig.sim);
+    const double sorts = 7.5 / rig.sim.cells.skin;
+    TEST_ASSERT_DOUBLE_WITHIN(0.1 * sorts, sorts, c.fluid * f.evaluations * 800 / 10);
+}
+
 /* A column of water of a quarter of the tank's breadth is measured as it will lie on its bed, too:
  * a quarter as deep, with its particles scattered by half a spacing. */
 static void test_water_is_measured_where_it_will_be(void)
@@ -160,6 +190,7 @@ int main(void)
     RUN_TEST(test_bytes_of_the_files);
     RUN_TEST(test_all_steps_are_measured);
     RUN_TEST(test_work_of_some_steps_counts);
+    RUN_TEST(test_sorts_of_the_flow_count);
     RUN_TEST(test_water_is_measured_where_it_will_be);
     return UNITY_END();
 }
