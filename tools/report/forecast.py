@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Holds what --explain foresees against what runs take: steps, and wall time of the program from
-its start to its end, of the shipped cases, the templates, the elastica and FSI2. Each is cut short
-by --until so that it takes about as long as --seconds says.
+"""Holds what --explain foresees against what runs take: steps, and time of the program from its
+start to its end, of the shipped cases, the templates, the elastica and FSI2. Each is cut short by
+--until so that it takes about as long as --seconds says. Forecasts and runs take turns, and medians
+are compared: CPU time on one thread, which other programs disturb little; wall time on more.
 
 Writes docs/results/forecast.json, one run a line, and the accuracy report, which shows it. A case
 that fails is shown as that. Examples, on an idle machine:
@@ -14,6 +15,7 @@ that fails is shown as that. Examples, on an idle machine:
 
 import os
 import re
+import statistics
 import tempfile
 from pathlib import Path
 
@@ -31,8 +33,10 @@ def arguments():
     parser = options(__doc__)
     parser.add_argument("cases", nargs="*", default=["gate"] if QUICK else [],
                         help="beginnings of names; all without")
-    parser.add_argument("--seconds", type=float, default=1 if QUICK else 6,
+    parser.add_argument("--seconds", type=float, default=1 if QUICK else 2.5,
                         help="aimed at for a run, as foreseen")
+    parser.add_argument("--runs", type=int, default=1 if QUICK else 3,
+                        help="forecasts and runs of each case")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
     return parser.parse_args()
 
@@ -70,7 +74,13 @@ def name_of(case):
     return str(case.relative_to(ROOT / "cases").with_suffix(""))
 
 
-def compare(case, threads, seconds):
+def median(found):
+    """Of each number; what is none is that of the last."""
+    return {key: value if value is None or isinstance(value, str) else
+            statistics.median(one[key] for one in found) for key, value in found[-1].items()}
+
+
+def compare(case, threads, seconds, runs):
     row = {"case": name_of(case), "threads": threads}
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -78,9 +88,12 @@ def compare(case, threads, seconds):
             whole = foreseen(case, threads, [])
             until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
             more = ["--until", repr(until)] if until < end else []
+            pairs = [(foreseen(case, threads, more),
+                      taken(case, threads, more, Path(folder) / f"run{k}")) for k in range(runs)]
             row.update(end=end, until=until, whole=whole["seconds"],
-                       foreseen=foreseen(case, threads, more) if more else whole,
-                       taken=taken(case, threads, more, Path(folder) / "run"))
+                       foreseen=median([one for one, _ in pairs]),
+                       taken=median([one for _, one in pairs]),
+                       each=[[one["seconds"], two["cpu"], two["seconds"]] for one, two in pairs])
         except (BadFile, OSError, KeyError, ValueError) as problem:
             row["failed"] = str(problem)
     return row
@@ -96,9 +109,10 @@ def main():
     rows = []
     for case in cases:
         for threads in all_threads:
-            rows.append(compare(case, threads, args.seconds))
+            rows.append(compare(case, threads, args.seconds, args.runs))
             print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
-    store_rows(OUT / "forecast.json", {"machine": machine(), "seconds": args.seconds}, "rows", rows)
+    store_rows(OUT / "forecast.json", {"machine": machine(), "seconds": args.seconds,
+                                     "runs": args.runs}, "rows", rows)
     print(f"written {OUT / 'forecast.json'}")
     results = OUT / "accuracy.json"
     return study_report.write(results, OUT) if results.exists() else 0

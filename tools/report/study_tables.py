@@ -164,17 +164,23 @@ def forecast_cells(row):
     if "failed" in row:
         return head + [f"**{row['failed']}**"] + [""] * 5
     cells = [f"{row['until']:g} of {row['end']:g}"]
-    for key, number in (("steps", "{:,.0f}"), ("seconds", "{:.1f}")):
-        wanted, got = row["foreseen"][key], row["taken"][key]
+    for number, wanted, got in (
+            ("{:,.0f}", row["foreseen"]["steps"], row["taken"]["steps"]),
+            ("{:.1f}", row["foreseen"]["seconds"], seconds_taken(row))):
         cells += [f"{number.format(wanted)} / {number.format(got)}",
                   f"{100 * (wanted / got - 1):+.0f}"]
     cells[-1] = cells[-1] if is_long(row) else f"({cells[-1]})"
     return head + cells + [f"{row['taken']['load']:.1f}"]
 
 
+def seconds_taken(row):
+    """CPU time of one thread, wall time of more."""
+    return row["taken"]["cpu" if row["threads"] == 1 else "seconds"]
+
+
 def is_long(row):
     """Whether a run is no short one, of which start and end are a large part."""
-    return "failed" not in row and row["taken"]["seconds"] >= 1
+    return "failed" not in row and seconds_taken(row) >= 0.5
 
 
 def speed_up(data):
@@ -192,12 +198,18 @@ def speed_up(data):
 
 
 def forecast_table(data):
-    off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
-           for r in data["rows"] if is_long(r)]
+    ratio = {f"{row['case']} on {row['threads']}":
+             seconds_taken(row) / row["foreseen"]["seconds"]
+             for row in data["rows"] if is_long(row)}
+    off = [f"{name} {100 * (1 / x - 1):+.0f} %" for name, x in ratio.items()
+           if abs(1 / x - 1) > 0.15]
     failed = sum("failed" in r for r in data["rows"])
-    text = (f"The seconds are right within 15 % in {sum(x <= 0.15 for x in off)} of {len(off)} "
-            "runs. Not among these are runs below a second, with errors in brackets: start and end "
-            f"are a large part of them.{f' {failed} failed.' * (failed > 0)}{speed_up(data)}")
+    low, high = np.quantile(list(ratio.values()) or [1], [0.05, 0.95])
+    text = (f"The seconds are right within 15 % in {len(ratio) - len(off)} of {len(ratio)} runs. "
+            f"The others: {', '.join(off) or 'none'}. Nine of ten runs took "
+            f"{low:.2f} to {high:.2f} times the forecast. Not among these are runs below half a "
+            "second, with errors in brackets: start and end are a large part of them."
+            f"{f' {failed} failed.' * (failed > 0)}{speed_up(data)}")
     return table(["case", "threads", "until (s)", "steps forecast / measured", "error (%)",
                   "seconds forecast / measured", "error (%)", "load before"],
                  [forecast_cells(row) for row in data["rows"]]) + "\n\n" + text
