@@ -43,7 +43,7 @@ static bool stopped(double time)
 /* A disc without damping meets a floor at a tenth of its speed of sound: what is missing of its
  * energy afterwards is the error of the time integration, and its momentum is turned round. It goes
  * on ringing: the restitution is 0.948 by finite elements of the same equations
- * (tools/report/verify_contact_reference.py). */
+ * (cases/reference/contact.py). */
 static void test_restitution_of_a_disc(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.02, 0.1, 0\n"

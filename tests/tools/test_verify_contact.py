@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The references of tools/report/verify_contact_reference.py against what is known, and figures of
+"""The references of cases/reference/contact.py against what is known, and figures of
 made-up runs. Exit 77: a package is missing."""
 
 import math
@@ -8,13 +8,14 @@ import sys
 from pathlib import Path
 from unittest import mock
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[1] / "support"),
+                str(Path(__file__).resolve().parents[2] / "cases" / "reference")]
 from scripts import packages
 with packages():
+    import contact as reference
     import numpy as np
     from common import figures_report
     import verify_contact_measures as of
-    import verify_contact_reference as reference
 
 
 def test_a_soft_floor_is_not_reached():

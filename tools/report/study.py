@@ -12,9 +12,9 @@ import tomllib
 import common
 from common import ROOT, BadFile
 from runs import Job, case_hash
-from study_metrics import KINDS
 
 SCENES = {"solid": "solid alone", "fluid": "fluid alone", "coupled": "fluid and structure"}
+NEEDED = {"case": ("file", "scene", "levels", "across", "error"), "knob": ("values",)}
 KEEP = ("probes.csv", "ledger.csv", "summary.json", "case.cfg", "fields.vtkhdf")
 
 
@@ -29,42 +29,12 @@ def read_study(path):
         raise BadFile(f"{path}: {problem}") from None
     for part in ("study", "preset", "case", "knob"):
         study.setdefault(part, {})
-    wrong = list(trouble(study))
-    if wrong:
-        raise BadFile(f"{path}: {'; '.join(wrong)}")
+    for part, keys in NEEDED.items():
+        for name, entry in study[part].items():
+            lacks = [key for key in keys if not entry.get(key)]
+            if lacks:
+                raise BadFile(f"{path}: [{part}.{name}] lacks `{lacks[0]}`")
     return study
-
-
-def trouble(study):
-    """What is wrong with a definition."""
-    if not study["case"]:
-        yield "defines no [case.NAME]"
-    for name, case in study["case"].items():
-        lacks = [key for key in ("file", "scene", "levels", "across", "error") if not case.get(key)]
-        errors = case.get("error", [])
-        if lacks:
-            yield f"[case.{name}] lacks `{lacks[0]}`"
-        elif case["scene"] not in SCENES:
-            yield f"[case.{name}] scene = {case['scene']}: it is one of {', '.join(SCENES)}"
-        for file in [case.get("file", "."), *(error.get("file", ".") for error in errors)]:
-            if not (ROOT / file).exists():
-                yield f"[case.{name}] there is no file {file}"
-        for error in errors:
-            kind = error.get("kind")
-            if kind not in KINDS:
-                yield f"[case.{name}] error kind = {kind}: it is one of {', '.join(KINDS)}"
-            elif not set(KINDS[kind]) <= set(error):
-                yield f"[case.{name}] error {error.get('name')} of kind {kind} needs " + \
-                    ", ".join(KINDS[kind])
-    for name, knob in study["knob"].items():
-        if not knob.get("values"):
-            yield f"[knob.{name}] lacks `values`"
-    for preset, scenes in study["preset"].items():
-        for scene, setting in scenes.items():
-            knob, _, value = setting.partition("=")
-            values = study["knob"].get(knob, {}).get("values", {})
-            if scene not in SCENES or setting != "base" and value not in values:
-                yield f"[preset] {preset}: {scene} = {setting}: no such scene, knob or value"
 
 
 # --- points ---

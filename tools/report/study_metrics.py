@@ -6,27 +6,7 @@ Each returns the value that was found (None where it is a whole curve) and its r
 
 import metrics
 from common import BadFile, Run, np, read_table
-from sphfsi.snapshots import KINDS as PARTICLES
-from sphfsi.snapshots import Snapshots
-
-# kind: keys that its [[case.NAME.error]] must have
-KINDS = {
-    "period": ("name", "column", "reference"),
-    "damped_period": ("name", "column", "reference"),
-    "damped_loss": ("name", "column", "reference"),
-    "phase": ("name", "column", "reference"),
-    "settled": ("name", "column", "reference", "from"),
-    "noise": ("name", "column", "from"),
-    "noise_about_mean": ("name", "column", "window", "scale"),
-    "final": ("name", "column", "reference"),
-    "peak_finest": ("name", "column"),
-    "against_file": ("name", "column", "file"),
-    "against_finest": ("name", "column"),
-    "hydrostatic": ("name", "density", "gravity", "surface"),
-    "front": ("name", "file"),
-    "front_finest": ("name",),
-    "tip": ("name", "probe", "length", "load", "from"),
-}
+from sphfsi.snapshots import KINDS, Snapshots
 
 
 def column(run, name):
@@ -145,7 +125,7 @@ def hydrostatic(error, run, _finest, _root):
     """L2 norm over the fluid of p - rho g (surface - y), by rho g times the largest depth."""
     shots = Snapshots(Run(run).folder / "fields.vtkhdf")
     step = len(shots.times) - 1
-    fluid = shots.load(step, "kind") == PARTICLES["fluid"]
+    fluid = shots.load(step, "kind") == KINDS["fluid"]
     y, p = shots.load(step, "Points")[fluid, 1], shots.load(step, "pressure")[fluid]
     weight = error["density"] * error["gravity"]
     depth = error["surface"] - y

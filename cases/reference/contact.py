@@ -1,10 +1,24 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""References of tools/report/verify_contact.py that share no code with the solver: a disc of finite
-elements that meets a rigid wall, a beam by finite differences that lies down on a floor, a disc
-between plates by Johnson's formula."""
+"""References of contact that share no code with the solver: a disc of finite elements that meets a
+rigid wall, and a beam by finite differences that lies down on a floor.
+
+  cases/reference/contact.py    writes contact_disc.csv and contact_fold.csv beside it
+"""
 import math
 
+from pathlib import Path
+
 import numpy as np
+
+DISC_WORDS = """\
+# COMPUTED: a disc of 0.1 m (1000 kg/m^3, 1 MPa, Poisson's ratio 0.3, neo-Hookean) falls
+# on a rigid wall. Finite elements, 24 over half of its width: cases/reference/contact.py.
+# `way` is that of its centre after the first touch, until the last of which `contact` counts.
+speed_m_per_s,restitution,way_m,contact_s"""
+FOLD_WORDS = """# COMPUTED: axis of the arm of cases/verify/contact_fold.cfg, by finite differences:
+# cases/reference/contact.py.
+x_m,y_m"""
 
 
 # --- a disc of four-node elements ---
@@ -151,10 +165,20 @@ def lying_beam(length, thick, young, poisson, weight, drop, n=200):
     return places, q[:, 1]
 
 
-# --- a disc between plates ---
-def disc_compression(load, radius, young, poisson):
-    """How much two rigid plates approach each other under a load per depth (Johnson 1985, Sec.
-    5.6)."""
-    plane = young / (1 - poisson ** 2)
-    half = math.sqrt(4 * load * radius / (math.pi * plane))
-    return 2 * load / (math.pi * plane) * (2 * math.log(4 * radius / half) - 1)
+def write_table(name, words, rows):
+    table = Path(__file__).with_name(name)
+    lines = [words, *(",".join(f"{value:.8g}" for value in row) for row in rows)]
+    table.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(f"written {table}")
+
+
+def main():
+    speeds = (1.0, 3.0)
+    write_table("contact_disc.csv", DISC_WORDS, [
+        (speed, *disc_impact(speed, 0.05, 1000, 1e6, 0.3, n=24)) for speed in speeds])
+    write_table("contact_fold.csv", FOLD_WORDS, zip(*lying_beam(0.5, 0.02, 3e6, 0.3,
+                                                                1000 * 9.81 * 0.02, 0.05)))
+
+
+if __name__ == "__main__":
+    main()
