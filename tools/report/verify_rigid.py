@@ -225,7 +225,7 @@ def measure_waves(runs):
     near, last = found("", 1), found("_last", given["away"])
     rows, height, long = [], given["steep"] * wave, given["kd"] < 1
     for waves, ending, lengths in (near, "", 1), (last, "_last", given["away"]):
-        rows.append((f"height {lengths:g} lengths away, % too large",
+        rows.append((f"height at x = {lengths:g} lengths, % too large",
                      100 * (waves.incident / height - 1), None if long else 2))
         if long:
             flux = [height_by_flux(p["time_s"][late], p[f"{name}{ending}_level_m"][late], period,
@@ -261,8 +261,7 @@ SCENES = {
                          f"flap={int(maker == 'flap')}"]], measure_waves)
        for maker, kd, n, steep in (
            ("piston", 0.5, 20, 0.01), ("piston", 1, 20, 0.03), ("piston", 1.5, 20, 0.03),
-           ("piston", 1.5, 40, 0.03), ("piston", 3, 40, 0.03), ("flap", 1.5, 20, 0.03),
-           ("flap", 1.5, 40, 0.03))},
+           ("piston", 1.5, 40, 0.03), ("piston", 3, 40, 0.03), ("flap", 1.5, 20, 0.03))},
     "waves of a piston far away, kd = 1.5, 20 spacings in the depth":
         ("wave_piston", [["kd=1.5", "steep=0.03", "away=10", "periods=25"]], measure_waves),
     "floating box, 20 spacings across":
