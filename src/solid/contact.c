@@ -168,11 +168,6 @@ void contact_forces(struct contact *contact, struct particles *particles, double
     }
 }
 
-void contact_kick(struct contact *contact, double dt)
-{
-    if (contact->rigid) rigid_kick(contact->rigid, contact->time, dt);
-}
-
 /* Number of spacings that two points may approach in excess of their present speeds times the
  * time. */
 #define GAIN 0.25

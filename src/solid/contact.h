@@ -129,9 +129,6 @@ void contact_forget(struct contact *contact, const struct particles *walls);
  * parallel region all threads call it together. */
 void contact_forces(struct contact *contact, struct particles *particles, double time);
 
-/* The last forces on rigid bodies act for dt. By one thread. */
-void contact_kick(struct contact *contact, double dt);
-
 /* Lets the places that friction holds points to slide where a spring exceeds friction, after the
  * forces of a step. By one thread. */
 void contact_slide(struct contact *contact, struct particles *particles);

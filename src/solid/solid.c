@@ -366,9 +366,10 @@ void solid_book_work(struct solid *solid, struct particles *particles, const dou
                      const double *vy, double dt)
 {
     if (solid->contact) {
-        contact_slide(solid->contact, particles);
-        contact_kick(solid->contact, dt);
-        const double work = dt * solid->contact->power;
+        struct contact *const contact = solid->contact;
+        contact_slide(contact, particles);
+        if (contact->rigid) rigid_kick(contact->rigid, contact->time, dt);
+        const double work = dt * contact->power;
         solid->work += work;
         solid->work_on[0] += work;
     }

@@ -1,10 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Elastic bodies and a fluid against exact solutions, for light and heavy bodies, with explicit and
-implicit steps of the body: orders in space and in time.
-
-  tools/report/exact_fsi.py                       writes docs/results/exact_fsi.md (half an hour)
-  tools/report/exact_fsi.py pulse 0.1 implicit    one row of each table, to the screen
+implicit steps of the body: orders in space and in time (make exact-fsi, half an hour).
 
 The scenes are those of cases/verify, after models of Banks, Henshaw and Schwendeman (arXiv
 1308.5722, 1308.5913):
@@ -280,15 +277,7 @@ def report(studies):
 
 
 def main():
-    parser = options(__doc__)
-    parser.add_argument("problem", nargs="?", choices=PROBLEMS)
-    parser.add_argument("density", nargs="?", type=float)
-    parser.add_argument("steps", nargs="?", choices=STEPS, default="explicit")
-    args = parser.parse_args()
-    if args.density:
-        for kind in ASKED:
-            study(kind, args.problem, args.density, args.steps)
-        return
+    options(__doc__).parse_args()
     names = ("pulse", "column", "layer") if QUICK else PROBLEMS
     rows = [(kind, name, density, steps) for kind in ASKED for name in names
             for density in DENSITIES if density >= PROBLEMS[name].lightest[kind] for steps in STEPS]
