@@ -433,7 +433,7 @@ static enum err set_motion(struct sphfsi_simulation *handle, const char *name,
 {
     struct scene *const scene = &handle->session.scene;
     if (!name) return diag_fail(d, ERR_INPUT, "motion: the name is NULL");
-    const int at = scene_find_motion(scene, name);
+    const int at = scene_find(scene, SECTION_motion, name);
     struct nearest near = {0};
     for (int k = 0; k < scene->n_motion; k++)
         nearest_offer(&near, name, scene->motion[k].common.name);

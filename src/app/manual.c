@@ -269,7 +269,7 @@ static bool meets_condition(const struct scene *scene, effect_set fx, const char
     for (int k = 0; k < scene->n_solid; k++) hyperelastic |= scene->solid[k].law != LAW_PAPER;
     for (int k = 0; k < scene->n_probe; k++)
         probed |= scene_probe_target(&scene->probe[k]) == TARGET_SOLID_POINT &&
-                  scene_find_solid(scene, scene->probe[k].body) >= 0;
+                  scene_find(scene, SECTION_solid, scene->probe[k].body) >= 0;
     const struct {
         const char *word;
         bool met;

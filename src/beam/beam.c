@@ -110,14 +110,14 @@ static void place_nodes(struct beams *beams)
 /* -1: no rigid body. */
 static int rigid_of(const struct scene *scene, const char *name)
 {
-    const int k = *name ? scene_find_wall(scene, name) - scene_rigid_wall(scene, 0) : -1;
+    const int k = *name ? scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0) : -1;
     return k >= 0 && k < scene->n_rigid ? k : -1;
 }
 
 static int mover_of(const struct scene *scene, const struct scene_beam *beam, const char *other)
 {
-    const int wall = *other ? scene_find_wall(scene, other) : -1;
-    return scene_find_motion(scene, wall >= 0 ? scene->wall[wall].motion : beam->motion);
+    const int wall = *other ? scene_find(scene, SECTION_wall, other) : -1;
+    return scene_find(scene, SECTION_motion, wall >= 0 ? scene->wall[wall].motion : beam->motion);
 }
 
 /* Joins a node to one of another beam, unless that is joined to it. */
@@ -126,7 +126,7 @@ static enum err join(struct beams *beams, int k, const struct hinge_point *at, b
 {
     struct beam_node *const node = &beams->node[k];
     const struct beam_place place =
-        beam_find(beams, scene_find_beam(beams->scene, at->other), node->X);
+        beam_find(beams, scene_find(beams->scene, SECTION_beam, at->other), node->X);
     const struct beam_element *const e = &beams->element[place.element];
     const int to = e->node[place.part > 0.5];
     const double *const X = beams->node[to].X;
@@ -158,7 +158,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
                            given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
                            place.distance);
         struct beam_node *const node = &beams->node[e->node[place.part > 0.5]];
-        if (scene_find_beam(beams->scene, at->other) >= 0) {
+        if (scene_find(beams->scene, SECTION_beam, at->other) >= 0) {
             TRY(join(beams, e->node[place.part > 0.5], at, turns, d));
             continue;
         }
@@ -188,7 +188,7 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
 {
     const struct scene *const scene = beams->scene;
     const struct scene_load *const from = &scene->load[section];
-    const int beam = scene_find_beam(scene, from->body), first = beams->n_loads;
+    const int beam = scene_find(scene, SECTION_beam, from->body), first = beams->n_loads;
     struct outlines o;
     double length = 0;
     if (beam < 0) return ERR_OK;

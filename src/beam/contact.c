@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "beam/contact.h"
 #include "beam/joints.h"
+#include "case/params.h"
 #include "base/segment.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"
@@ -300,7 +301,7 @@ void beams_find_touches(struct beams *beams, double time, double dt)
     const struct scene *const scene = beams->scene;
     for (int w = 0; w < contact->n_walls; w++) {
         const char *const motion = scene->wall[w].motion;
-        const int mover = motion[0] ? scene_find_motion(scene, motion) : -1;
+        const int mover = motion[0] ? scene_find(scene, SECTION_motion, motion) : -1;
         contact->begin[w] = motion_at(scene, mover, time);
         contact->end[w] = motion_at(scene, mover, time + dt);
     }

@@ -70,8 +70,8 @@ static enum err check_supports(struct reader *r, const struct scene_beam *beam,
 {
     for (int k = 0; k < list->n; k++) {
         const char *const other = list->item[k].other;
-        const int wall = *other ? scene_find_wall(r->scene, other) : 0;
-        const bool joined = scene_find_beam(r->scene, other) >= 0;
+        const int wall = *other ? scene_find(r->scene, SECTION_wall, other) : 0;
+        const bool joined = scene_find(r->scene, SECTION_beam, other) >= 0;
         if (joined && strcmp(other, beam->common.name) != 0) continue;
         if (*other && (wall < 0 || wall >= scene_beam_wall(r->scene, 0)))
             return bad_line(

@@ -22,7 +22,7 @@ static enum err check_name(struct reader *r, const struct param *param, const ch
             nearest_offer(&near, name, other->name);
         }
     const bool two = also != param->kind;
-    if (param->section == SECTION_probe && scene_find_beam(r->scene, name) >= 0)
+    if (param->section == SECTION_probe && scene_find(r->scene, SECTION_beam, name) >= 0)
         return bad_key(r, param->key, name,
                        "[beam %s] has no such quantity; a beam has displacement, velocity, "
                        "acceleration, energy, force, reaction and section_force",
@@ -37,8 +37,8 @@ static enum section_id other_kind(const struct scene *scene, const struct scene_
 {
     switch ((enum probe_quantity)probe->quantity) {
     case PROBE_REACTION:
-        if (scene_find_spring(scene, probe->body) >= 0) return SECTION_spring;
-        return scene_find_beam(scene, probe->body) >= 0 ? SECTION_beam : SECTION_rigid;
+        if (scene_find(scene, SECTION_spring, probe->body) >= 0) return SECTION_spring;
+        return scene_find(scene, SECTION_beam, probe->body) >= 0 ? SECTION_beam : SECTION_rigid;
     case PROBE_POSE: return SECTION_rigid;
     case PROBE_STRESS:
     case PROBE_STRAIN: return SECTION_solid;
@@ -166,7 +166,7 @@ static enum err check_solid(struct reader *r, const void *section)
                                to);
     }
     if (!*a->joined) return ERR_OK;
-    const int other = scene_find_solid(scene, a->joined);
+    const int other = scene_find(scene, SECTION_solid, a->joined);
     if (other < 0) return ERR_OK; /* case_check_names reports it */
     const struct scene_solid *const b = &scene->solid[other];
     if (a == b)
@@ -178,7 +178,7 @@ static enum err check_solid(struct reader *r, const void *section)
 
 static bool moves_freely(const struct scene *scene, const char *name)
 {
-    const int wall = scene_find_wall(scene, name);
+    const int wall = scene_find(scene, SECTION_wall, name);
     return wall < 0 || wall >= scene_rigid_wall(scene, 0);
 }
 
@@ -213,7 +213,7 @@ static enum err check_contact(struct reader *r, const void *section)
 static enum err check_load(struct reader *r, const void *section)
 {
     const struct scene_load *const l = section;
-    if (l->moment.e[0] && scene_find_beam(r->scene, l->body) < 0)
+    if (l->moment.e[0] && scene_find(r->scene, SECTION_beam, l->body) < 0)
         return bad_section(r, "has a `moment`, which acts on a [beam]; %s is none", l->body);
     if (!l->force.e[0] != !l->traction.e[0]) return ERR_OK;
     if (!l->force.e[0] && l->moment.e[0]) return ERR_OK;
@@ -321,8 +321,9 @@ static enum err check_damping(struct reader *r, const void *section)
 /* Whether a body has a clamp, a hinge or a guide, or is itself a spring. */
 static bool is_held(const struct scene *scene, const char *name)
 {
-    const int solid = scene_find_solid(scene, name), beam = scene_find_beam(scene, name),
-              rigid = scene_find_wall(scene, name) - scene_rigid_wall(scene, 0);
+    const int solid = scene_find(scene, SECTION_solid, name),
+              beam = scene_find(scene, SECTION_beam, name),
+              rigid = scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0);
     if (solid >= 0) return scene->solid[solid].clamp.n + scene->solid[solid].hinge.n > 0;
     if (beam >= 0) return scene->beam[beam].clamp.n + scene->beam[beam].hinge.n > 0;
     if (rigid < 0) return true;
@@ -343,7 +344,7 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
         for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)
                 return bad_section(r, "body = %.60s: %.60s is listed twice", p->body, name);
-    if (p->quantity == PROBE_SECTION_FORCE && scene_find_beam(r->scene, p->body) < 0)
+    if (p->quantity == PROBE_SECTION_FORCE && scene_find(r->scene, SECTION_beam, p->body) < 0)
         return bad_section(r, "measures the force in a cross-section of a [beam]; %s is none",
                            p->body);
     if (p->quantity == PROBE_REACTION && !is_held(r->scene, p->body))
@@ -363,7 +364,7 @@ static enum err check_on(struct reader *r, const struct scene_probe *p)
                            "on = %.60s is only for pressure, level, velocity and surface pressure "
                            "of the fluid; leave it out",
                            p->on);
-    if (face && scene_find_solid(r->scene, p->on) >= 0)
+    if (face && scene_find(r->scene, SECTION_solid, p->on) >= 0)
         return bad_section(r,
                            "on = %.60s is a solid, which bends; a line moves with walls only. "
                            "quantity = force measures the fluid's force on the solid",

@@ -67,7 +67,7 @@ static int first_wall_force(const struct scene *scene)
         for (int n = 0;
              scene->probe[k].quantity == PROBE_FORCE && scene_listed(scene->probe[k].body, n, name);
              n++)
-            if (scene_find_solid(scene, name) < 0) return k;
+            if (scene_find(scene, SECTION_solid, name) < 0) return k;
     return -1;
 }
 

@@ -82,6 +82,8 @@ extern const struct param param_table[PARAM_COUNT];
  * struct scene_section_common. */
 int section_count(const struct scene *scene, enum section_id id);
 void *section_at(const struct scene *scene, enum section_id id, int index);
+/* The index of a named section, or -1. */
+int scene_find(const struct scene *scene, enum section_id id, const char *name);
 /* "[fluid water]" or "[output]"; returns `title`. */
 enum { TITLE_TEXT = 2 * SCENE_NAME + 32 };
 char *section_title(const struct scene_section_common *section, char title[TITLE_TEXT]);

@@ -76,7 +76,7 @@ static enum err check_hinges(struct reader *r, const struct scene_rigid *rigid)
     int fixed = 0;
     for (int k = 0; k < rigid->hinge.n; k++) {
         const struct hinge_point *const hinge = &rigid->hinge.item[k];
-        const int wall = scene_find_wall(r->scene, hinge->other);
+        const int wall = scene_find(r->scene, SECTION_wall, hinge->other);
         const bool bad =
             wall < 0 || wall >= walls + r->scene->n_rigid || wall - walls == rigid->common.index;
         if (*hinge->other && bad)
@@ -105,7 +105,7 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
     if (guided || !rigid->turns)
         return bad_section(r, "has both `hinge` and `%s`; leave one out",
                            guided ? "guide" : "turns = off");
-    const int driven = scene_find_motion(r->scene, rigid->hinge_motion);
+    const int driven = scene_find(r->scene, SECTION_motion, rigid->hinge_motion);
     if (*rigid->hinge_motion && rigid->hinge.n > 1)
         return bad_section(r,
                            "has a `hinge_motion` and %d hinges; leave one, or put the others "

@@ -15,8 +15,7 @@ void scene_free(struct scene *scene)
     memset(scene, 0, sizeof *scene);
 }
 
-/* The index of a named section, or -1. */
-static int find_section(const struct scene *scene, enum section_id id, const char *name)
+int scene_find(const struct scene *scene, enum section_id id, const char *name)
 {
     for (int k = 0; k < section_count(scene, id); k++) {
         const struct scene_section_common *const common = section_at(scene, id, k);
@@ -25,34 +24,9 @@ static int find_section(const struct scene *scene, enum section_id id, const cha
     return -1;
 }
 
-int scene_find_motion(const struct scene *scene, const char *name)
-{
-    return find_section(scene, SECTION_motion, name);
-}
-
 bool scene_motion_turns(const struct scene_motion *motion)
 {
     return motion->kind == MOTION_ROTATION || motion->turn.e[0];
-}
-
-int scene_find_solid(const struct scene *scene, const char *name)
-{
-    return find_section(scene, SECTION_solid, name);
-}
-
-int scene_find_wall(const struct scene *scene, const char *name)
-{
-    return find_section(scene, SECTION_wall, name);
-}
-
-int scene_find_spring(const struct scene *scene, const char *name)
-{
-    return find_section(scene, SECTION_spring, name);
-}
-
-int scene_find_beam(const struct scene *scene, const char *name)
-{
-    return find_section(scene, SECTION_beam, name);
 }
 
 int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
@@ -79,7 +53,7 @@ void scene_bonds(const struct scene *scene, int bond[SCENE_MAX_SECTIONS])
 {
     for (int k = 0; k < scene->n_solid; k++) bond[k] = k;
     for (int k = 0; k < scene->n_solid; k++) {
-        const int to = scene_find_solid(scene, scene->solid[k].joined);
+        const int to = scene_find(scene, SECTION_solid, scene->solid[k].joined);
         if (to < 0) continue;
         const int a = bond[k], b = bond[to];
         for (int j = 0; j < scene->n_solid; j++)
@@ -102,8 +76,8 @@ static bool is_between(const struct scene *scene, const struct scene_contact *c,
     int number[2];
     if (!scene_pair(c->between, name)) return c->between[0] == '\0';
     for (int k = 0; k < 2; k++) {
-        const int solid = scene_find_solid(scene, name[k]);
-        number[k] = solid >= 0 ? solid : scene->n_solid + scene_find_wall(scene, name[k]);
+        const int solid = scene_find(scene, SECTION_solid, name[k]);
+        number[k] = solid >= 0 ? solid : scene->n_solid + scene_find(scene, SECTION_wall, name[k]);
     }
     return (number[0] == a && number[1] == b) || (number[0] == b && number[1] == a);
 }

@@ -358,13 +358,7 @@ SPHFSI_INLINE int scene_line_of(const struct scene *scene, int64_t wall_particle
             return k + 1;
     return 0;
 }
-/* Index of a named section, or -1. */
-int scene_find_motion(const struct scene *scene, const char *name);
 bool scene_motion_turns(const struct scene_motion *motion);
-int scene_find_solid(const struct scene *scene, const char *name);
-int scene_find_wall(const struct scene *scene, const char *name);
-int scene_find_spring(const struct scene *scene, const char *name);
-int scene_find_beam(const struct scene *scene, const char *name);
 /* Elements of a beam from a to b. */
 int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
                      const double b[2]);

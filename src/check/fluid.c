@@ -211,7 +211,7 @@ static void warn_of_motion(struct check *check, const struct body *b)
     enum { TIMES = 256 };
     struct scene *const scene = check->scene;
     const struct scene_points *const p = &scene->points[b->kind];
-    const int motion = scene_find_motion(scene, b->motion);
+    const int motion = scene_find(scene, SECTION_motion, b->motion);
     struct box2 box = box2_empty();
     double largest = 0;
     for (int64_t k = 0; k < p->n; k++)
@@ -364,7 +364,7 @@ static void warn_of_turning(struct check *check)
     for (int k = 0; k < scene->n_solid + scene->n_wall && nu > 0; k++) {
         const struct body b = body_at(scene, k);
         const bool solid = b.kind == KIND_SOLID;
-        const int motion = solid ? -1 : scene_find_motion(scene, b.motion);
+        const int motion = solid ? -1 : scene_find(scene, SECTION_motion, b.motion);
         const struct scene_motion *const m = motion < 0 ? NULL : &scene->motion[motion];
         const bool turns = solid ? scene->solid[k].clamp.n == 0 : m && scene_motion_turns(m);
         bool asked = solid;

@@ -35,7 +35,7 @@ static bool hinge_to(const struct scene *scene, int body, int other)
 {
     const struct hinge_list *const hinges = &scene->solid[body].hinge;
     for (int k = 0; k < hinges->n; k++)
-        if (scene_find_solid(scene, hinges->item[k].other) == other) return true;
+        if (scene_find(scene, SECTION_solid, hinges->item[k].other) == other) return true;
     return false;
 }
 
@@ -55,7 +55,7 @@ static enum err warn_of_loose_bodies(struct check *check)
         for (int k = 0; k < scene->n_solid; k++) {
             if (support[k] == LOOSE && effects & FX_CONTACT && stands_on(check, support, k))
                 support[k] = STANDS;
-            const int joined = scene_find_solid(scene, scene->solid[k].joined);
+            const int joined = scene_find(scene, SECTION_solid, scene->solid[k].joined);
             for (int to = 0; to < scene->n_solid; to++)
                 if (to == joined || hinge_to(scene, k, to))
                     support[k] = support[to] = support[k] > support[to] ? support[k] : support[to];
@@ -69,7 +69,7 @@ static enum err warn_of_loose_bodies(struct check *check)
             lost |=
                 strcmp(scene->solid[m].common.name, b->like) == 0 && scene->solid[m].clamp.n > 0;
         for (int m = 0; m < scene->n_load; m++)
-            loaded |= scene_find_solid(scene, scene->load[m].body) == k;
+            loaded |= scene_find(scene, SECTION_solid, scene->load[m].body) == k;
         const char *const why =
             lost               ? "`like` does not copy one, so it moves freely"
             : b->velocity.e[0] ? NULL

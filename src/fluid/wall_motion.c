@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid/wall_motion.h"
+#include "case/params.h"
 #include "geometry/motion.h"
 
 #include <math.h>
@@ -12,8 +13,9 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     m->body = arena_alloc(a, (size_t)scene->n_wall, sizeof *m->body, "moving walls", d);
     if (!m->body) return ERR_MEMORY;
     for (int k = 0; k < scene->n_wall; k++) {
-        const int motion =
-            scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
+        const int motion = scene->wall[k].motion[0]
+                               ? scene_find(scene, SECTION_motion, scene->wall[k].motion)
+                               : -1;
         if (motion < 0 && k < scene_beam_wall(scene, 0)) continue;
         int64_t first = 0;
         while (first < walls->n && walls->body[first] != k) first++;

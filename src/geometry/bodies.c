@@ -153,7 +153,7 @@ enum err geometry_check_joined(struct sampler *sampler)
     const struct scene *const scene = sampler->scene;
     const struct scene_points *const p = &scene->points[KIND_SOLID];
     for (int k = 0; k < scene->n_solid; k++) {
-        const int other = scene_find_solid(scene, scene->solid[k].joined);
+        const int other = scene_find(scene, SECTION_solid, scene->solid[k].joined);
         if (other < 0) continue;
         struct point_grid table;
         const double reach = 2 * scene_solid_h(scene, k) * (1 - 1e-9);

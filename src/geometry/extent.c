@@ -20,7 +20,7 @@ static struct box2 box_of(const struct scene *scene, int kind, int body)
 static void include_motion(const struct scene *scene, int wall, struct box2 *box)
 {
     enum { TIMES = 257 };
-    const int motion = scene_find_motion(scene, scene->wall[wall].motion);
+    const int motion = scene_find(scene, SECTION_motion, scene->wall[wall].motion);
     if (motion < 0) return;
     const struct box2 start = box_of(scene, KIND_WALL, wall);
     for (int k = 0; k < TIMES && start.low[0] <= start.high[0]; k++) {
@@ -176,8 +176,8 @@ static enum err check_probes(struct sampler *sampler)
         const struct scene_probe *probe = &scene->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        const int body =
-            scene_find_solid(scene, target == TARGET_SOLID_POINT ? probe->body : probe->on);
+        const int body = scene_find(scene, SECTION_solid,
+                                    target == TARGET_SOLID_POINT ? probe->body : probe->on);
         if (body >= 0) TRY(check_body_probe(sampler, probe, body));
         if (target == TARGET_FLUID_POINT || line)
             TRY(check_place(sampler, probe, "point", probe->point));

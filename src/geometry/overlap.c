@@ -37,7 +37,7 @@ bool geometry_covers_strictly(const struct region *region, double x, double y)
 
 static int motion_of(const struct scene *scene, const struct region *wall)
 {
-    return scene_find_motion(scene, scene->wall[wall->body].motion);
+    return scene_find(scene, SECTION_motion, scene->wall[wall->body].motion);
 }
 
 /* Whether particle k may lie in another region: a clamped one in a wall, one of a wall in a clamp

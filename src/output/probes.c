@@ -165,9 +165,9 @@ static void refresh(struct simulation *sim, enum need need)
 
 static struct probe_body find_body(const struct scene *scene, const char *name)
 {
-    const int solid = scene_find_solid(scene, name);
+    const int solid = scene_find(scene, SECTION_solid, name);
     if (solid >= 0) return (struct probe_body){KIND_SOLID, solid};
-    return (struct probe_body){KIND_WALL, scene_find_wall(scene, name)};
+    return (struct probe_body){KIND_WALL, scene_find(scene, SECTION_wall, name)};
 }
 
 /* The bodies of a force. */
@@ -189,7 +189,7 @@ static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp
 {
     const struct probe_body on = find_body(sim->scene, sp->on);
     if (on.kind == KIND_WALL) {
-        probe->motion = scene_find_motion(sim->scene, sim->scene->wall[on.body].motion);
+        probe->motion = scene_find(sim->scene, SECTION_motion, sim->scene->wall[on.body].motion);
         return ERR_OK;
     }
     probe->body = on.body;
@@ -206,15 +206,16 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                             .average = sp->average,
                             .motion = -1,
                             .kind = KIND_SOLID,
-                            .body = scene_find_solid(sim->scene, sp->body),
-                            .beam = scene_find_beam(sim->scene, sp->body)};
+                            .body = scene_find(sim->scene, SECTION_solid, sp->body),
+                            .beam = scene_find(sim->scene, SECTION_beam, sp->body)};
     memcpy(probe->point, sp->point, sizeof probe->point);
     memcpy(probe->to, sp->to, sizeof probe->to);
     if (probe->beam >= 0 && probe->target != TARGET_BODY) return attach_to_beam(probe, sp, sim, d);
     if (probe->target == TARGET_SOLID && probe->body < 0) {
         probe->kind = KIND_WALL;
-        probe->body = scene_find_wall(sim->scene, sp->body) - scene_rigid_wall(sim->scene, 0);
-        probe->spring = scene_find_spring(sim->scene, sp->body);
+        probe->body =
+            scene_find(sim->scene, SECTION_wall, sp->body) - scene_rigid_wall(sim->scene, 0);
+        probe->spring = scene_find(sim->scene, SECTION_spring, sp->body);
         return ERR_OK;
     }
     if (probe->target == TARGET_BODY) return find_bodies(probe, sim->scene, sp->body, a, d);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "rigid/forces.h"
+#include "case/params.h"
 
 #include <math.h>
 #include <string.h>
@@ -252,7 +253,7 @@ double rigid_way(const struct rigid *rigid, int k, int c, double late)
 
 static int find_rigid(const struct scene *scene, const char *name)
 {
-    return *name ? scene_find_wall(scene, name) - scene_rigid_wall(scene, 0) : -1;
+    return *name ? scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0) : -1;
 }
 
 enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag *d)

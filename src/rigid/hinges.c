@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Hinges between rigid bodies, and what acts in any hinge: spring, damper, friction, drive. */
 #include "rigid/forces.h"
+#include "case/params.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,7 +20,7 @@ struct rigid_hinge {
 
 static int motion_named(const struct scene *scene, const char *name)
 {
-    return *name ? scene_find_motion(scene, name) : -1;
+    return *name ? scene_find(scene, SECTION_motion, name) : -1;
 }
 
 enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *d)
@@ -34,7 +35,7 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
         body->hinge_motion = -1;
         for (int j = 0; j < body->given->hinge.n; j++) {
             const struct hinge_point *const point = &body->given->hinge.item[j];
-            const int wall = *point->other ? scene_find_wall(scene, point->other) : -1;
+            const int wall = *point->other ? scene_find(scene, SECTION_wall, point->other) : -1;
             struct rigid_hinge *const hinge = &rigid->hinge[rigid->n_hinges++];
             *hinge = (struct rigid_hinge){.given = body->given,
                                           .at = point->at,

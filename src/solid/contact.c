@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/contact.h"
+#include "case/params.h"
 
 #include "base/elementary.h"
 #include "solid/contact_pair.h"
@@ -488,7 +489,7 @@ static enum err bodies_create(struct contact *contact, struct arena *a, struct d
     for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
     for (int k = 0; k < contact->n_walls; k++)
         contact->group[contact->n_solids + k] =
-            contact->n_solids + 1 + scene_find_motion(scene, scene->wall[k].motion);
+            contact->n_solids + 1 + scene_find(scene, SECTION_motion, scene->wall[k].motion);
     return ERR_OK;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The distance and the law of a point and an edge, and the list of near ones. */
 #include "solid/contact_pair.h"
+#include "case/params.h"
 
 #include "base/box2.h"
 #include "base/segment.h"
@@ -255,9 +256,10 @@ void contact_place(struct contact *contact, const struct particles *particles, d
 #pragma omp single
         for (int k = 0; k < contact->n_walls; k++) {
             contact->time = time;
-            contact->motion[k] =
-                motion_at(contact->scene,
-                          scene_find_motion(contact->scene, contact->scene->wall[k].motion), time);
+            contact->motion[k] = motion_at(contact->scene,
+                                           scene_find(contact->scene, SECTION_motion,
+                                                      contact->scene->wall[k].motion),
+                                           time);
         }
     }
 #pragma omp for schedule(static)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/hinges.h"
+#include "case/params.h"
 
 #include <string.h>
 
@@ -110,13 +111,15 @@ static void set_hinge(struct hinges *hinges, const struct solid *solid, int body
                       const struct hinge_point *from)
 {
     const struct scene *const scene = hinges->scene;
-    const int other = scene_find_solid(scene, from->other),
-              wall = scene_find_wall(scene, from->other);
+    const int other = scene_find(scene, SECTION_solid, from->other),
+              wall = scene_find(scene, SECTION_wall, from->other);
     hinges->hinge[hinges->n++] = (struct hinge){
         .at = {from->at[0], from->at[1]},
         .body = {body, other},
         .bond = {solid->body[body].bond, other >= 0 ? solid->body[other].bond : -1},
-        .motion = other < 0 && wall >= 0 ? scene_find_motion(scene, scene->wall[wall].motion) : -1,
+        .motion = other < 0 && wall >= 0
+                      ? scene_find(scene, SECTION_motion, scene->wall[wall].motion)
+                      : -1,
         .line = from->line,
     };
 }

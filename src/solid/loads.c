@@ -11,7 +11,7 @@
 
 static int moving_clamp(const struct scene *scene, int body)
 {
-    return scene_find_motion(scene, scene->solid[body].clamp_motion);
+    return scene_find(scene, SECTION_motion, scene->solid[body].clamp_motion);
 }
 
 static enum err find_held(struct loads *v, struct arena *a, const struct particles *particles,
@@ -37,7 +37,7 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
                             const struct particles *particles, struct arena *temp, struct diag *d)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
-    const int body = scene_find_solid(v->scene, from->body);
+    const int body = scene_find(v->scene, SECTION_solid, from->body);
     struct outlines o;
     TRY(outlines_of(&o, v->scene, &from->shape, temp, d));
     load->first = v->n_loaded;
@@ -92,8 +92,9 @@ static void begin_load(struct loads *v, struct load_region *load, const struct p
     const struct scene_load *const from = &v->scene->load[load->section];
     const bool traction = from->traction.e[0] != NULL;
     const struct scene_expr *const value = traction ? &from->traction : &from->force;
-    load->share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), particles)
-                           : 1 / (double)(load->end - load->first);
+    load->share =
+        traction ? row_spacing(v, load, scene_find(v->scene, SECTION_solid, from->body), particles)
+                 : 1 / (double)(load->end - load->first);
     load->varies = expr_varies(value->e[0]) || expr_varies(value->e[1]);
     set_forces(v, load, particles, 0);
 }
@@ -107,7 +108,7 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
     v->loaded = arena_alloc(temp, most, sizeof *v->loaded, "loads", d);
     if (!v->load || !v->loaded) return ERR_MEMORY;
     for (int k = 0; k < scene->n_load; k++) {
-        if (scene_find_solid(scene, scene->load[k].body) < 0) continue; /* of a beam */
+        if (scene_find(scene, SECTION_solid, scene->load[k].body) < 0) continue; /* of a beam */
         v->load[v->n_loads].section = k;
         TRY(find_loaded(v, &v->load[v->n_loads++], particles, temp, d));
     }

@@ -76,7 +76,8 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
     bool held[SCENE_MAX_SECTIONS] = {false};
     for (int64_t i = 0; i < particles->n; i++) {
         const int k = particles->body[i];
-        if (particles->free[i] == 0 && scene_find_motion(scene, scene->solid[k].clamp_motion) < 0)
+        if (particles->free[i] == 0 &&
+            scene_find(scene, SECTION_motion, scene->solid[k].clamp_motion) < 0)
             held[solid->body[k].bond] = true;
     }
     for (int k = 0; k < solid->n_bodies; k++)
