@@ -151,40 +151,9 @@ const char *session_name(const struct sphfsi_options *o, int *length)
     return name;
 }
 
-/* Limit for the steps of a run and the rows of a file. */
-static const double max_count = 1e10;
-
-/* Keys that are the time between two steps or outputs; 0: not set. */
-static enum err check_counts(const struct scene *scene, struct diag *d)
-{
-    static const struct {
-        enum section_id section;
-        const char *key, *what;
-    } between[] = {{SECTION_numerics, "fixed_step", "steps"},
-                   {SECTION_output, "probe_interval", "rows"},
-                   {SECTION_output, "ledger_interval", "rows"},
-                   {SECTION_output, "snapshot_interval", "snapshots"},
-                   {SECTION_output, "checkpoint_interval", "checkpoints"},
-                   {SECTION_probe, "interval", "rows"}};
-    const double end = scene->top.end_time;
-    for (size_t k = 0; k < COUNT_OF(between); k++)
-        for (int j = 0; j < section_count(scene, between[k].section); j++) {
-            const char *const key = between[k].key;
-            const double time = param_number(param_find(between[k].section, key),
-                                             section_at(scene, between[k].section, j));
-            if (time > 0 && end / time > max_count)
-                return fail_at(d, scene, scene_line(scene, between[k].section, j, key),
-                               "%s = %g s gives %.3g %s until %g s, more than the limit of %g; "
-                               "choose at least %.3g s",
-                               key, time, end / time, between[k].what, end, max_count,
-                               end / max_count);
-        }
-    return ERR_OK;
-}
-
 /* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes
  * the same rows as the whole one. */
-static enum err set_default_times(struct scene *scene, double until, struct diag *d)
+static void set_default_times(struct scene *scene, double until)
 {
     struct scene_output *out = &scene->output;
     const double end = scene->top.end_time;
@@ -192,7 +161,6 @@ static enum err set_default_times(struct scene *scene, double until, struct diag
     if (out->ledger_interval == 0) out->ledger_interval = end / 1000;
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
     scene->top.end_time = due_round(until > 0 ? until : end);
-    return check_counts(scene, d);
 }
 
 static enum err check_options(const struct sphfsi_options *o, struct diag *d)
@@ -239,9 +207,11 @@ static enum err read_case(struct session *session, const struct sphfsi_options *
                             o->n_sets, o->sets, d));
     else
         TRY(scene_load(&session->scene, o->case_path, o->n_sets, o->sets, d));
-    enum err e = check_scene(&session->scene, d);
-    if (!e) e = set_default_times(&session->scene, o->until, d);
-    if (e) scene_free(&session->scene);
+    const enum err e = check_scene(&session->scene, d);
+    if (e)
+        scene_free(&session->scene);
+    else
+        set_default_times(&session->scene, o->until);
     return e;
 }
 
@@ -251,17 +221,37 @@ void session_close(struct session *session)
     scene_free(&session->scene);
 }
 
-/* The limit for steps that the program chooses. */
-static enum err check_steps(const struct session *session, struct diag *d)
+/* Most steps of a run and rows of a file. `step`: the longest that the program chooses. Keys are
+ * the time between two steps or outputs; 0: not set. */
+static enum err check_counts(const struct scene *scene, double step, struct diag *d)
 {
-    const struct simulation *const sim = &session->simulation;
-    const double step = timestep_longest(sim);
-    const double end = session->scene.top.end_time, n = end / step;
-    if (n <= max_count) return ERR_OK;
-    return fail_at(d, &session->scene, scene_line(&session->scene, SECTION_top, 0, "end_time"),
+    static const double max_count = 1e10;
+    static const struct {
+        enum section_id section;
+        const char *key, *what;
+    } between[] = {{SECTION_numerics, "fixed_step", "steps"},
+                   {SECTION_output, "probe_interval", "rows"},
+                   {SECTION_output, "ledger_interval", "rows"},
+                   {SECTION_output, "snapshot_interval", "snapshots"},
+                   {SECTION_output, "checkpoint_interval", "checkpoints"},
+                   {SECTION_probe, "interval", "rows"}};
+    const double end = scene->top.end_time, least = end / max_count;
+    for (size_t k = 0; k < COUNT_OF(between); k++)
+        for (int j = 0; j < section_count(scene, between[k].section); j++) {
+            const char *const key = between[k].key;
+            const double time = param_number(param_find(between[k].section, key),
+                                             section_at(scene, between[k].section, j));
+            if (time > 0 && time < least)
+                return fail_at(d, scene, scene_line(scene, between[k].section, j, key),
+                               "%s = %g s gives %.3g %s until %g s, more than the limit of %g; "
+                               "choose at least %.3g s",
+                               key, time, end / time, between[k].what, end, max_count, least);
+        }
+    if (step >= least) return ERR_OK;
+    return fail_at(d, scene, scene_line(scene, SECTION_top, 0, "end_time"),
                    "the run needs about %.3g steps of %.3g s until end_time = %g s, more than the "
                    "limit of %g; choose at most %.3g s",
-                   n, step, end, max_count, max_count * step);
+                   end / step, step, end, max_count, max_count * step);
 }
 
 /* Puts the name of the case before a message from code that does not know it, such as that of the
@@ -290,7 +280,8 @@ enum err session_open(struct session *session, const struct sphfsi_options *o, s
         return e;
     }
     session->opening = thread_clock() - begin;
-    const enum err counted = check_steps(session, d);
+    const double step = timestep_longest(&session->simulation);
+    const enum err counted = check_counts(&session->scene, step, d);
     if (counted) session_close(session);
     return counted;
 }
