@@ -105,7 +105,7 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
         const bool known = is_known(sim, (enum bound)k);
         char value[32] = "-";
         if (known) snprintf(value, sizeof value, "%.4g s", sim->dt_bound[k]);
-        session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
+        session_say(o, "  %-10s %12s  %s%s", bound_table[k].name, value, bound_table[k].source,
                     known && k == (int)binding ? "  <- limits the step" : "");
     }
     if (sim->kind[KIND_SOLID].n == 0) return;
@@ -228,9 +228,9 @@ static void write_bounds(struct json *j, const struct simulation *sim)
     const enum bound binding = timestep_binding(sim);
     json_open(j, "time_step_bounds", '{');
     for (int k = 0; k < BOUND_COUNT; k++)
-        if (is_known(sim, (enum bound)k)) json_number(j, bound_names[k], sim->dt_bound[k]);
+        if (is_known(sim, (enum bound)k)) json_number(j, bound_table[k].name, sim->dt_bound[k]);
     json_close(j, '}');
-    json_text(j, "time_step_bound", is_known(sim, binding) ? bound_names[binding] : "none");
+    json_text(j, "time_step_bound", is_known(sim, binding) ? bound_table[binding].name : "none");
     if (sim->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);
 }
 

@@ -151,21 +151,12 @@ static enum err write_due(struct run *r)
 
 /* --- time loop --- */
 
-/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark
- * follows. */
-static double since(double *mark)
-{
-    const double now = wall_clock();
-    if (now < *mark) *mark = now;
-    return now - *mark;
-}
-
 /* While rest is sought no simulated time passes. */
 static void show_search(struct run *r)
 {
     enum { EVERY = 10 }; /* s of wall time */
     char text[RELAX_TEXT];
-    if (since(&r->wall_progress) < EVERY) return;
+    if (wall_clock() - r->wall_progress < EVERY) return;
     r->wall_progress = wall_clock();
     relax_progress(r->sim, text);
     session_say(r->options, "%s", text);
@@ -175,7 +166,7 @@ static void show_progress(struct run *r, bool finished)
 {
     const struct sphfsi_options *o = r->options;
     const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
-    if (!o->progress || (!finished && since(&r->wall_progress) < interval)) return;
+    if (!o->progress || (!finished && wall_clock() - r->wall_progress < interval)) return;
     const double end = r->session.scene.top.end_time, now = wall_clock();
     r->wall_progress = now;
     r->record.wall_seconds = now - r->wall_start;
@@ -186,7 +177,7 @@ static void show_progress(struct run *r, bool finished)
         .end_time = end,
         .start_time = r->record.start_time,
         .dt = st->dt,
-        .bound = bound_names[timestep_binding(r->sim)],
+        .bound = bound_table[timestep_binding(r->sim)].name,
         .particle_steps_per_second = report_rate(r->sim, &r->record),
         .wall_seconds = r->record.wall_seconds,
         .seconds_left = done > 0 ? r->record.wall_seconds * left / done : -1,
@@ -201,7 +192,7 @@ static enum err between_steps(struct run *r)
 {
     struct sphfsi_requests *request = r->options->requests;
     const double minutes = r->session.scene.output.checkpoint_minutes;
-    const bool by_clock = minutes > 0 && since(&r->wall_checkpoint) > 60 * minutes;
+    const bool by_clock = minutes > 0 && wall_clock() - r->wall_checkpoint > 60 * minutes;
     if (by_clock || (request && request->checkpoint)) {
         if (request) request->checkpoint = 0;
         const double begin = wall_clock();
@@ -256,7 +247,6 @@ static enum err advance(struct run *r)
 static void say_end(const struct sphfsi_options *o, const struct simulation *sim,
                     const struct record *r)
 {
-    const int64_t lost = sim->state.lost, left = sim->kind[KIND_FLUID].n;
     char text[1024];
     if (sim->state.particle_steps > r->start_particle_steps)
         session_say(o, "%.3g million particle steps a second", 1e-6 * report_rate(sim, r));
@@ -267,14 +257,7 @@ static void say_end(const struct sphfsi_options *o, const struct simulation *sim
         session_say(o,
                     "fluid particles lost: %lld; largest number inside walls and solids at the "
                     "same time: %lld",
-                    (long long)lost, (long long)sim->state.entered);
-    if (lost > 0) {
-        struct diag d = session_diag(o);
-        diag_warn(&d,
-                  "%lld of %lld fluid particles have left the domain: their mass and pressure are "
-                  "missing; a [wall] that holds them or a larger [domain] keeps them",
-                  (long long)lost, (long long)(lost + left));
-    }
+                    (long long)sim->state.lost, (long long)sim->state.entered);
     for (int k = 0; r->references->scored && k < r->references->n; k++) {
         reference_line(&r->references->item[k], text, sizeof text);
         session_say(o, "%s", text);
@@ -336,15 +319,6 @@ static void save_last_state(struct run *r, enum err why)
 static enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES],
                                 struct diag *d)
 {
-    if (o->out) {
-        if (o->out[0] && strlen(o->out) < PATH_BYTES - 300) {
-            memcpy(path, o->out, strlen(o->out) + 1);
-            for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
-            return ERR_OK;
-        }
-        return diag_fail(d, ERR_INPUT, "out: the path has %zu characters, but 1 to %d are allowed",
-                         strlen(o->out), PATH_BYTES - 301);
-    }
     int length;
     const char *const name = session_name(o, &length);
     /* A name of dots would be a folder outside of runs/. */
@@ -514,12 +488,13 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
 
 static enum err run_case(const struct sphfsi_options *o, struct diag *d)
 {
-    char path[PATH_BYTES];
+    char named[PATH_BYTES];
+    const char *const path = o->out ? o->out : named;
     const enum run_dir_use use = o->restart ? RUN_DIR_CONTINUE : RUN_DIR_FRESH;
     if (o->restart && o->fork)
         return diag_fail(d, ERR_INPUT,
                          "options: a restart continues a run, a fork starts a new one; choose one");
-    TRY(run_dir_of_case(o, path, d));
+    if (!o->out) TRY(run_dir_of_case(o, named, d));
     TRY(run_dir_check(path, use, d)); /* before the work of building the simulation */
     struct run *r = calloc(1, sizeof *r);
     if (!r) return diag_fail(d, ERR_MEMORY, "run: no memory for %zu bytes", sizeof *r);

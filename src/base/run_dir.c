@@ -35,6 +35,11 @@ static bool find_result(DIR *dir, char name[256])
 
 enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
 {
+    enum { LONGEST = PATH_BYTES - 301 }; /* names of files follow */
+    if (!*path || strlen(path) > LONGEST)
+        return diag_fail(d, ERR_INPUT,
+                         "folder of the run: the path has %zu characters, but 1 to %d are allowed",
+                         strlen(path), LONGEST);
     DIR *dir = opendir(path);
     if (!dir && errno == ENOENT && use == RUN_DIR_FRESH) return ERR_OK;
     if (!dir && errno == ENOENT)
@@ -128,17 +133,11 @@ static enum err lock_run_dir(struct run_dir *dir, struct diag *d)
 
 enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use use, struct diag *d)
 {
-    enum { LONGEST = sizeof dir->path - 65 };
     dir->lock = -1;
     dir->made = 0;
-    const size_t length = strlen(path);
-    if (length == 0 || length > LONGEST)
-        return diag_fail(d, ERR_INPUT,
-                         "folder of the run: the path has %zu characters, but 1 to %d are allowed",
-                         length, LONGEST);
-    memcpy(dir->path, path, length + 1);
-    if (use == RUN_DIR_FRESH) TRY(make_directories(path, &dir->made, d));
     TRY(run_dir_check(path, use, d));
+    memcpy(dir->path, path, strlen(path) + 1);
+    if (use == RUN_DIR_FRESH) TRY(make_directories(path, &dir->made, d));
     TRY(lock_run_dir(dir, d));
     /* Another run may have started and ended between the check and the lock. */
     const enum err e = run_dir_check(path, use, d);

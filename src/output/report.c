@@ -147,9 +147,9 @@ static void write_time_step(struct json *j, const struct simulation *sim)
     number_if(j, st->steps, "mean", st->time / (double)st->steps);
     number_if(j, sim->dt_solid > 0, "solid", sim->dt_solid);
     json_integer(j, "substeps", sim->substeps);
-    json_text(j, "bound", most < 0 ? "none" : bound_names[most]);
+    json_text(j, "bound", most < 0 ? "none" : bound_table[most].name);
     json_open(j, "bound_steps", '{');
-    for (int k = 0; k < BOUND_COUNT; k++) json_integer(j, bound_names[k], st->bound_steps[k]);
+    for (int k = 0; k < BOUND_COUNT; k++) json_integer(j, bound_table[k].name, st->bound_steps[k]);
     json_close(j, '}');
     json_close(j, '}');
 }

@@ -239,7 +239,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
     warn_once(sim, &sim->guard.warned_step, d,
               "the time step has fallen to %.3g s, limited by %s, and the run "
               "stops at %.3g s; %s",
-              dt, bound_names[bound], limit, step_remedy(sim, bound));
+              dt, bound_table[bound].name, limit, step_remedy(sim, bound));
     return ERR_OK;
 }
 

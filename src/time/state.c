@@ -5,15 +5,12 @@
 #include <math.h>
 #include <stdio.h>
 
-const char *const bound_names[BOUND_COUNT] = {
-#define BOUND(name, effect, source) #name,
+const struct bound_info bound_table[BOUND_COUNT] = {
+#define FX_NONE 0u
+#define BOUND(name, effect, source) {#name, source, FX_##effect},
 #include "time/bounds.def"
 #undef BOUND
-};
-const char *const bound_sources[BOUND_COUNT] = {
-#define BOUND(name, effect, source) source,
-#include "time/bounds.def"
-#undef BOUND
+#undef FX_NONE
 };
 
 double scene_time(const struct simulation *sim, double time)

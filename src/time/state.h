@@ -30,9 +30,10 @@ enum bound {
 #undef BOUND
     BOUND_COUNT
 };
-/* Their names and sources, from time/bounds.def. */
-extern const char *const bound_names[BOUND_COUNT];
-extern const char *const bound_sources[BOUND_COUNT];
+extern const struct bound_info {
+    const char *name, *source;
+    effect_set effect; /* that the bound belongs to; 0: none */
+} bound_table[BOUND_COUNT];
 
 /* Scalars carried from step to step, from time/state.def. */
 struct state {

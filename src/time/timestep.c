@@ -65,18 +65,11 @@ static double bound_value(const struct simulation *sim, enum bound k,
     return never;
 }
 
-static const effect_set bound_effects[BOUND_COUNT] = {
-#define FX_NONE 0u
-#define BOUND(name, effect, source) FX_##effect,
-#include "time/bounds.def"
-#undef BOUND
-#undef FX_NONE
-};
-
 static double bound_at(const struct simulation *sim, int k, const struct fluid_extremes *now)
 {
     const bool fixed = sim->scene->numerics.fixed_step > 0;
-    bool owned = bound_effects[k] == 0 || sim->effects & bound_effects[k];
+    const effect_set effect = bound_table[k].effect;
+    bool owned = effect == 0 || sim->effects & effect;
     if (!(sim->effects & FX_FLUID)) /* dt_solid is that of rigid bodies and beams, too */
         owned = k == BOUND_solid || k == BOUND_contact || k == BOUND_fixed;
     return owned && (!fixed || k == BOUND_fixed) ? bound_value(sim, (enum bound)k, now)

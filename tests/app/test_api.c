@@ -317,8 +317,9 @@ static void a_path_that_is_too_long(void)
     struct sphfsi_options o = tiny_options();
     o.out = path;
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
-    TEST_ASSERT_EQUAL_STRING("out: the path has 3900 characters, but 1 to 3795 are allowed",
-                             sphfsi_error());
+    TEST_ASSERT_EQUAL_STRING(
+        "folder of the run: the path has 3900 characters, but 1 to 3795 are allowed",
+        sphfsi_error());
     o.out = "";
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "0 characters"));

@@ -303,9 +303,9 @@ static void options_out_of_range_are_refused(void)
     o.threads = 1;
     memset(long_path, 'a', sizeof long_path - 1);
     o.out = long_path;
-    refused(sphfsi_run(&o), "out: the path has 5999 characters");
+    refused(sphfsi_run(&o), "folder of the run: the path has 5999 characters");
     o.out = "";
-    refused(sphfsi_run(&o), "out: the path has 0 characters");
+    refused(sphfsi_run(&o), "folder of the run: the path has 0 characters");
     o.out = NULL;
     o.case_path = "/tmp/..cfg";
     refused(sphfsi_run(&o), "/tmp/..cfg: '.' cannot be the name of the folder of results");

@@ -419,7 +419,7 @@ static void test_warnings_before_the_end(void)
     TEST_ASSERT_EQUAL_INT(3, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has fallen"), warning);
     char text[64];
-    snprintf(text, sizeof text, "limited by %s", bound_names[2]);
+    snprintf(text, sizeof text, "limited by %s", bound_table[2].name);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
     /* Neither cfl nor sound_speed changes the step of a solid. */
