@@ -7,36 +7,50 @@
 #include "time/timestep.h"
 #include "time/energy.h"
 
+static void swap_fields(double **a, double **b)
+{
+    double *const field = *a;
+    *a = *b;
+    *b = field;
+}
+
+/* The state at the start of the step and the predicted one change places. */
+static void swap_states(struct particles *particles)
+{
+    swap_fields(&particles->x, &particles->x0);
+    swap_fields(&particles->y, &particles->y0);
+    swap_fields(&particles->vx, &particles->vx0);
+    swap_fields(&particles->vy, &particles->vy0);
+    swap_fields(&particles->dens, &particles->dens0);
+}
+
 static void predict_fluid(struct particles *particles, double half)
 {
+    swap_states(particles);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        particles->x0[i] = particles->x[i];
-        particles->y0[i] = particles->y[i];
-        particles->vx0[i] = particles->vx[i];
-        particles->vy0[i] = particles->vy[i];
-        particles->dens0[i] = particles->dens[i];
-        particles->x[i] += half * particles->vx[i]; /* Eq. 22a */
-        particles->y[i] += half * particles->vy[i];
-        particles->vx[i] += half * particles->ax[i]; /* Eq. 22b */
-        particles->vy[i] += half * particles->ay[i];
-        particles->dens[i] += half * particles->ddens[i]; /* Eq. 24a */
+        particles->x[i] = particles->x0[i] + half * particles->vx0[i]; /* Eq. 22a */
+        particles->y[i] = particles->y0[i] + half * particles->vy0[i];
+        particles->vx[i] = particles->vx0[i] + half * particles->ax[i]; /* Eq. 22b */
+        particles->vy[i] = particles->vy0[i] + half * particles->ay[i];
+        particles->dens[i] = particles->dens0[i] + half * particles->ddens[i]; /* Eq. 24a */
     }
 }
 
+/* From the start of the step to its end; dens0 is predicted. */
 static void correct_rows(struct particles *particles, const void *by, int64_t from, int64_t end)
 {
     const double dt = *(const double *)by;
 #pragma omp simd
     for (int64_t i = from; i < end; i++) {
-        particles->vx[i] = particles->vx0[i] + dt * particles->ax[i]; /* Eq. 23a */
-        particles->vy[i] = particles->vy0[i] + dt * particles->ay[i];
-        particles->x[i] =
-            particles->x0[i] + 0.5 * dt * (particles->vx[i] + particles->vx0[i]); /* Eq. 23b */
-        particles->y[i] = particles->y0[i] + 0.5 * dt * (particles->vy[i] + particles->vy0[i]);
+        const double vx = particles->vx[i], vy = particles->vy[i], dens = particles->dens[i];
+        particles->vx[i] = vx + dt * particles->ax[i]; /* Eq. 23a */
+        particles->vy[i] = vy + dt * particles->ay[i];
+        particles->x[i] += 0.5 * dt * (particles->vx[i] + vx); /* Eq. 23b */
+        particles->y[i] += 0.5 * dt * (particles->vy[i] + vy);
         /* Eq. 24b, less 1, without cancellation. */
-        const double eps = -particles->ddens[i] / (1 + particles->dens[i]) * dt;
-        particles->dens[i] = particles->dens0[i] - (1 + particles->dens0[i]) * 2 * eps / (2 + eps);
+        const double eps = -particles->ddens[i] / (1 + particles->dens0[i]) * dt;
+        particles->dens[i] = dens - (1 + dens) * 2 * eps / (2 + eps);
     }
 }
 
@@ -121,6 +135,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
+    swap_states(&sim->kind[KIND_FLUID]);
     advance_fluid(sim, correct_rows, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
