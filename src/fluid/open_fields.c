@@ -140,13 +140,6 @@ static void fix_times(struct open *o, double time)
     }
 }
 
-/* The velocity that boundary n gives at a point of the line; the times are fixed. */
-static void given_velocity(const struct open *o, int n, enum open_time m, const double x[2],
-                           double v[2])
-{
-    scene_open_velocity(&o->at[n][m], x, 0, v);
-}
-
 /* A buffer particle's pressure from the fluid at its mirror image in the line (T-52), and with a
  * given pressure its velocity from the fluid around its projection on the line (T-51): velocities
  * that varied along the normal would compress the buffer, because it has none along the line. With
@@ -157,7 +150,7 @@ static void mirror_fields(const struct open *o, struct open_member *m)
     const struct fluid_constants *const k = o->k;
     const struct particles *const particles = o->particles;
     const int32_t i = m->particle;
-    const int number = particles->open[i] - 1;
+    const struct scene_open *const at = o->at[particles->open[i] - 1]; /* times are fixed in it */
     double in, on_line[2], mirror[2], v[2], a[2], s[S_SUMS];
     const struct scene_open *const b = project(o, i, &in, on_line);
     for (int c = 0; c < 2; c++) mirror[c] = on_line[c] + fabs(in) * b->inward[c];
@@ -171,11 +164,11 @@ static void mirror_fields(const struct open *o, struct open_member *m)
         for (int c = 0; c < 2 && !isnan(normal); c++) m->v[c] = normal * b->inward[c];
         return;
     }
-    given_velocity(o, number, OPEN_NOW, on_line, m->v);
+    scene_open_velocity(&at[OPEN_NOW], on_line, 0, m->v);
     m->p = eos_pressure(particles->dens[i], k->rho0, k->c0);
     if (!(w > 0)) return;
-    given_velocity(o, number, OPEN_BEFORE, on_line, v);
-    given_velocity(o, number, OPEN_AFTER, on_line, a);
+    scene_open_velocity(&at[OPEN_BEFORE], on_line, 0, v);
+    scene_open_velocity(&at[OPEN_AFTER], on_line, 0, a);
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (o->time[OPEN_AFTER] - o->time[OPEN_BEFORE]);
     const double from[2] = {particles->x[i] - mirror[0], particles->y[i] - mirror[1]};
     m->p = (s[S_P] + k->rho0 * ((k->gravity[0] - a[0]) * (s[S_GX] + w * from[0]) +

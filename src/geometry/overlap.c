@@ -9,7 +9,6 @@
 #include "case/case.h"
 #include "particles/kernel.h"
 
-#include <math.h>
 #include <string.h>
 
 /* Beside a common edge of shapes that are sampled on different lattices, or in layers, particles

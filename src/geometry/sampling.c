@@ -6,7 +6,6 @@
 #include "geometry/sampling.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 

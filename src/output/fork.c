@@ -9,7 +9,6 @@
 #include "time/relax.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <string.h>
 
 /* What moves has to be where its motion puts it: a jump would move it through the fluid. */

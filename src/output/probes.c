@@ -5,7 +5,6 @@
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

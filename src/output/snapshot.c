@@ -24,16 +24,6 @@ struct source {
     int64_t n, steps_before, points_before;
 };
 
-static int64_t step_value(enum data what, const struct source *source)
-{
-    switch (what) {
-    case D_PARTS_BEFORE: return source->steps_before;
-    case D_PARTS: return 1;
-    case D_POINTS_BEFORE: return source->points_before;
-    default: return source->n;
-    }
-}
-
 static int64_t integer_value(enum data what, const struct simulation *sim, enum kind kind,
                              int64_t i)
 {
@@ -53,16 +43,17 @@ static void values_of(const void *context, enum data what, int column, int64_t n
     const double unit = what == D_POINTS ? source->unit : 0;
     double *real = values;
     int64_t *integer = values;
-    if (what < D_POINTS) {
-        if (what == D_TIME)
-            *real = simulation_time(sim);
-        else
-            *integer = step_value(what, source);
-        return;
-    }
-    if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a VTK cell */
+    switch (what) {
+    case D_TIME: *real = simulation_time(sim); return;
+    case D_PARTS_BEFORE: *integer = source->steps_before; return;
+    case D_PARTS: *integer = 1; return;
+    case D_POINTS_BEFORE: *integer = source->points_before; return;
+    case D_POINTS_COUNT: *integer = source->n; return;
+    case D_CONNECTIVITY:
+    case D_OFFSETS: /* each point is a VTK cell */
         for (int64_t row = 0; row < n; row++) integer[row] = row;
         return;
+    default: break;
     }
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int64_t i = 0; i < sim->kind[kind].n; i++) {
