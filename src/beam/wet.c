@@ -8,6 +8,23 @@
 
 static double impedance(const struct beams *beams) { return beams->scene->rho0 * beams->scene->c0; }
 
+/* T-111a: the first node that is held or on a rigid body carries the beam along. Without any, each
+ * node does by its mass, and less for a beam lighter than a particle of fluid. */
+static void find_carriers(const struct beams *beams, const struct beam *b)
+{
+    double mass = 0, *const carries = beams->carries;
+    for (int k = b->first_node; k < b->end_node; k++) mass += beams->node[k].mass[0];
+    for (int k = b->first_node; k < b->end_node; k++) {
+        if (beams->node[k].row[0] < 0 || beams->node[k].body >= 0) {
+            memset(&carries[b->first_node], 0, (size_t)(k - b->first_node) * sizeof *carries);
+            carries[k] = 1;
+            return;
+        }
+        carries[k] =
+            beams->node[k].mass[0] / max2(mass, beams->scene->rho0 * square(beams->scene->top.dp));
+    }
+}
+
 enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *lines,
                           struct particles *walls, double ahead, bool alternates, struct diag *d)
 {
@@ -18,10 +35,14 @@ enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *li
     beams->walls = walls;
     beams->added = arena_alloc(a, n, sizeof *beams->added, what, d);
     beams->line = arena_alloc(a, (size_t)beams->n, sizeof *beams->line, what, d);
-    if (!beams->added || !beams->line) return ERR_MEMORY;
+    beams->carries = arena_alloc(a, (size_t)beams->n_nodes, sizeof *beams->carries, what, d);
+    if (!beams->added || !beams->line || !beams->carries) return ERR_MEMORY;
     for (int k = 0; k < lines->n; k++) {
         const int beam = lines->line[k].scene->wall - scene_beam_wall(beams->scene, 0);
-        if (beam >= 0) beams->line[beam] = &lines->line[k];
+        if (beam < 0) continue;
+        beams->line[beam] = &lines->line[k];
+        beams->line[beam]->bends = true;
+        find_carriers(beams, &beams->beam[beam]);
     }
     /* Longer than any step. */
     for (int k = 0; k < beams->n_nodes; k++)
@@ -67,6 +88,12 @@ double beams_place(struct beams *beams, double since)
     for (int k = 0; k < beams->n; k++) {
         const struct beam *const b = &beams->beam[k];
         struct thin_line *const line = beams->line[k];
+        memset(line->carried, 0, sizeof line->carried);
+        for (int m = b->first_node; m < b->end_node; m++)
+            for (int c = 0; c < 2; c++) {
+                line->carried[c] += beams->carries[m] * beams->state[m].w[c];
+                line->carried[2 + c] += beams->carries[m] * beams->state[m].a[c];
+            }
         for (int m = b->first_element; m < b->end_element; m++)
             for (int last = 0; last < 2; last++) {
                 struct line_end *const end = &line->end[2 * (m - b->first_element) + last],
@@ -87,19 +114,41 @@ static int element_of(const struct beams *beams, int beam, int64_t j)
     return beams->beam[beam].first_element + beams->line[beam]->scene->dummy[j].part;
 }
 
-static void add_dummy(struct beams *beams, int beam, int64_t j)
+/* The part across the beam of a vector at a dummy, to its ends; adds that along it to `along`. */
+static void across(const struct thin_line *line, int64_t j, double x, double y, double to[6],
+                   double along[2])
+{
+    double t[2];
+    line_tangent(line, j, t);
+    const double part = x * t[0] + y * t[1];
+    for (int c = 0; c < 2; c++) along[c] += part * t[c];
+    line_at_ends(line, j, x - part * t[0], y - part * t[1], to);
+}
+
+/* The part across the beam of a dummy's wetted normal, at its ends; returns its area, m. */
+static double wetted(const struct thin_line *line, int64_t j, const struct particles *p,
+                     double normal[6])
+{
+    const int64_t i = line->first + j;
+    double along[2] = {0};
+    across(line, j, p->wet_x[i], p->wet_y[i], normal, along);
+    const double area = elementary_hypot(p->wet_x[i], p->wet_y[i]);
+    for (int r = 0; r < 6; r++) normal[r] /= max2(area, 1e-300);
+    return area;
+}
+
+/* `along`: the pressure's force that the carrier takes. */
+static void add_dummy(struct beams *beams, int beam, int64_t j, double along[2])
 {
     const struct thin_line *const line = beams->line[beam];
     const struct particles *const p = beams->walls;
     const int64_t i = line->first + j;
     const int element = element_of(beams, beam, j), *const node = beams->element[element].node;
-    const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
-    const double by = impedance(beams) / max2(wet, 1e-300);
-    double force[6], normal[6];
-    line_at_ends(line, j, p->fx[i], p->fy[i], force);
-    for (int r = 0; r < 6; r++) beams->step[node[r / 3]].fluid[r % 3] += force[r];
-    if (!(wet > 0)) return;
-    line_at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
+    double force[6], drag[6], normal[6];
+    across(line, j, p->fx[i] - p->drag_x[i], p->fy[i] - p->drag_y[i], force, along);
+    line_at_ends(line, j, p->drag_x[i], p->drag_y[i], drag);
+    for (int r = 0; r < 6; r++) beams->step[node[r / 3]].fluid[r % 3] += force[r] + drag[r];
+    const double by = impedance(beams) * wetted(line, j, p, normal);
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++) beams->added[element][r][c] += by * normal[r] * normal[c];
 }
@@ -134,8 +183,13 @@ void beams_find_fluid(struct beams *beams, const struct beam_times *times)
         for (int c = 0; c < 3; c++) beams->step[k].fluid[c] = -now->impulse[c] / now->exchange;
     }
     memset(beams->added, 0, (size_t)beams->n_elements * sizeof *beams->added);
-    for (int k = 0; k < beams->n; k++)
-        for (int64_t j = 0; j < beams->line[k]->scene->n_dummies; j++) add_dummy(beams, k, j);
+    for (int k = 0; k < beams->n; k++) {
+        double along[2] = {0};
+        for (int64_t j = 0; j < beams->line[k]->scene->n_dummies; j++)
+            add_dummy(beams, k, j, along);
+        for (int m = beams->beam[k].first_node; m < beams->beam[k].end_node; m++)
+            for (int c = 0; c < 2; c++) beams->step[m].fluid[c] += beams->carries[m] * along[c];
+    }
     extrapolate(beams, times);
 }
 
@@ -147,13 +201,11 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
     struct particles *const p = beams->walls;
     const int64_t i = line->first + j;
     const int *const node = beams->element[element_of(beams, beam, j)].node;
-    const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
-    double normal[6], along = 0;
-    line_at_ends(line, j, p->wet_x[i], p->wet_y[i], normal);
-    for (int r = 0; r < 6 && wet > 0; r++)
-        along += normal[r] / wet * beams->step[node[r / 3]].faster[r % 3];
+    double normal[6], faster = 0;
+    wetted(line, j, p, normal);
+    for (int r = 0; r < 6; r++) faster += normal[r] * beams->step[node[r / 3]].faster[r % 3];
     p->interface_pressure[i] =
-        left * p->interface_pressure[i] - 2 * part * impedance(beams) * along;
+        left * p->interface_pressure[i] - 2 * part * impedance(beams) * faster;
 }
 
 void beams_return_impulse(struct beams *beams, const struct beam_times *times)

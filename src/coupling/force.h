@@ -109,10 +109,8 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
     for (int r = 0; r < count; r++) {
         particles->fx[index[r]] = force_x[r] + drag_x[r];
         particles->fy[index[r]] = force_y[r] + drag_y[r];
-        if (particles->drag_x) {
-            particles->drag_x[index[r]] = drag_x[r];
-            particles->drag_y[index[r]] = drag_y[r];
-        }
+        particles->drag_x[index[r]] = drag_x[r];
+        particles->drag_y[index[r]] = drag_y[r];
         if (!(fx & FX_IMPEDANCE)) continue;
         particles->wet_x[index[r]] = wet_x[r];
         particles->wet_y[index[r]] = wet_y[r];

@@ -45,6 +45,33 @@ SPHFSI_INLINE void arm_of(const struct line_dummy *dummy, const struct line_end 
     arm[1] = dummy->off * end->normal[1] - dummy->beyond * end->normal[0];
 }
 
+void line_tangent(const struct thin_line *line, int64_t j, double t[2])
+{
+    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_end *const end = &line->end[2 * dummy->part];
+    double n[2];
+    for (int c = 0; c < 2; c++)
+        n[c] = (1 - dummy->along) * end[0].normal[c] + dummy->along * end[1].normal[c];
+    const double size = elementary_hypot(n[0], n[1]);
+    t[0] = n[1] / size;
+    t[1] = -n[0] / size;
+}
+
+/* T-111a: along a beam its dummies have the motion of its carrier. */
+static void carry(const struct thin_line *line, int64_t j, double v[2], double a[2])
+{
+    double t[2], faster[2] = {0};
+    line_tangent(line, j, t);
+    for (int c = 0; c < 2; c++) {
+        faster[0] += t[c] * (line->carried[c] - v[c]);
+        faster[1] += t[c] * (line->carried[2 + c] - a[c]);
+    }
+    for (int c = 0; c < 2; c++) {
+        v[c] += faster[0] * t[c];
+        a[c] += faster[1] * t[c];
+    }
+}
+
 static void place_dummy(const struct thin_line *line, int64_t j, struct particles *walls)
 {
     const struct line_dummy *const dummy = &line->scene->dummy[j];
@@ -66,6 +93,7 @@ static void place_dummy(const struct thin_line *line, int64_t j, struct particle
     walls->x[i] = x[0];
     walls->y[i] = x[1];
     if (!walls->ax) return;
+    if (line->bends) carry(line, j, v, a);
     walls->vx[i] = v[0];
     walls->vy[i] = v[1];
     walls->ax[i] = a[0];

@@ -27,6 +27,9 @@ struct thin_line {
     } * piece; /* its parts between its extensions, which may have no length */
     double length;
     struct box2 box;
+    bool bends; /* of a beam */
+    double
+        carried[4]; /* velocity and acceleration that it has along it for the pressure (T-111a) */
 };
 
 struct lines {
@@ -52,6 +55,9 @@ void line_foot(const struct thin_line *line, int64_t j, double at[2]);
 /* What a vector at dummy number j does to the ends of its part by the same functions: the vector
  * and its moment about the end. */
 void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6]);
+
+/* The direction of the line at its dummy number j. */
+void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
 
 /* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
  * 0: none. (x, y) is the second place less the first, `from`. */

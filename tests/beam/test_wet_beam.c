@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Beams in fluid: a plate below a column of water, a light one, momentum that is exchanged, and
- * water on both sides. */
+ * still water on both sides. */
 #include "output/point_data.h"
 #include "rig.h"
 #include "time/energy.h"
@@ -83,6 +83,33 @@ static void test_a_violent_exchange_gains_little(void)
     }
 }
 
+/* Plates in still water that a spring of the water along them would tear: one of the water's
+ * density stands, one of a hundredth of it floats. */
+static void test_light_plates_in_still_water(void)
+{
+    static const char *const scene[] = {
+        "shape = box 0, 0, 1, 0.5\nsurface = 0.5\n"
+        "[wall tank]\nshape = polyline: 0, 0.7; 0, 0; 1, 0; 1, 0.7\n"
+        "[beam b]\nshape = polyline: 0.5, 0; 0.5, 0.3\nclamp = 0.5, 0\nthickness = 5 mm\n"
+        "mass = 5\nbending_stiffness = 482\nshear_stiffness = 9.6e7\naxial_stiffness = 5.8e5\n",
+        "shape = box 0, -0.5, 1, 0\nsurface = 0\n"
+        "[wall tank]\nshape = polyline: 0, 0.25; 0, -0.5; 1, -0.5; 1, 0.25\n"
+        "[beam b]\nshape = polyline: 0.0125, 0; 0.9875, 0\nthickness = 1.25 mm\n"
+        "mass = 0.0125\nbending_stiffness = 239\nshear_stiffness = 7.6e8\n"
+        "axial_stiffness = 2.9e5\n"};
+    for (size_t k = 0; k < COUNT_OF(scene); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "dp = 25 mm\nend_time = 1\ngravity = 0, -9.81\n[fluid w]\nsound_speed = 100\n"
+                 "%sgravity = off\n"
+                 "[load l]\nbody = b\nshape = box 0, -0.1, 1, 0.31\ntraction = 20*y, 2*x\n",
+                 scene[k]);
+        rig_open(&rig, text, "numerics.cfl=0.4", NULL);
+        rig_run(&rig, 0.05);
+        assert_at_most(1e-3, rig.sim.state.gain_share, "gain");
+    }
+}
+
 /* A beam that is bent to a curvature of k: each dummy of its line has the moment E' t^3/12 k. */
 static void test_snapshots_have_what_is_in_the_section(void)
 {
@@ -120,6 +147,7 @@ int main(void)
     RUN_TEST(test_momentum_is_exchanged);
     RUN_TEST(test_snapshots_have_what_is_in_the_section);
     RUN_TEST(test_a_violent_exchange_gains_little);
+    RUN_TEST(test_light_plates_in_still_water);
     RUN_TEST(test_one_side_is_refused);
     return UNITY_END();
 }
