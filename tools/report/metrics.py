@@ -92,35 +92,6 @@ def wet_bed_bore(high, low, g=9.81):
     return depth, math.sqrt(g * depth * (depth + low) / (2 * low))
 
 
-def elastica(load, points=400):
-    """Tip of a cantilever of length 1 that carries the weight `load` = w L^3/D, spread evenly and
-    always downwards: with theta counted downwards theta'' = -load (1 - s) cos theta, theta(0) = 0,
-    theta'(1) = 0, by shooting with Runge-Kutta steps. Returns (x, y) of the tip; y is negative."""
-    step = 1 / points
-
-    def shoot(curvature):
-        def rate(s, state):
-            angle, bend, _, _ = state
-            return np.array([bend, -load * (1 - s) * math.cos(angle), math.cos(angle),
-                             -math.sin(angle)])
-        state = np.array([0.0, curvature, 0.0, 0.0])
-        for k in range(points):
-            s = k * step
-            a = rate(s, state)
-            b = rate(s + step / 2, state + step / 2 * a)
-            c = rate(s + step / 2, state + step / 2 * b)
-            d = rate(s + step, state + step * c)
-            state = state + step / 6 * (a + 2 * b + 2 * c + d)
-        return state
-
-    low, high = -(load + 10), load + 10
-    for _ in range(80):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if shoot(middle)[1] < 0 else (low, middle)
-    state = shoot(0.5 * (low + high))
-    return float(state[2]), float(state[3])
-
-
 def nearest(points, others, reach):
     """Distance from each point to the nearest of the others; reach where none is nearer."""
     result = np.full(len(points), reach, dtype=float)
