@@ -151,12 +151,21 @@ static enum err write_due(struct run *r)
 
 /* --- time loop --- */
 
+/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark
+ * follows. */
+static double since(double *mark)
+{
+    const double now = wall_clock();
+    if (now < *mark) *mark = now;
+    return now - *mark;
+}
+
 /* While rest is sought no simulated time passes. */
 static void show_search(struct run *r)
 {
     enum { EVERY = 10 }; /* s of wall time */
     char text[RELAX_TEXT];
-    if (wall_clock() - r->wall_progress < EVERY) return;
+    if (since(&r->wall_progress) < EVERY) return;
     r->wall_progress = wall_clock();
     relax_progress(r->sim, text);
     session_say(r->options, "%s", text);
@@ -166,7 +175,7 @@ static void show_progress(struct run *r, bool finished)
 {
     const struct sphfsi_options *o = r->options;
     const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
-    if (!o->progress || (!finished && wall_clock() - r->wall_progress < interval)) return;
+    if (!o->progress || (!finished && since(&r->wall_progress) < interval)) return;
     const double end = r->session.scene.top.end_time, now = wall_clock();
     r->wall_progress = now;
     r->record.wall_seconds = now - r->wall_start;
@@ -192,7 +201,7 @@ static enum err between_steps(struct run *r)
 {
     struct sphfsi_requests *request = r->options->requests;
     const double minutes = r->session.scene.output.checkpoint_minutes;
-    const bool by_clock = minutes > 0 && wall_clock() - r->wall_checkpoint > 60 * minutes;
+    const bool by_clock = minutes > 0 && since(&r->wall_checkpoint) > 60 * minutes;
     if (by_clock || (request && request->checkpoint)) {
         if (request) request->checkpoint = 0;
         const double begin = wall_clock();
