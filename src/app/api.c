@@ -210,7 +210,7 @@ uint64_t sphfsi_hash(struct sphfsi_simulation *handle)
 /* --- fields --- */
 
 /* The arrays of snapshots that the particles have under another name, or not at all. */
-#define POINTDATA(NAME, name, item, width, beams, unit) {D_##NAME, #name, unit, width},
+#define POINTDATA(NAME, name, item, width, choice, unit) {D_##NAME, #name, unit, width},
 static const struct {
     enum data what;
     const char *name, *unit;

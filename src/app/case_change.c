@@ -25,13 +25,12 @@ static bool is_one_of(const char *text, const char *const *words, const char *en
     return false;
 }
 
-/* All keys but end_time and [output]; of [output] the one that defines the datasets of
- * snapshots. */
+/* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. */
 static bool matters_to_restart(const struct line *line)
 {
+    static const char *const datasets[] = {"snapshot_fields", "snapshot_precision", NULL};
     if (!line->section[0]) return !is_word(line->text, "end_time", " ");
-    return !is_word(line->section, "[output", "] ") ||
-           is_word(line->text, "snapshot_precision", " ");
+    return !is_word(line->section, "[output", "] ") || is_one_of(line->text, datasets, " ");
 }
 
 /* Keys that the state depends on: positions and masses of particles, the kernel, the equation of

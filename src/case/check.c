@@ -484,6 +484,28 @@ static enum err check_numerics(struct reader *r, const void *section)
                     value);
 }
 
+static enum err check_output(struct reader *r, const void *section)
+{
+    static const char *const names[] = {
+#define POINTDATA(NAME, name, ...) #name,
+#include "case/pointdata.def"
+    };
+    const char *const fields = ((const struct scene_output *)section)->snapshot_fields;
+    const size_t count = COUNT_OF(names);
+    char word[SCENE_TEXT], known[300] = "";
+    for (int n = 0; strcmp(fields, "all") != 0 && scene_word(fields, n, word); n++) {
+        struct nearest near = {0};
+        size_t k = 0;
+        while (k < count && strcmp(names[k], word) != 0) nearest_offer(&near, word, names[k++]);
+        if (k < count) continue;
+        for (k = 0; k < count; k++) strcat(strcat(known, " "), names[k]);
+        return bad_section(r,
+                           "snapshot_fields: there is no field `%.63s`%s Allowed: all, or any of%s",
+                           word, near.name ? nearest_hint(&near) : ".", known);
+    }
+    return ERR_OK;
+}
+
 /* Motions are at rest before t = 0. */
 static enum err check_relax(struct reader *r, const void *section)
 {
@@ -527,6 +549,7 @@ enum err case_check(struct reader *r)
     } checks[] = {
         {SECTION_top, check_top},
         {SECTION_numerics, check_numerics},
+        {SECTION_output, check_output},
         {SECTION_relax, check_relax},
         {SECTION_fluid, check_fluid},
         {SECTION_solid, check_solid},

@@ -155,6 +155,15 @@ enum probe_target scene_probe_target(const struct scene_probe *probe)
     return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
 }
 
+bool scene_snapshot_has(const struct scene *scene, const char *field)
+{
+    const char *const fields = scene->output.snapshot_fields;
+    char word[SCENE_TEXT];
+    bool has = strcmp(fields, "all") == 0;
+    for (int k = 0; !has && scene_word(fields, k, word); k++) has = strcmp(word, field) == 0;
+    return has;
+}
+
 /* --- places and files --- */
 
 void scene_location(const struct scene *scene, int line, char place[LOCATION_TEXT])

@@ -372,6 +372,9 @@ void scene_bonds(const struct scene *scene, int bond[SCENE_MAX_SECTIONS]);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *scene, int solid);
 
+/* Whether the snapshots of a scene have a field of case/pointdata.def. */
+bool scene_snapshot_has(const struct scene *scene, const char *field);
+
 /* Target of a probe; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 

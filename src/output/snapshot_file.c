@@ -70,8 +70,9 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
                                                     ? (unsigned)scene->output.snapshot_compression
                                                     : 0};
     for (int k = 0; k < D_COUNT; k++) layout.has[k] = true;
-#define POINTDATA(NAME, name, item, width, beams, unit) \
-    layout.has[D_##NAME] = !(beams) || scene->n_beam > 0;
+#define POINTDATA(NAME, name, item, width, choice, unit) \
+    layout.has[D_##NAME] =                               \
+        !(choice) || (scene_snapshot_has(scene, #name) && ((choice) == 1 || scene->n_beam > 0));
 #include "case/pointdata.def"
     return layout;
 }

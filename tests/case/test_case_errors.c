@@ -291,6 +291,16 @@ static const struct {
      "bad.cfg:6: [motion lift] start = 2 s must come before stop = 1 s"},
     {TOP FLUID "[motion lift]\nkind = polynomial\n", NULL,
      "bad.cfg:6: [motion lift] kind = polynomial needs `poly_x` or `poly_y`"},
+    {TOP SOLID "[output]\nsnapshot_fields = a234567890123456789012345678901234567890123456789012345"
+               "678901234567890\n",
+     NULL,
+     "bad.cfg:8: [output] snapshot_fields: there is no field "
+     "`a23456789012345678901234567890123456789"
+     "012345678901234567890123`. Allowed: all, or any of"},
+    {TOP SOLID "[output]\nsnapshot_fields = velocity presure\n", NULL,
+     "bad.cfg:8: [output] snapshot_fields: there is no field `presure`; did you mean `pressure`? "
+     "Allowed: all, or any of velocity density pressure kind id body stress von_mises displacement "
+     "det_F thickness axial_force shear_force moment curvature"},
     {TOP SOLID FLUID "[probe F]\nquantity = force\nbody = aa\n", NULL,
      "bad.cfg:13: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,

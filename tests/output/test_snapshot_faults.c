@@ -95,10 +95,13 @@ static struct simulation simulation;
 static struct snapshots writer;
 static char message[1280];
 
+/* Integers as well as reals, one column and several, and a title. */
+static const char *const sets[] = {"output.snapshot_fields=velocity"};
+
 void setUp(void)
 {
     diag = (struct diag){.code = ERR_OK};
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", 1, sets, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
 }
 
