@@ -17,7 +17,7 @@ struct beam_joint {
     double mass;     /* of all nodes with this unknown, kg/m or kg m */
     double along[3]; /* what a unit of force is to the body */
     double force;    /* on the node, N/m or N */
-    double impulse;  /* by which the velocities at the start agree, N s/m or N s */
+    double impulse;  /* on the node in the step, N s/m or N s */
 };
 
 /* A rigid body that beams are joined to, in a part of the step. */
@@ -28,7 +28,7 @@ struct beam_body {
     double x[3], v[3];   /* at the start of the part */
     double a[3];         /* without joints */
     double d[3];         /* displacement; twice the tangent of half the rotation */
-    double impulse[3];   /* of the joints in the step */
+    double impulse[3];   /* that it has of the joints in the step */
     double off[3];       /* what d needs more by the present forces (T-107b) */
     double yields[3][3]; /* displacement by a unit of force */
 };
@@ -158,10 +158,34 @@ static double gap_of(const struct beams *beams, const struct beam_joint *j)
     return (beams->node[j->node].X[c] + s->x[c] + s->d[c]) - (centre + x[c] + arm[1][c]);
 }
 
-void beams_take_bodies(struct beams *beams, double time, double dt)
+/* T-107d: what a velocity half a step behind has still to receive of the step before. */
+static void give_rest(struct beams *beams, struct beam_body *body, double last)
 {
-    for (int b = 0; beams->joints && b < beams->joints->n_bodies; b++) {
-        struct beam_body *const body = &beams->joints->body[b];
+    const struct beam_joints *const joints = beams->joints;
+    double impulse[3] = {0};
+    if (beams->rigid->centred) return;
+    memcpy(body->x, beams->rigid->state[body->rigid].x, sizeof body->x);
+    memset(body->d, 0, sizeof body->d);
+    for (int n = 0; n < joints->n; n++) {
+        struct beam_joint *const j = &joints->joint[n];
+        double arm[2][2];
+        if (&joints->body[j->body] != body) continue;
+        find_arms(beams, j, arm);
+        set_along(j, arm[0]);
+        for (int c = 0; c < 3; c++)
+            impulse[c] -= 0.5 * last * beams->state[j->node].reaction[j->component] * j->along[c];
+    }
+    rigid_load(beams->rigid, body->rigid, impulse);
+}
+
+void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times)
+{
+    const double dt = times->dt, last = times->last;
+    struct beam_joints *const joints = beams->joints;
+    for (int n = 0; joints && n < joints->n; n++) joints->joint[n].impulse = 0;
+    for (int b = 0; joints && b < joints->n_bodies; b++) {
+        struct beam_body *const body = &joints->body[b];
+        give_rest(beams, body, last);
         rigid_free_motion(beams->rigid, body->rigid, time, dt, body->from, body->v, body->mean);
         memcpy(body->x, body->from, sizeof body->x);
         memset(body->impulse, 0, sizeof body->impulse);
@@ -171,13 +195,19 @@ void beams_take_bodies(struct beams *beams, double time, double dt)
 
 void beams_return_bodies(struct beams *beams, double dt)
 {
-    for (int b = 0; beams->joints && b < beams->joints->n_bodies; b++) {
-        const struct beam_body *const body = &beams->joints->body[b];
-        struct rigid_body *const to = &beams->rigid->body[body->rigid];
-        for (int c = 0; c < 3; c++) {
-            to->pushed[c] += body->impulse[c];
-            to->moved[c] += body->x[c] - (body->from[c] + dt * body->mean[c]);
-        }
+    const struct beam_joints *const joints = beams->joints;
+    for (int n = 0; joints && n < joints->n; n++) {
+        const struct beam_joint *const j = &joints->joint[n];
+        beams->state[j->node].reaction[j->component] = j->impulse / dt;
+    }
+    for (int b = 0; joints && b < joints->n_bodies; b++) {
+        const struct beam_body *const body = &joints->body[b];
+        const double(*const W)[3] = equations_of(beams, b)->yields;
+        const double late = beams->rigid->centred ? 0.5 * dt : dt;
+        for (int c = 0; c < 3; c++)
+            beams->rigid->body[body->rigid].moved[c] +=
+                body->x[c] - (body->from[c] + dt * body->mean[c] + late * dot(W[c], body->impulse));
+        rigid_load(beams->rigid, body->rigid, body->impulse);
         beams->pushed = true;
     }
 }
@@ -189,7 +219,6 @@ static void kick(struct beams *beams, struct beam_joint *j, double impulse)
 {
     struct beam_body *const body = &beams->joints->body[j->body];
     const double(*const W)[3] = equations_of(beams, j->body)->yields;
-    j->impulse += impulse;
     for (int k = 0; k < beams->n_nodes; k++)
         if (beams->node[k].row[j->component] == j->row)
             beams->state[k].v[j->component] += impulse / j->mass;
@@ -230,7 +259,7 @@ void beams_begin_joints(struct beams *beams, double time, double dt)
     for (int n = 0; n < joints->n; n++) {
         struct beam_joint *const j = &joints->joint[n];
         double arm[2][2];
-        j->force = j->impulse = 0;
+        j->force = 0;
         find_arms(beams, j, arm);
         set_along(j, arm[0]);
     }
@@ -367,11 +396,11 @@ void beams_finish_joints(struct beams *beams, double dt)
 {
     const struct beam_joints *const joints = beams->joints;
     for (int n = 0; joints && n < joints->n; n++) {
-        const struct beam_joint *const j = &joints->joint[n];
+        struct beam_joint *const j = &joints->joint[n];
         struct beam_body *const body = &joints->body[j->body];
-        const double impulse = dt * j->force;
-        beams->state[j->node].reaction[j->component] += j->force + j->impulse / dt;
-        for (int c = 0; c < 3; c++) body->impulse[c] -= impulse * j->along[c];
+        const double impulse = dt * j->force, now = beams->rigid->centred ? 1 : 0.5;
+        j->impulse += impulse;
+        for (int c = 0; c < 3; c++) body->impulse[c] -= now * impulse * j->along[c];
     }
     for (int b = 0; joints && b < joints->n_bodies; b++) {
         struct beam_body *const body = &joints->body[b];

@@ -10,7 +10,7 @@ enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *
 
 /* Of the whole step from a time on, which follows as one part or several: the motion of the bodies
  * without the beams; after it, what they have had. */
-void beams_take_bodies(struct beams *beams, double time, double dt);
+void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times);
 void beams_return_bodies(struct beams *beams, double dt);
 
 /* A part dt of the step: velocities that the joints allow, and no forces yet. */

@@ -295,7 +295,7 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 {
     beams->iterations = 0;
     for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
-    beams_take_bodies(beams, time, times->dt);
+    beams_take_bodies(beams, time, times);
     beams->failed |= !step(beams, time, times, HALVINGS);
     beams_return_bodies(beams, times->dt);
 }

@@ -169,14 +169,15 @@ static void velocity_by(const struct rigid_equations *eq, const double impulse[3
     }
 }
 
-static void add_pushed(struct rigid *rigid, int k)
+void rigid_load(struct rigid *rigid, int k, const double impulse[3])
 {
     struct rigid_equations *const eq = &rigid->eq[k];
-    velocity_by(eq, rigid->body[k].pushed, eq->pushed);
+    double change[3];
+    velocity_by(eq, impulse, change);
     for (int c = 0; c < 3; c++) {
-        eq->impulse[c] += rigid->body[k].pushed[c];
-        eq->change[c] += eq->pushed[c];
-        eq->faster[c] += eq->pushed[c];
+        eq->impulse[c] += impulse[c];
+        eq->change[c] += change[c];
+        eq->faster[c] += change[c];
     }
 }
 
@@ -254,7 +255,10 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
 {
     const struct rigid_step step = {dt, kick, .late = rigid->centred ? 0.5 * dt : dt};
     const double now = time + dt - step.late;
-    for (int k = 0; k < rigid->n; k++) add_pushed(rigid, k);
+    for (int k = 0; k < rigid->n; k++) {
+        velocity_by(&rigid->eq[k], rigid->body[k].pushed, rigid->eq[k].pushed);
+        rigid_load(rigid, k, rigid->body[k].pushed);
+    }
     rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, &step);
     if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);

@@ -96,9 +96,12 @@ void rigid_kick(struct rigid *rigid, double time, double dt);
 /* --- beams on bodies, there too (beam/joints.h) --- */
 
 /* Where a body is at the start of a step of dt, its velocity there, and its mean velocity in the
- * step without more forces. What is added to its `pushed` and `moved` acts in the step. */
+ * step without more forces. */
 void rigid_free_motion(const struct rigid *rigid, int k, double time, double dt, double x[3],
                        double v[3], double mean[3]);
+
+/* Adds an impulse to those of the step. */
+void rigid_load(struct rigid *rigid, int k, const double impulse[3]);
 
 /* The force of a spring at its end `to`, and where that is. */
 void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);
