@@ -137,7 +137,9 @@ enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use us
     dir->made = 0;
     TRY(run_dir_check(path, use, d));
     memcpy(dir->path, path, strlen(path) + 1);
-    if (use == RUN_DIR_FRESH) TRY(make_directories(path, &dir->made, d));
+    for (char *last = dir->path + strlen(path) - 1; last > dir->path && *last == '/'; last--)
+        *last = '\0';
+    if (use == RUN_DIR_FRESH) TRY(make_directories(dir->path, &dir->made, d));
     TRY(lock_run_dir(dir, d));
     /* Another run may have started and ended between the check and the lock. */
     const enum err e = run_dir_check(path, use, d);
