@@ -305,10 +305,10 @@ def peak(wanted, seconds):
     return measure
 
 
-GATE = as_beam("gate", "gate", "[beam gate]\nshape = polyline: W, top; W, gate_length; W, 0\n"
+GATE = as_beam("gate", "gate", "[beam gate]\nshape = polyline: W, top; W, gate_length; W, dp/100\n"
                "clamp = W, top\nclamp = W, gate_length\nthickness = gate_thickness\n"
                "density = 1100 kg/m^3\nyoung = 7.8 MPa\npoisson = 0.4\n",
-               "shape = box W, gate_length,").replace("W + gate_thickness/2, 0", "W, 0")
+               "shape = box W, gate_length,").replace("W + gate_thickness/2, 0", "W, dp/100")
 BAFFLE = as_beam("wet_baffle", "baffle", "[beam baffle]\nshape = polyline: base_x + base_width/2, "
                  "base_height; base_x + base_width/2, tip\nclamp = base_x + base_width/2, "
                  "base_height\nthickness = thickness\ndensity = 1250 kg/m^3\nyoung = 5.7 MPa\n"
