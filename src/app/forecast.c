@@ -206,10 +206,10 @@ static double evaluation_seconds(struct simulation *sim)
 }
 
 /* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
- * within reach, once it has moved by the kernel's reach. It is sorted
- * as soon as its fastest particle has crossed the skin, more often than at the start. And it wets
- * more walls, in proportion to time, as if it wetted all from half of that time on: a quarter of
- * its way. Adds what a step takes longer then. Leaves the particles so. */
+ * within reach, once it has moved by the kernel's reach. It is sorted as soon as its fastest
+ * particle has crossed the skin, more often than at the start. And it wets more walls, in
+ * proportion to time, as if it wetted all from half of that time on: a quarter of its way. Adds
+ * what a step takes longer then. Leaves the particles so. */
 static void measure_flow(struct unit_costs *c, struct simulation *sim)
 {
     const struct particles *const fluid = &sim->kind[KIND_FLUID];
@@ -226,9 +226,10 @@ static void measure_flow(struct unit_costs *c, struct simulation *sim)
     disorder(sim);
     const double begin = thread_clock(), fastest = sqrt(sim->extremes.speed2);
     if (sort_particles(sim, &ignored)) return;
-    const double sort = thread_clock() - begin,
-                 more = expected_speed(sim, fastest) * dt / sim->sorting.skin_left - sorts;
-    c->fluid += sort * max2(0, more) / c->evaluations / n_fluid;
+    const double sort = thread_clock() - begin, skin = sim->sorting.skin_left,
+                 way_of_step = expected_speed(sim, fastest) * dt,
+                 rate = way_of_step < skin ? way_of_step / skin : 1;
+    c->fluid += sort * max2(0, rate - sorts) / c->evaluations / n_fluid;
     const double disordered = evaluation_seconds(sim);
     const double part = part_after(sim, moved, KERNEL_REACH * sim->fluid.k.h);
     c->fluid += part * max2(0, disordered - ordered) / n_fluid;

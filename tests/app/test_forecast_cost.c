@@ -159,6 +159,21 @@ static void test_sorts_of_the_flow_count(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.1 * sorts, sorts, c.fluid * f.evaluations * 800 / 10);
 }
 
+/* Without a skin each step sorts, and no step more than once. */
+static void test_sorts_without_a_skin(void)
+{
+    struct unit_costs c;
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.4, 0.2\nsurface = 0.2\nmax_speed = 10\n"
+             "[wall tank]\nshape = polyline: 0, 0.3; 0, 0; 0.4, 0; 0.4, 0.3\n",
+             "numerics.skin=0", NULL);
+    clock_step = 1e-3;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, forecast_measure(&c, &rig.sim, &rig.diag));
+    clock_step = 0;
+    TEST_ASSERT_TRUE(isfinite(c.fluid));
+}
+
 /* A column of water of a quarter of the tank's breadth is measured as it will lie on its bed, too:
  * a quarter as deep, with its particles scattered by half a spacing. */
 static void test_water_is_measured_where_it_will_be(void)
@@ -191,6 +206,7 @@ int main(void)
     RUN_TEST(test_all_steps_are_measured);
     RUN_TEST(test_work_of_some_steps_counts);
     RUN_TEST(test_sorts_of_the_flow_count);
+    RUN_TEST(test_sorts_without_a_skin);
     RUN_TEST(test_water_is_measured_where_it_will_be);
     return UNITY_END();
 }
