@@ -272,7 +272,7 @@ void beams_begin_joints(struct beams *beams, double time, double dt)
     }
 }
 
-/* T-107b: what a body lacks, and how it yields, with the part of its forces that turn with it. */
+/* T-107b: what a body lacks, and how it yields, with the part of its moment that turns with it. */
 static void find_body(struct beams *beams, int b)
 {
     const struct beam_joints *const joints = beams->joints;

@@ -27,9 +27,8 @@ struct thin_line {
     } * piece; /* its parts between its extensions, which may have no length */
     double length;
     struct box2 box;
-    bool bends; /* of a beam */
-    double
-        carried[4]; /* velocity and acceleration that it has along it for the pressure (T-111a) */
+    bool bends;        /* of a beam */
+    double carried[4]; /* velocity and acceleration of the beam's carrier (T-111a) */
 };
 
 struct lines {

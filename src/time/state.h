@@ -30,6 +30,7 @@ enum bound {
 #undef BOUND
     BOUND_COUNT
 };
+/* From time/bounds.def. */
 extern const struct bound_info {
     const char *name, *source;
     effect_set effect; /* that the bound belongs to; 0: none */

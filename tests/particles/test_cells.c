@@ -72,8 +72,8 @@ static bool adjacent(int32_t a, int32_t b)
            abs(cell_y(&cells, a) - cell_y(&cells, b)) <= 1;
 }
 
-/* Four particles or eight, whatever is nearer to 1.6 times the reach; but three cells where a
- * narrow domain has room for them: particles stray less. */
+/* Four particles or eight, whatever is nearer to 1.6 times the reach; but three cells where they
+ * fit a narrow domain: particles stray less. */
 static void test_cells_hold_squares_of_the_lattice(void)
 {
     scatter(false);
