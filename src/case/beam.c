@@ -65,20 +65,30 @@ static enum err check_values(struct reader *r, const struct scene_beam *beam)
     return ERR_OK;
 }
 
+bool case_may_hold(const struct scene *scene, const struct scene_section_common *held, int walls,
+                   const char *name, struct nearest *near)
+{
+    for (int k = 0; k < walls; k++) {
+        const char *const other = scene->wall[k].common.name;
+        if (strcmp(other, held->name) == 0) continue;
+        if (strcmp(other, name) == 0) return true;
+        nearest_offer(near, name, other);
+    }
+    return false;
+}
+
 static enum err check_supports(struct reader *r, const struct scene_beam *beam,
                                const struct hinge_list *list, const char *key)
 {
     for (int k = 0; k < list->n; k++) {
         const char *const other = list->item[k].other;
-        const int wall = *other ? scene_find(r->scene, SECTION_wall, other) : 0;
-        const bool joined = scene_find(r->scene, SECTION_beam, other) >= 0;
-        if (joined && strcmp(other, beam->common.name) != 0) continue;
-        if (*other && (wall < 0 || wall >= scene_beam_wall(r->scene, 0)))
-            return bad_line(
-                r, list->item[k].line,
-                "[beam %s] %s: %s is no [wall], [rigid] or other [beam], which may hold a "
-                "beam",
-                beam->common.name, key, other);
+        struct nearest near = {0};
+        if (!*other || case_may_hold(r->scene, &beam->common, r->scene->n_wall, other, &near))
+            continue;
+        return bad_line(r, list->item[k].line,
+                        "[beam %s] %s: %s is no [wall], [rigid] or other [beam], which may hold a "
+                        "beam%s",
+                        beam->common.name, key, other, nearest_hint(&near));
     }
     return ERR_OK;
 }
@@ -106,11 +116,20 @@ enum err case_draw_beam(struct reader *r, int k)
     return ERR_OK;
 }
 
+/* Whether a support has no other section that moves it. */
+static bool has_own(const struct hinge_list *list)
+{
+    for (int k = 0; k < list->n; k++)
+        if (!*list->item[k].other) return true;
+    return false;
+}
+
 enum err case_check_beam(struct reader *r, const void *section)
 {
     const struct scene_beam *const beam = section;
-    if (*beam->motion && beam->clamp.n + beam->hinge.n == 0)
-        return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves");
+    if (*beam->motion && !has_own(&beam->clamp) && !has_own(&beam->hinge))
+        return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves: one "
+                              "without NAME");
     if (r->scene->n_fluid && r->scene->numerics.sides == SIDES_ONE)
         return bad_section(r, "would gain energy in fluid with numerics.sides = one; use sides = "
                               "both: each side of a beam has dummies of its own");

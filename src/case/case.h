@@ -144,6 +144,10 @@ int case_given_count(const struct scene *scene, enum section_id id);
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
+/* Whether one of the first walls, `held` itself left out, has the name; if not, `near` has the
+ * nearest of theirs. */
+bool case_may_hold(const struct scene *scene, const struct scene_section_common *held, int walls,
+                   const char *name, struct nearest *near);
 /* The thin line of a beam's wall: its points are the beam's nodes (case/beam.c). */
 enum err case_draw_beam(struct reader *r, int beam) SPHFSI_CHECKED;
 enum err case_check_beam(struct reader *r, const void *section) SPHFSI_CHECKED;

@@ -53,8 +53,10 @@ static enum err check_names(struct reader *r, const struct param *param, const v
     const struct scene_probe *const probe = param->section == SECTION_probe ? section : NULL;
     const bool one = param->list && probe && probe->quantity != PROBE_FORCE;
     const struct hinge_list *const hinges = (const void *)text;
+    const bool solid_hinges = param->type == PARAM_HINGES && param->section == SECTION_solid;
     char name[SCENE_TEXT];
-    for (int k = 0; param->type == PARAM_HINGES && k < hinges->n; k++)
+    /* What may hold a rigid body or a beam is said where that section is checked. */
+    for (int k = 0; solid_hinges && k < hinges->n; k++)
         if (*hinges->item[k].other) TRY(check_name(r, param, hinges->item[k].other, param->also));
     if (param->type == PARAM_HINGES || !*text) return ERR_OK;
     if (!param->list || one)

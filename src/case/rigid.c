@@ -77,12 +77,12 @@ static enum err check_hinges(struct reader *r, const struct scene_rigid *rigid)
     for (int k = 0; k < rigid->hinge.n; k++) {
         const struct hinge_point *const hinge = &rigid->hinge.item[k];
         const int wall = scene_find(r->scene, SECTION_wall, hinge->other);
-        const bool bad =
-            wall < 0 || wall >= walls + r->scene->n_rigid || wall - walls == rigid->common.index;
-        if (*hinge->other && bad)
+        struct nearest near = {0};
+        if (*hinge->other && !case_may_hold(r->scene, &rigid->common, walls + r->scene->n_rigid,
+                                            hinge->other, &near))
             return bad_line(r, hinge->line,
-                            "[rigid %s] hinge: %s is no [wall] and no other [rigid]",
-                            rigid->common.name, hinge->other);
+                            "[rigid %s] hinge: %s is no [wall] and no other [rigid]%s",
+                            rigid->common.name, hinge->other, nearest_hint(&near));
         fixed += wall < walls || !*hinge->other;
         if (fixed > 1)
             return bad_line(r, hinge->line,

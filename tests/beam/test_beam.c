@@ -237,6 +237,13 @@ static void test_bad_input_is_refused(void)
     rig_refuses(HALVES "clamp = 0.53, 0, a\n", "give both lines a point there");
     rig_refuses(BEAM("hinge = 0.5, 0.2\n"), "hinge = 0.5, 0.2 is 0.2 m from the beam");
     rig_refuses(BEAM("motion = m\n[motion m]\n"), "neither `clamp` nor `hinge`");
+    rig_refuses(BEAM("clamp = 0, 0, w\nmotion = m\n[motion m]\n"
+                     "[wall w]\nshape = box -1, -1, 0, 1\n"),
+                "neither `clamp` nor `hinge` that it moves: one without NAME");
+    rig_refuses(
+        BEAM("clamp = 0, 0, flor\n[wall floor]\nshape = box -1, -1, 0, 1\n"),
+        "[beam b] clamp: flor is no [wall], [rigid] or other [beam], which may hold a beam; "
+        "did you mean `floor`?");
     rig_refuses(BEAM("[load f]\nbody = b\nforce = 0, 1\nshape = box 2, 2, 3, 3\n"),
                 "contains no node of [beam b]");
     rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = box 0, 0, 1, 1\nmass = 1\n"

@@ -244,6 +244,8 @@ static void test_bad_input_is_refused(void)
 {
 #define BOX "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n"
     rig_refuses(FREE BOX "hinge = 0, 0, a\n", "is no [wall] and no other [rigid]");
+    rig_refuses(FREE BOX "hinge = 0, 0, waal\n[wall wall]\nshape = box -2, -2, -1, -1\n",
+                "waal is no [wall] and no other [rigid]; did you mean `wall`?");
     rig_refuses(FREE BOX "hinge_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `hinge`");
     rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\nhinge_friction = 1\n"
                          "[motion m]\nkind = rotation\nangle = 1\n",
