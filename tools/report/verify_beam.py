@@ -324,7 +324,8 @@ def bar(name, density, *more):
                    "velocity = 0, start*(cosh(k*(x - 0.25)) - cos(k*(x - 0.25)) - 1.0185*"
                    "(sinh(k*(x - 0.25)) - sin(k*(x - 0.25))))\n",
                    "minus = box 0.2, 0.19", "kick =", "k =").replace(
-                       "[constants]", "[constants]\nstart = 0\nk = 4.6941/0.35", 1)
+                       "[constants]", "[constants]\nstart = 0\nk = 4.6941/0.35", 1).replace(
+                           "sides = one", "sides = both", 1)
 
     def measure(runs):
         times, series = columns(runs[0].folder)
