@@ -166,6 +166,8 @@ void contact_forces(struct contact *contact, struct particles *particles, double
             contact_add_force(contact, particles, b, pair->force[2]);
         }
         if (contact->friction) contact_friction_forces(contact, particles);
+        /* The work of driven walls is booked as one number, too. */
+        contact->touched |= contact->power != 0;
     }
 }
 

@@ -101,7 +101,7 @@ struct contact {
     int stale;                       /* some point has moved by half of the margin */
     bool list_full;                  /* no memory for a longer list */
     double power;                    /* of walls that a [motion] moves, from contact_forces, W/m */
-    bool touched;                    /* two bodies have exchanged a force; the account resets it */
+    bool touched;                    /* bodies, or one and a driven wall; the account resets it */
     /* What the next step must respect, from contact_watch. */
     bool near;              /* some surfaces may touch */
     double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */

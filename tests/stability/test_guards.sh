@@ -81,5 +81,10 @@ sound_speed = 30
 $tank
 CASE
 
+# The work of a ram on the second of two bodies supplies that body, before the bodies touch.
+"$sphfsi" tests/stability/pressed.cfg --set dp='2.5 mm' --until 0.038 --quiet \
+    --out "$dir/pressed" ||
+    fail "pressed: a ram's work counts as a gain"
+
 [ $failures = 0 ] && echo "all guards speak"
 exit $((failures != 0))
