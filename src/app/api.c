@@ -294,8 +294,7 @@ static enum err compute(struct sphfsi_simulation *handle, enum kind kind, const 
     struct simulation *const sim = &handle->session.simulation;
     double **const to = &handle->computed[kind][what];
     const size_t capacity = (size_t)sim->kind[kind].capacity * (size_t)width;
-    if (!*to) *to = arena_alloc(&sim->arena, capacity, sizeof **to, name, d);
-    if (!*to) return ERR_MEMORY;
+    if (!*to) TRY(arena_array(&sim->arena, to, capacity, name, d));
     simulation_refresh(sim);
     for (int64_t i = 0; i < sim->kind[kind].n; i++)
         for (int c = 0; c < width; c++)
@@ -442,10 +441,8 @@ static enum err set_motion(struct sphfsi_simulation *handle, const char *name,
                          nearest_hint(&near));
     const size_t n = (size_t)scene->n_motion;
     struct motion_hook **const hook = &scene->motion_hook;
-    if (!handle->motion)
-        handle->motion = arena_alloc(&scene->arena, n, sizeof *handle->motion, "motions", d);
-    if (!*hook) *hook = arena_alloc(&scene->arena, n, sizeof **hook, "motions", d);
-    if (!handle->motion || !*hook) return ERR_MEMORY;
+    if (!handle->motion) TRY(arena_array(&scene->arena, &handle->motion, n, "motions", d));
+    if (!*hook) TRY(arena_array(&scene->arena, hook, n, "motions", d));
     handle->motion[at] = (struct user_function){.of = handle, .motion = motion, .context = context};
     (*hook)[at] = (struct motion_hook){motion ? apply_user_motion : NULL, &handle->motion[at]};
     struct simulation *const sim = &handle->session.simulation;

@@ -98,13 +98,24 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
     return array;
 }
 
-void *arena_grow(struct arena *a, void *items, size_t n, size_t size, const char *what,
-                 struct diag *d)
+enum err arena_place(struct arena *a, void *to, size_t count, size_t size, const char *what,
+                     struct diag *d)
 {
-    if (n & (n - 1)) return items;
-    void *const more = arena_alloc(a, 2 * n + 1, size, what, d);
-    if (more && n) memcpy(more, items, n * size);
-    return more;
+    void *const array = arena_alloc(a, count, size, what, d);
+    memcpy(to, &array, sizeof array);
+    return array ? ERR_OK : ERR_MEMORY;
+}
+
+enum err arena_grow(struct arena *a, void *to, size_t n, size_t size, const char *what,
+                    struct diag *d)
+{
+    void *items, *more;
+    memcpy(&items, to, sizeof items);
+    if (n & (n - 1)) return ERR_OK;
+    TRY(arena_place(a, &more, 2 * n + 1, size, what, d));
+    if (n) memcpy(more, items, n * size);
+    memcpy(to, &more, sizeof more);
+    return ERR_OK;
 }
 
 void arena_free(struct arena *a)

@@ -23,10 +23,16 @@ struct arena {
  * ARENA_MARGIN bytes. */
 void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
     SPHFSI_CHECKED;
-/* The memory of a list of n items with a place for one more: a larger copy if it is full, as it is
- * at powers of two. The list begins as NULL. */
-void *arena_grow(struct arena *a, void *items, size_t n, size_t size, const char *what,
-                 struct diag *d) SPHFSI_CHECKED;
+/* The same for the pointer that `to` points at. */
+enum err arena_place(struct arena *a, void *to, size_t count, size_t size, const char *what,
+                     struct diag *d) SPHFSI_CHECKED;
+/* Gives a list of n items, at which `to` points, a place for one more: a larger copy if it is full,
+ * as it is at powers of two. The list begins as NULL. */
+enum err arena_grow(struct arena *a, void *to, size_t n, size_t size, const char *what,
+                    struct diag *d) SPHFSI_CHECKED;
+/* Both for items of the type that *to points at. */
+#define arena_array(a, to, n, what, d) arena_place(a, to, (size_t)(n), sizeof **(to), what, d)
+#define arena_more(a, to, n, what, d) arena_grow(a, to, (size_t)(n), sizeof **(to), what, d)
 void arena_free(struct arena *a);
 
 /* For tests: makes the n-th allocation from now fail (0: the next); negative: none. */

@@ -8,9 +8,9 @@ static enum err create_table(struct point_grid *g, int64_t n, struct arena *a, s
     uint64_t size = 64;
     while (size < (uint64_t)n) size *= 2;
     g->mask = (uint32_t)(size - 1);
-    g->head = arena_alloc(a, size, sizeof *g->head, "grid of points", d);
-    g->next = arena_alloc(a, (size_t)n, sizeof *g->next, "grid of points", d);
-    return g->head && g->next ? ERR_OK : ERR_MEMORY;
+    TRY(arena_array(a, &g->head, size, "grid of points", d));
+    TRY(arena_array(a, &g->next, n, "grid of points", d));
+    return ERR_OK;
 }
 
 enum err point_grid_create(struct point_grid *g, double side, int64_t n, double *x, double *y,

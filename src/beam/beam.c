@@ -267,15 +267,12 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
 {
     const struct scene *const scene = beams->scene;
     const size_t n = (size_t)beams->n_nodes;
-    beams->node = arena_alloc(a, n, sizeof *beams->node, what, d);
-    beams->state = arena_alloc(a, n, sizeof *beams->state, what, d);
-    beams->step = arena_alloc(a, n, sizeof *beams->step, what, d);
-    beams->element = arena_alloc(a, (size_t)beams->n_elements, sizeof *beams->element, what, d);
-    beams->start = arena_alloc(a, (size_t)beams->n_elements, sizeof *beams->start, what, d);
-    beams->load = arena_alloc(a, n * (size_t)scene->n_load, sizeof *beams->load, what, d);
-    if (!beams->node || !beams->state || !beams->step || !beams->element || !beams->start ||
-        !beams->load)
-        return ERR_MEMORY;
+    TRY(arena_array(a, &beams->node, n, what, d));
+    TRY(arena_array(a, &beams->state, n, what, d));
+    TRY(arena_array(a, &beams->step, n, what, d));
+    TRY(arena_array(a, &beams->element, beams->n_elements, what, d));
+    TRY(arena_array(a, &beams->start, beams->n_elements, what, d));
+    TRY(arena_array(a, &beams->load, n * (size_t)scene->n_load, what, d));
     for (size_t k = 0; k < n; k++)
         beams->node[k].mover = beams->node[k].joined = beams->node[k].body = -1;
     place_nodes(beams);
@@ -294,8 +291,7 @@ enum err beams_create(struct beams *beams, struct arena *a, const struct scene *
                       struct diag *d)
 {
     *beams = (struct beams){.n = scene->n_beam, .scene = scene};
-    beams->beam = arena_alloc(a, (size_t)beams->n, sizeof *beams->beam, what, d);
-    if (!beams->beam) return ERR_MEMORY;
+    TRY(arena_array(a, &beams->beam, beams->n, what, d));
     for (int k = 0; k < beams->n; k++) beams->beam[k].given = &scene->beam[k];
     count_elements(beams);
     struct arena temp = {.limit = a->limit};

@@ -74,8 +74,7 @@ static enum err create_faces(struct beams *beams, struct arena *a, struct arena 
         most += outlines_ends(&o[w].add) + outlines_ends(&o[w].minus);
         for (int k = 0; k < scene->wall[w].shape.n; k++) most += scene->wall[w].shape.item[k].n;
     }
-    contact->face = arena_alloc(a, (size_t)most, sizeof *contact->face, "beams", d);
-    if (!contact->face) return ERR_MEMORY;
+    TRY(arena_array(a, &contact->face, most, "beams", d));
     for (int w = 0; w < contact->n_walls; w++) {
         add_outlines(contact, w, &o[w].add);
         add_outlines(contact, w, &o[w].minus);
@@ -105,17 +104,13 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
     contact->rows = beams->matrix.n;
     contact->most = (int)min2(BEAM_TOUCHES, 3.0 * beams->n_nodes);
     const size_t n = (size_t)contact->n_walls, most = (size_t)contact->most;
-    contact->begin = arena_alloc(a, n, sizeof *contact->begin, what, d);
-    contact->end = arena_alloc(a, n, sizeof *contact->end, what, d);
-    contact->layer = arena_alloc(a, (size_t)(beams->n * scene->n_wall), sizeof(double), what, d);
-    contact->touch = arena_alloc(a, most, sizeof *contact->touch, what, d);
-    contact->column = arena_alloc(a, most * (size_t)(contact->rows + ENVELOPE_ALIGN),
-                                  sizeof *contact->column, what, d);
-    contact->yields = arena_alloc(a, most * most, sizeof *contact->yields, what, d);
-    contact->open = arena_alloc(a, most, sizeof *contact->open, what, d);
-    if (!contact->begin || !contact->end || !contact->layer || !contact->touch ||
-        !contact->column || !contact->yields || !contact->open)
-        return ERR_MEMORY;
+    TRY(arena_array(a, &contact->begin, n, what, d));
+    TRY(arena_array(a, &contact->end, n, what, d));
+    TRY(arena_array(a, &contact->layer, beams->n * scene->n_wall, what, d));
+    TRY(arena_array(a, &contact->touch, most, what, d));
+    TRY(arena_array(a, &contact->column, most * (size_t)(contact->rows + ENVELOPE_ALIGN), what, d));
+    TRY(arena_array(a, &contact->yields, most * most, what, d));
+    TRY(arena_array(a, &contact->open, most, what, d));
     for (int k = 0; k < beams->n; k++)
         for (int w = 0; w < scene->n_wall; w++) {
             const struct scene_contact *const from =

@@ -78,16 +78,12 @@ enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *
     if (n == 0) return ERR_OK;
     struct beam_joints *const joints = arena_alloc(a, 1, sizeof *joints, what, d);
     if (!joints) return ERR_MEMORY;
-    joints->joint = arena_alloc(a, n, sizeof *joints->joint, what, d);
-    joints->body = arena_alloc(a, n, sizeof *joints->body, what, d);
-    joints->column = arena_alloc(a, n * (size_t)(beams->matrix.n + ENVELOPE_ALIGN),
-                                 sizeof *joints->column, what, d);
-    joints->yields = arena_alloc(a, n * n, sizeof *joints->yields, what, d);
-    joints->factors = arena_alloc(a, n * n, sizeof *joints->factors, what, d);
-    joints->open = arena_alloc(a, n, sizeof *joints->open, what, d);
-    if (!joints->joint || !joints->body || !joints->column || !joints->yields || !joints->factors ||
-        !joints->open)
-        return ERR_MEMORY;
+    TRY(arena_array(a, &joints->joint, n, what, d));
+    TRY(arena_array(a, &joints->body, n, what, d));
+    TRY(arena_array(a, &joints->column, n * (size_t)(beams->matrix.n + ENVELOPE_ALIGN), what, d));
+    TRY(arena_array(a, &joints->yields, n * n, what, d));
+    TRY(arena_array(a, &joints->factors, n * n, what, d));
+    TRY(arena_array(a, &joints->open, n, what, d));
     beams->joints = joints;
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)

@@ -33,10 +33,9 @@ enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *li
     beams->alternates = alternates;
     const size_t n = (size_t)beams->n_elements;
     beams->walls = walls;
-    beams->added = arena_alloc(a, n, sizeof *beams->added, what, d);
-    beams->line = arena_alloc(a, (size_t)beams->n, sizeof *beams->line, what, d);
-    beams->carries = arena_alloc(a, (size_t)beams->n_nodes, sizeof *beams->carries, what, d);
-    if (!beams->added || !beams->line || !beams->carries) return ERR_MEMORY;
+    TRY(arena_array(a, &beams->added, n, what, d));
+    TRY(arena_array(a, &beams->line, beams->n, what, d));
+    TRY(arena_array(a, &beams->carries, beams->n_nodes, what, d));
     for (int k = 0; k < lines->n; k++) {
         const int beam = lines->line[k].scene->wall - scene_beam_wall(beams->scene, 0);
         if (beam < 0) continue;

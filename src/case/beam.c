@@ -99,12 +99,13 @@ enum err case_draw_beam(struct reader *r, int k)
     const struct scene_beam *const beam = &scene->beam[k];
     struct scene_wall *const wall = &scene->wall[scene_beam_wall(scene, k)];
     const struct shape *const from = beam->shape.item;
-    struct shape *const to = arena_alloc(&scene->arena, 1, sizeof *to, "beams", r->diag);
+    struct shape *to;
     int n = 0;
     for (int s = 0; s + 1 < from->n; s++)
         n += scene_beam_parts(scene, beam, from->pt[s], from->pt[s + 1]);
-    double(*const pt)[2] = arena_alloc(&scene->arena, (size_t)n + 1, sizeof *pt, "beams", r->diag);
-    if (!to || !pt) return ERR_MEMORY;
+    double(*pt)[2];
+    TRY(arena_array(&scene->arena, &to, 1, "beams", r->diag));
+    TRY(arena_array(&scene->arena, &pt, n + 1, "beams", r->diag));
     *to = (struct shape){.kind = SHAPE_POLYLINE, .pt = pt, .thin = true, .line = from->line};
     for (int s = 0; s + 1 < from->n; s++) {
         const double *const a = from->pt[s], *const b = from->pt[s + 1];

@@ -38,9 +38,8 @@ static enum err collect_constant(struct reader *r)
 enum err case_collect_constants(struct reader *r)
 {
     const int before = r->n_problems;
-    r->constants = arena_alloc(&r->temp, CASE_MAX_CONSTANTS + (size_t)PARAM_COUNT,
-                               sizeof *r->constants, "constants", r->diag);
-    if (!r->constants) return ERR_MEMORY;
+    TRY(arena_array(&r->temp, &r->constants, CASE_MAX_CONSTANTS + (size_t)PARAM_COUNT, "constants",
+                    r->diag));
     for (int k = 0; k < r->n_entries; k++) {
         r->entry = &r->entries[k];
         if (r->sections[r->entry->section].id == SECTION_constants)
@@ -121,9 +120,7 @@ enum err case_bad_expression(struct reader *r, const char *why)
 enum err case_all_constants(struct reader *r)
 {
     struct scene *const scene = r->scene;
-    scene->constant = arena_alloc(&scene->arena, (size_t)r->n_constants, sizeof *scene->constant,
-                                  "constants", r->diag);
-    if (!scene->constant) return ERR_MEMORY;
+    TRY(arena_array(&scene->arena, &scene->constant, r->n_constants, "constants", r->diag));
     for (int k = 0; k < r->n_constants; k++) {
         struct constant *const c = &r->constants[k];
         char why[EXPR_WHY];

@@ -168,9 +168,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(allocate_sections(r));
     case_apply_presets(r);
     TRY(case_all_constants(r));
-    scene->given = arena_alloc(&scene->arena, (size_t)r->n_entries + 1, sizeof *scene->given,
-                               "case file", r->diag);
-    if (!scene->given) return ERR_MEMORY;
+    TRY(arena_array(&scene->arena, &scene->given, (size_t)r->n_entries + 1, "case file", r->diag));
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
     if (r->incomplete)
         return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */

@@ -35,11 +35,8 @@ static enum err check_own_name(struct reader *r, const struct scene_section_comm
 enum err case_place_bodies(struct reader *r)
 {
     struct scene *const scene = r->scene;
-    scene->rigid_motion = arena_alloc(&scene->arena, (size_t)scene->n_rigid,
-                                      sizeof *scene->rigid_motion, "rigid bodies", r->diag);
-    scene->rigid_mass = arena_alloc(&scene->arena, (size_t)scene->n_rigid,
-                                    sizeof *scene->rigid_mass, "rigid bodies", r->diag);
-    if (!scene->rigid_motion || !scene->rigid_mass) return ERR_MEMORY;
+    TRY(arena_array(&scene->arena, &scene->rigid_motion, scene->n_rigid, "rigid bodies", r->diag));
+    TRY(arena_array(&scene->arena, &scene->rigid_mass, scene->n_rigid, "rigid bodies", r->diag));
     if (scene->n_wall > SCENE_MAX_SECTIONS || scene->n_motion > SCENE_MAX_SECTIONS)
         return bad_line(r,
                         scene->n_rigid ? scene->rigid[0].common.line : scene->beam[0].common.line,

@@ -136,9 +136,7 @@ static enum err read_arc(struct reader *r, struct slice text, struct shape *shap
         return bad_value(
             r, "the radius must be above 0, and the angles differ by at most 360 degrees");
     shape->n = (int)parts + 1;
-    shape->pt =
-        arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
-    if (!shape->pt) return ERR_MEMORY;
+    TRY(arena_array(&r->scene->arena, &shape->pt, shape->n, "shape", r->diag));
     for (int k = 0; k < shape->n; k++) {
         const double angle = v[3] + turn * k / parts;
         shape->pt[k][0] = v[0] + v[2] * elementary_cos(angle);
@@ -170,9 +168,7 @@ static enum err read_shape(struct reader *r, struct slice text, bool arc, struct
     if (shape->n > CASE_MAX_POINTS)
         return bad_value(r, "more than %d points are given; use fewer points or several shapes",
                          CASE_MAX_POINTS);
-    shape->pt =
-        arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
-    if (!shape->pt) return ERR_MEMORY;
+    TRY(arena_array(&r->scene->arena, &shape->pt, shape->n, "shape", r->diag));
     if (shape->kind == SHAPE_BOX) return read_box(r, text, shape);
     if (shape->kind == SHAPE_CIRCLE) return read_circle(r, text, shape);
     TRY(read_points(r, text, shape));
@@ -196,9 +192,7 @@ enum err case_shape(struct reader *r, struct shape_list *list)
     struct shape shape = {.kind = kind == arc ? SHAPE_POLYLINE : (enum shape_kind)kind,
                           .line = r->entry->line};
     TRY(read_shape(r, slice_trimmed(slice_of(r->entry->value + length)), kind == arc, &shape));
-    list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof shape,
-                            "regions of a body", r->diag);
-    if (!list->item) return ERR_MEMORY;
+    TRY(arena_more(&r->scene->arena, &list->item, list->n, "regions of a body", r->diag));
     list->item[list->n++] = shape;
     return ERR_OK;
 }
@@ -217,9 +211,7 @@ enum err case_hinge(struct reader *r, struct hinge_list *list)
         rest = slice_trimmed(rest);
         snprintf(hinge.other, sizeof hinge.other, "%.*s", (int)rest.length, rest.at);
     }
-    list->item = arena_grow(&r->scene->arena, list->item, (size_t)list->n, sizeof hinge,
-                            "hinges of a body", r->diag);
-    if (!list->item) return ERR_MEMORY;
+    TRY(arena_more(&r->scene->arena, &list->item, list->n, "hinges of a body", r->diag));
     list->item[list->n++] = hinge;
     return ERR_OK;
 }

@@ -29,10 +29,8 @@ static enum err table_allocate(struct scene *scene, struct scene_table *table, i
                                struct diag *d)
 {
     double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
-    for (size_t k = 0; k < COUNT_OF(columns); k++) {
-        *columns[k] = arena_alloc(&scene->arena, (size_t)rows, sizeof(double), "table", d);
-        if (!*columns[k]) return ERR_MEMORY;
-    }
+    for (size_t k = 0; k < COUNT_OF(columns); k++)
+        TRY(arena_array(&scene->arena, columns[k], rows, "table", d));
     return ERR_OK;
 }
 
@@ -124,9 +122,7 @@ enum err case_load_tables(struct scene *scene, struct diag *d)
     static const struct table_kind gravity = {"a table of gravity",
                                               "time (s), gx (m/s^2), gy (m/s^2)", false},
                                    moved = {"a motion", "time (s), dx (m), dy (m)", true};
-    scene->motion_data = arena_alloc(&scene->arena, (size_t)scene->n_motion,
-                                     sizeof *scene->motion_data, "motions", d);
-    if (!scene->motion_data) return ERR_MEMORY;
+    TRY(arena_array(&scene->arena, &scene->motion_data, scene->n_motion, "motions", d));
     enum err bad = ERR_OK;
     if (*scene->top.gravity_file)
         bad = table_load(scene, &scene->gravity_data, &gravity, scene->top.gravity_file,

@@ -34,9 +34,8 @@ static enum err warn_of_missing_floor(struct check *check)
     }
     low -= 1.5 * dp; /* one strip more on each side */
     const int64_t n = (int64_t)((high - low) / dp) + 3;
-    double *const last =
-        arena_alloc(&check->shapes.temp, (size_t)n, sizeof *last, "check", check->diag);
-    if (!last) return ERR_MEMORY;
+    double *last;
+    TRY(arena_array(&check->shapes.temp, &last, n, "check", check->diag));
     for (int64_t k = 0; k < n; k++) last[k] = -HUGE_VAL;
     long long falling = 0, all = 0;
     int64_t first = -1;

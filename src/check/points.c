@@ -43,26 +43,19 @@ struct body body_at(const struct scene *scene, int k)
                          solid ? k : k - scene->n_solid};
 }
 
-#define ALLOCATE(field)                                                                          \
-    do {                                                                                         \
-        p->field =                                                                               \
-            arena_alloc(&check->shapes.temp, (size_t)n, sizeof *p->field, "check", check->diag); \
-        if (!p->field) return ERR_MEMORY;                                                        \
-    } while (0)
-
 enum err list_points(struct check *check)
 {
     const struct scene *const scene = check->scene;
     struct points *const p = &check->points;
+    struct arena *const temp = &check->shapes.temp;
     int64_t n = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += scene->points[kind].n;
-    ALLOCATE(x);
-    ALLOCATE(y);
-    ALLOCATE(section);
-    ALLOCATE(kind);
-    ALLOCATE(bit);
-    TRY(point_grid_create(&p->grid, 2.1 * scene->top.dp, n, p->x, p->y, &check->shapes.temp,
-                          check->diag));
+    TRY(arena_array(temp, &p->x, n, "check", check->diag));
+    TRY(arena_array(temp, &p->y, n, "check", check->diag));
+    TRY(arena_array(temp, &p->section, n, "check", check->diag));
+    TRY(arena_array(temp, &p->kind, n, "check", check->diag));
+    TRY(arena_array(temp, &p->bit, n, "check", check->diag));
+    TRY(point_grid_create(&p->grid, 2.1 * scene->top.dp, n, p->x, p->y, temp, check->diag));
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int64_t k = 0; k < scene->points[kind].n; k++) {
             const struct scene_points *const from = &scene->points[kind];

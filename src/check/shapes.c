@@ -432,8 +432,7 @@ static enum err warn_of_gaps(struct check *check)
 {
     struct gaps g = {.check = check, .n = check->scene->n_solid + check->scene->n_wall};
     const size_t n = (size_t)g.n;
-    g.warned = arena_alloc(&check->shapes.temp, 2 * n * n, sizeof *g.warned, "gaps", check->diag);
-    if (!g.warned) return ERR_MEMORY;
+    TRY(arena_array(&check->shapes.temp, &g.warned, 2 * n * n, "gaps", check->diag));
     for (int r = g.n - 1; r >= 0; r--) {
         const struct region *const region = &check->shapes.regions[r];
         for (int k = region->add.n - 1; k >= 0; k--)

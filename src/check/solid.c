@@ -46,9 +46,8 @@ static enum err warn_of_loose_bodies(struct check *check)
 {
     const struct scene *const scene = check->scene;
     const effect_set effects = effects_of_scene(scene);
-    char *const support = arena_alloc(&check->shapes.temp, (size_t)scene->n_solid, sizeof *support,
-                                      "check", check->diag);
-    if (!support) return ERR_MEMORY;
+    char *support;
+    TRY(arena_array(&check->shapes.temp, &support, scene->n_solid, "check", check->diag));
     for (int k = 0; k < scene->n_solid; k++)
         support[k] = scene->solid[k].clamp.n || hinge_to(scene, k, -1) ? HELD : LOOSE;
     for (int round = 0; round < scene->n_solid; round++)

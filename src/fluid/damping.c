@@ -9,11 +9,10 @@ enum err damping_create(struct damping *damping, struct arena *a, const struct s
                         int64_t particles, struct diag *d)
 {
     damping->n = scene->n_damping;
-    damping->taken = arena_alloc(a, (size_t)damping->n, sizeof *damping->taken, "damping", d);
-    damping->power = arena_alloc(a, (size_t)damping->n, sizeof *damping->power, "damping", d);
-    damping->block =
-        arena_alloc(a, (size_t)(particles / BLOCK + 1), sizeof *damping->block, "damping", d);
-    return damping->taken && damping->power && damping->block ? ERR_OK : ERR_MEMORY;
+    TRY(arena_array(a, &damping->taken, damping->n, "damping", d));
+    TRY(arena_array(a, &damping->power, damping->n, "damping", d));
+    TRY(arena_array(a, &damping->block, particles / BLOCK + 1, "damping", d));
+    return ERR_OK;
 }
 
 /* T-101: the rate at a place, 1/s. */

@@ -56,10 +56,9 @@ static enum err describe_bodies(struct fluid *fluid, struct arena *a, const stru
 {
     const bool wall = kind == KIND_WALL;
     const size_t n = (size_t)(wall ? scene->n_wall : scene->n_solid);
-    fluid->volume[kind] = arena_alloc(a, n, sizeof *fluid->volume[kind], "volumes", d);
-    fluid->near2[kind] = arena_alloc(a, n, sizeof *fluid->near2[kind], "distances", d);
-    fluid->moves[kind] = arena_alloc(a, n, sizeof *fluid->moves[kind], "motions", d);
-    if (!fluid->volume[kind] || !fluid->near2[kind] || !fluid->moves[kind]) return ERR_MEMORY;
+    TRY(arena_array(a, &fluid->volume[kind], n, "volumes", d));
+    TRY(arena_array(a, &fluid->near2[kind], n, "distances", d));
+    TRY(arena_array(a, &fluid->moves[kind], n, "motions", d));
     for (int k = 0; k < (int)n; k++) {
         fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
         const double spacing = 0.5 * (1 + sqrt(fluid->volume[kind][k])) * fluid->k.dp;
@@ -67,8 +66,7 @@ static enum err describe_bodies(struct fluid *fluid, struct arena *a, const stru
         fluid->moves[kind][k] = !wall || scene->wall[k].motion[0] || k >= scene_beam_wall(scene, 0);
     }
     if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
-    fluid->sticks[kind] = arena_alloc(a, n, sizeof *fluid->sticks[kind], "walls", d);
-    if (!fluid->sticks[kind]) return ERR_MEMORY;
+    TRY(arena_array(a, &fluid->sticks[kind], n, "walls", d));
     for (int k = 0; k < (int)n; k++)
         fluid->sticks[kind][k] = (wall ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
     return ERR_OK;
@@ -83,19 +81,15 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
     const size_t size = places * (size_t)pair_sums(fluid->effects) * CLUSTER * CLUSTER *
                         fluid->sweeps->packed_item_size;
     fluid->thread_bytes = size + sizeof *fluid->neighbour_scratch;
-    fluid->neighbour_scratch =
-        arena_alloc(a, (size_t)fluid->threads, sizeof *fluid->neighbour_scratch,
-                    "neighbour clusters", d);
-    unsigned char *const deferred =
-        arena_alloc(a, (size_t)fluid->threads, size, "sums over pairs", d);
-    if (!fluid->neighbour_scratch || !deferred) return ERR_MEMORY;
+    TRY(arena_array(a, &fluid->neighbour_scratch, fluid->threads, "neighbour clusters", d));
+    unsigned char *deferred;
+    TRY(arena_place(a, &deferred, (size_t)fluid->threads, size, "sums over pairs", d));
     for (int t = 0; t < fluid->threads; t++)
         fluid->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
     for (int t = 0; t < fluid->threads && fluid->effects & FX_THIN; t++) {
-        fluid->neighbour_scratch[t].pieces =
-            arena_alloc(a, (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), 5 * sizeof(double),
-                        "thin walls", d);
-        if (!fluid->neighbour_scratch[t].pieces) return ERR_MEMORY;
+        TRY(arena_place(a, &fluid->neighbour_scratch[t].pieces,
+                        (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), 5 * sizeof(double),
+                        "thin walls", d));
     }
     return ERR_OK;
 }
@@ -120,20 +114,16 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
     for (int k = 0; k < KIND_COUNT; k++) fluid->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(fluid, a, cells_clusters(cells, kinds[KIND_FLUID].capacity), d));
     const int64_t n_cells = (int64_t)cells->nx * cells->ny, n_fluid = kinds[KIND_FLUID].capacity;
-    fluid->around = arena_alloc(a, (size_t)(n_cells < n_fluid ? n_cells : n_fluid),
-                                sizeof *fluid->around, "cells around those of fluid", d);
-    if (!fluid->around) return ERR_MEMORY;
+    TRY(arena_array(a, &fluid->around, n_cells < n_fluid ? n_cells : n_fluid,
+                    "cells around those of fluid", d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(packed_create(&fluid->packed[k], a, cells_clusters(cells, kinds[k].capacity),
                           fluid->sweeps->packed_item_size, d));
         if (k == KIND_FLUID) continue;
-        fluid->near_dummies[k] =
-            arena_alloc(a, (size_t)cells->nx * (size_t)cells->ny, sizeof *fluid->near_dummies[k],
-                        "cells near walls and structures", d);
-        fluid->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity,
-                                           sizeof *fluid->near_fluid[k], "cells near fluid", d);
-        if (!fluid->near_dummies[k] || !fluid->near_fluid[k]) return ERR_MEMORY;
+        TRY(arena_array(a, &fluid->near_dummies[k], (size_t)cells->nx * (size_t)cells->ny,
+                        "cells near walls and structures", d));
+        TRY(arena_array(a, &fluid->near_fluid[k], kinds[k].capacity, "cells near fluid", d));
         TRY(describe_bodies(fluid, a, scene, (enum kind)k, d));
     }
     return ERR_OK;

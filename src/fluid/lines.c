@@ -167,9 +167,8 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
 {
     static const char what[] = "thin walls";
     lines->n = scene->n_line;
-    lines->line = arena_alloc(a, (size_t)lines->n, sizeof *lines->line, what, d);
-    lines->of_wall = arena_alloc(a, (size_t)walls->n, sizeof *lines->of_wall, what, d);
-    if (!lines->line || !lines->of_wall) return ERR_MEMORY;
+    TRY(arena_array(a, &lines->line, lines->n, what, d));
+    TRY(arena_array(a, &lines->of_wall, walls->n, what, d));
     for (int k = 0; k < lines->n; k++) {
         struct thin_line *const line = &lines->line[k];
         line->scene = &scene->line[k];
@@ -177,9 +176,8 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
         line->first = line->scene->first;
         for (int64_t j = 0; j < line->scene->n_dummies; j++)
             lines->of_wall[line->first + j] = k + 1;
-        line->end = arena_alloc(a, 2 * (size_t)parts, sizeof *line->end, what, d);
-        line->piece = arena_alloc(a, (size_t)parts + 2, sizeof *line->piece, what, d);
-        if (!line->end || !line->piece) return ERR_MEMORY;
+        TRY(arena_array(a, &line->end, 2 * (size_t)parts, what, d));
+        TRY(arena_array(a, &line->piece, (size_t)parts + 2, what, d));
         lines->n_pieces += parts + 2;
         start_ends(line);
         line_place(line, walls);

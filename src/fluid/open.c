@@ -34,15 +34,13 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *scene,
     o->next_id = next_id;
     o->capacity = 4 * members + 64;
     const size_t capacity = (size_t)o->capacity;
-    o->boundary = arena_alloc(a, n, sizeof *o->boundary, what, d);
-    o->at = arena_alloc(a, n, sizeof *o->at, what, d);
-    o->sum = arena_alloc(a, n, sizeof *o->sum, what, d);
-    o->count = arena_alloc(a, n, sizeof *o->count, what, d);
-    o->rate = arena_alloc(a, n, sizeof *o->rate, what, d);
-    o->member = arena_alloc(a, capacity, sizeof *o->member, what, d);
-    o->flow = arena_alloc(a, capacity, sizeof *o->flow, what, d);
-    if (!o->flow || !o->boundary || !o->at || !o->sum || !o->count || !o->rate || !o->member)
-        return ERR_MEMORY;
+    TRY(arena_array(a, &o->boundary, n, what, d));
+    TRY(arena_array(a, &o->at, n, what, d));
+    TRY(arena_array(a, &o->sum, n, what, d));
+    TRY(arena_array(a, &o->count, n, what, d));
+    TRY(arena_array(a, &o->rate, n, what, d));
+    TRY(arena_array(a, &o->member, capacity, what, d));
+    TRY(arena_array(a, &o->flow, capacity, what, d));
     for (int k = 0; k < o->n; k++) {
         o->boundary[k] = scene_open_at(scene, k);
         TRY(open_copy(o, k, a, d));

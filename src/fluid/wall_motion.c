@@ -10,8 +10,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
                             const struct particles *walls, struct diag *d)
 {
     m->never_skip = scene->test.never_skip;
-    m->body = arena_alloc(a, (size_t)scene->n_wall, sizeof *m->body, "moving walls", d);
-    if (!m->body) return ERR_MEMORY;
+    TRY(arena_array(a, &m->body, scene->n_wall, "moving walls", d));
     for (int k = 0; k < scene->n_wall; k++) {
         const int motion = scene->wall[k].motion[0]
                                ? scene_find(scene, SECTION_motion, scene->wall[k].motion)

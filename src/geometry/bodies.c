@@ -31,9 +31,8 @@ static enum err find_area(struct sampler *sampler, const struct region *region)
     const struct outlines *const minus = &region->minus, *const clamps = &region->clamps;
     const bool part = region->n_clamped > region->n_hinged && region->n_clamped < region->n;
     const int64_t n = region->n - (part ? region->n_clamped - region->n_hinged : 0);
-    struct outlines cut = {
-        .item = geometry_alloc(sampler, (size_t)(minus->n + clamps->n), sizeof *cut.item)};
-    if (!cut.item) return ERR_MEMORY;
+    struct outlines cut = {0};
+    TRY(geometry_array(sampler, &cut.item, minus->n + clamps->n));
     for (int k = 0; k < minus->n; k++) cut.item[cut.n++] = minus->item[k];
     for (int k = 0; part && k < clamps->n; k++)
         if (!geometry_is_hinge(&list->item[clamps->shape[k]], l->dp))
@@ -109,8 +108,8 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
     struct outlines *const o = &region->clamps;
     TRY(outlines_of(o, sampler->scene, clamps, &sampler->temp, sampler->diag));
     TRY(outlines_turn(o, region->lattice.angle, &sampler->temp, sampler->diag));
-    int64_t *held = geometry_alloc(sampler, (size_t)clamps->n, sizeof *held);
-    if (!held) return ERR_MEMORY;
+    int64_t *held;
+    TRY(geometry_array(sampler, &held, clamps->n));
     for (int64_t k = from; k < samples->n; k++) {
         double at[2];
         geometry_place(region, samples->x[k], samples->y[k], at);

@@ -196,10 +196,10 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
     const int lines = wanted < 1 ? 1 : wanted > MAX_SCAN_LINES ? MAX_SCAN_LINES : (int)wanted;
     const double step = (high - low) / lines;
-    double *const buffer = geometry_alloc(sampler, 3 * (size_t)capacity, sizeof *buffer);
-    struct crossing *const two_lines =
-        geometry_alloc(sampler, 4 * (size_t)capacity, sizeof *two_lines);
-    if (!buffer || !two_lines) return ERR_MEMORY;
+    double *buffer;
+    struct crossing *two_lines;
+    TRY(geometry_array(sampler, &buffer, 3 * capacity));
+    TRY(geometry_array(sampler, &two_lines, 4 * capacity));
     int before = 0;
     for (int k = 0; k < lines; k++) {
         struct crossing *const line = two_lines + (k % 2 ? 2 * capacity : 0),
@@ -208,9 +208,7 @@ static enum err region_crossings(struct sampler *sampler, const struct region *r
                                     dp, buffer, capacity, line);
         for (int j = 0; j < found; j++) {
             if (!continues_edge(last, before, &line[j], dp)) continue;
-            to->item = arena_grow(&sampler->temp, to->item, (size_t)to->n, sizeof *to->item,
-                                  "sampling", sampler->diag);
-            if (!to->item) return ERR_MEMORY;
+            TRY(arena_more(&sampler->temp, &to->item, to->n, "sampling", sampler->diag));
             to->item[to->n++] = (struct crossing){line[j].at, step, line[j].clamp};
         }
         before = found;
@@ -346,8 +344,8 @@ static enum err group_direction(struct sampler *sampler, struct lattice_group *g
     for (int k = 0; k < group->n; k++)
         for (int j = 0; j < group->region[k]->list->n; j++)
             most += (size_t)group->region[k]->list->item[j].n;
-    struct direction *all = geometry_alloc(sampler, most, sizeof *all);
-    if (!all) return ERR_MEMORY;
+    struct direction *all;
+    TRY(geometry_array(sampler, &all, most));
     int n = 0;
     for (int k = 0; k < group->n; k++) n += add_directions(group->region[k]->list, all + n);
     group->angle = main_direction(all, n);
@@ -410,12 +408,11 @@ static enum err solid_lattice(struct sampler *sampler, const int *bond, int numb
 enum err geometry_choose_lattices(struct sampler *sampler)
 {
     struct scene *scene = sampler->scene;
-    const size_t n = (size_t)scene->n_solid;
-    struct region **list = geometry_alloc(sampler, (size_t)sampler->n_regions, sizeof *list);
+    struct region **list;
+    struct scene_lattice *to;
     int bond[SCENE_MAX_SECTIONS];
-    struct scene_lattice *const to =
-        arena_alloc(&scene->arena, n, sizeof *scene->solid_lattice, "lattice", sampler->diag);
-    if (!list || !to) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &list, sampler->n_regions));
+    TRY(arena_array(&scene->arena, &to, scene->n_solid, "lattice", sampler->diag));
     scene_bonds(scene, bond);
     TRY(common_lattice(sampler, list));
     for (int k = 0; k < scene->n_solid; k++) TRY(solid_lattice(sampler, bond, k, list));

@@ -53,8 +53,7 @@ static bool along_lattice(const struct shape *shape, const struct region *region
 
 enum err geometry_choose_layered(struct sampler *sampler, struct region *region)
 {
-    region->layered = geometry_alloc(sampler, (size_t)region->add.n, sizeof *region->layered);
-    if (!region->layered) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &region->layered, region->add.n));
     if (region->kind != KIND_WALL) return ERR_OK;
     const struct shape_list *const minus = &sampler->scene->wall[region->body].minus;
     bool all = false;
@@ -84,8 +83,7 @@ static enum err loop_of_circle(const struct outline *o, double dp, struct loop *
 {
     const double wanted = 2 * PI * o->radius / dp * EDGE_PARTS;
     to->n = wanted < 32 ? 32 : wanted > 1e6 ? 1000000 : (int)wanted;
-    to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
-    if (!to->pt) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &to->pt, to->n));
     for (int k = 0; k < to->n; k++) {
         to->pt[k][0] = o->centre[0] + o->radius * elementary_cos(2 * PI * k / to->n);
         to->pt[k][1] = o->centre[1] + o->radius * elementary_sin(2 * PI * k / to->n);
@@ -104,8 +102,7 @@ static enum err make_loop(const struct outlines *o, int first, int end, bool pol
     if (!polyline) return ERR_OK;
     to->n = end - first + 1;
     to->open = true;
-    to->pt = geometry_alloc(sampler, (size_t)to->n, sizeof *to->pt);
-    if (!to->pt) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &to->pt, to->n));
     for (int k = 0; k < to->n; k++)
         memcpy(to->pt[k], k < to->n - 1 ? piece[k].pt[0] : piece[k - 1].pt[1], sizeof *to->pt);
     return ERR_OK;
@@ -189,8 +186,7 @@ static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
     if (point_grid_any(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
         geometry_piece_at(l->region, at[0], at[1]) < 0 || on_the_lattice(l, at[0], at[1]))
         return ERR_OK;
-    t->pt = arena_grow(&l->g->temp, t->pt, (size_t)t->n, sizeof *t->pt, "walls", l->g->diag);
-    if (!t->pt) return ERR_MEMORY;
+    TRY(arena_more(&l->g->temp, &t->pt, t->n, "walls", l->g->diag));
     memcpy(t->pt[t->n++], at, 2 * sizeof *at);
     return ERR_OK;
 }
@@ -321,8 +317,7 @@ static enum err find_faces(struct layers *l, struct sampler *sampler, const stru
 {
     const double dp = region->lattice.dp;
     *l = (struct layers){.g = sampler, .region = region, .dp = dp, .points = {.side = dp}};
-    l->set = geometry_alloc(sampler, (size_t)region->add.n + 1, sizeof *l->set);
-    if (!l->set) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &l->set, (size_t)region->add.n + 1));
     l->set[l->n_sets++] =
         (struct face_set){.spacing = dp, .depth = dp * (1 + ceil(2 * sampler->scene->h / dp))};
     for (int k = 0, end; k < region->add.n; k = end) {

@@ -111,9 +111,9 @@ static bool mitre(const struct scene *scene, const struct shape *p, int k, doubl
 static enum err cut_polyline(const struct scene *scene, const struct shape *p,
                              struct outline *pieces, struct arena *a, struct diag *d)
 {
-    double(*far)[2] = arena_alloc(a, (size_t)p->n, sizeof *far, "polyline", d);
-    double(*corners)[2] = arena_alloc(a, 4 * (size_t)p->n, sizeof *corners, "polyline", d);
-    if (!far || !corners) return ERR_MEMORY;
+    double(*far)[2], (*corners)[2];
+    TRY(arena_array(a, &far, p->n, "polyline", d));
+    TRY(arena_array(a, &corners, 4 * p->n, "polyline", d));
     TRY(check_ends(scene, p, d));
     for (int k = 0; k < p->n; k++)
         if (!mitre(scene, p, k, far[k]))
@@ -161,8 +161,7 @@ static enum err cut_shape(const struct scene *scene, const struct shape *shape,
                                   {high[0], high[1]},
                                   {low[0], high[1]}};
     piece->n = 4;
-    piece->pt = arena_alloc(a, 4, sizeof *piece->pt, "box", d);
-    if (!piece->pt) return ERR_MEMORY;
+    TRY(arena_array(a, &piece->pt, 4, "box", d));
     memcpy(piece->pt, corners, sizeof corners);
     return ERR_OK;
 }
@@ -175,9 +174,8 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
         most += list->item[k].kind == SHAPE_POLYLINE ? (size_t)list->item[k].n : 1;
     o->n = 0;
     o->box = box2_empty();
-    o->item = arena_alloc(a, most, sizeof *o->item, "shapes", d);
-    o->shape = arena_alloc(a, most, sizeof *o->shape, "shapes", d);
-    if (!o->item || !o->shape) return ERR_MEMORY;
+    TRY(arena_array(a, &o->item, most, "shapes", d));
+    TRY(arena_array(a, &o->shape, most, "shapes", d));
     for (int k = 0; k < list->n; k++) {
         const struct shape *shape = &list->item[k];
         const int pieces = shape->kind == SHAPE_POLYLINE ? shape->n - 1 : 1;
@@ -258,8 +256,8 @@ enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct
     if (angle == 0) return ERR_OK;
     const double c = fabs(elementary_cos(angle)) < 1e-15 ? 0 : elementary_cos(angle),
                  s = elementary_sin(angle);
-    struct outline *const item = arena_alloc(a, (size_t)o->n, sizeof *item, "shapes", d);
-    if (!item) return ERR_MEMORY;
+    struct outline *item;
+    TRY(arena_array(a, &item, o->n, "shapes", d));
     o->box = box2_empty();
     for (int k = 0; k < o->n; k++) {
         const struct outline *const from = &o->item[k];
@@ -267,8 +265,7 @@ enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct
         *to = *from;
         to->centre[0] = c * from->centre[0] + s * from->centre[1];
         to->centre[1] = c * from->centre[1] - s * from->centre[0];
-        to->pt = arena_alloc(a, (size_t)from->n, sizeof *to->pt, "shapes", d);
-        if (!to->pt) return ERR_MEMORY;
+        TRY(arena_array(a, &to->pt, from->n, "shapes", d));
         for (int j = 0; j < from->n; j++) {
             to->pt[j][0] = c * from->pt[j][0] + s * from->pt[j][1];
             to->pt[j][1] = c * from->pt[j][1] - s * from->pt[j][0];
@@ -369,9 +366,9 @@ enum err outlines_moments(const struct outlines *add, const struct outlines *min
                           struct moments *of, struct arena *a, struct diag *d)
 {
     const size_t capacity = (size_t)(outlines_ends(add) + outlines_ends(minus)) + 4;
-    double *const height = arena_alloc(a, capacity, sizeof *height, "area of shapes", d);
-    double *const line = arena_alloc(a, 2 * capacity, sizeof *line, "area of shapes", d);
-    if (!height || !line) return ERR_MEMORY;
+    double *height, *line;
+    TRY(arena_array(a, &height, capacity, "area of shapes", d));
+    TRY(arena_array(a, &line, 2 * capacity, "area of shapes", d));
     int n = add_heights(add, height);
     n += add_heights(minus, height + n);
     enum { MOST = 1 << 16 }; /* parts in which Gauss' rule is exact to round-off */

@@ -126,16 +126,13 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
 {
     static const char what[] = "particles";
     struct arena *const a = &sampler->scene->arena;
-    const size_t count = (size_t)n;
-    const bool clamps = kind == KIND_SOLID;
     *to = (struct scene_points){0};
-    to->x = arena_alloc(a, count, sizeof *to->x, what, sampler->diag);
-    to->y = arena_alloc(a, count, sizeof *to->y, what, sampler->diag);
-    to->body = arena_alloc(a, count, sizeof *to->body, what, sampler->diag);
-    if (clamps) to->clamped = arena_alloc(a, count, sizeof *to->clamped, what, sampler->diag);
-    if (open) to->open = arena_alloc(a, count, sizeof *to->open, what, sampler->diag);
-    const bool all = to->x && to->y && to->body && !to->clamped == !clamps && !to->open == !open;
-    return all ? ERR_OK : ERR_MEMORY;
+    TRY(arena_array(a, &to->x, n, what, sampler->diag));
+    TRY(arena_array(a, &to->y, n, what, sampler->diag));
+    TRY(arena_array(a, &to->body, n, what, sampler->diag));
+    if (kind == KIND_SOLID) TRY(arena_array(a, &to->clamped, n, what, sampler->diag));
+    if (open) TRY(arena_array(a, &to->open, n, what, sampler->diag));
+    return ERR_OK;
 }
 
 /* The particles of a wall are followed by the dummies of its lines. */
@@ -184,9 +181,9 @@ static bool is_deep(const struct sampler *sampler, const struct samples *samples
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples)
 {
     struct point_grid t;
-    uint8_t *const covered = geometry_alloc(sampler, (size_t)samples->n, 1);
-    uint8_t *const kept = geometry_alloc(sampler, (size_t)samples->n, 1);
-    if (!covered || !kept) return ERR_MEMORY;
+    uint8_t *covered, *kept;
+    TRY(geometry_array(sampler, &covered, samples->n));
+    TRY(geometry_array(sampler, &kept, samples->n));
     TRY(find_overlaps(sampler, samples, covered));
     TRY(point_grid_create(&t, sampler->scene->top.dp, samples->n, samples->x, samples->y,
                           &sampler->temp, sampler->diag));

@@ -125,10 +125,10 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
     TRY(visit_outlines(c, sampler, &region->minus));
     const size_t n = (size_t)c->grid.n + 1;
     const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
-    double *const line = geometry_alloc(sampler, 2 * ends, sizeof *line);
-    c->share = geometry_alloc(sampler, n, sizeof *c->share);
-    c->middle = geometry_alloc(sampler, n, sizeof *c->middle);
-    if (!line || !c->share || !c->middle) return ERR_MEMORY;
+    double *line;
+    TRY(geometry_array(sampler, &line, 2 * ends));
+    TRY(geometry_array(sampler, &c->share, n));
+    TRY(geometry_array(sampler, &c->middle, n));
     for (int64_t k = 0; k < c->grid.n; k++)
         c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]}, c->middle[k],
                                line, line + ends);
@@ -269,13 +269,11 @@ static enum err gather(struct packing *packing)
     const struct scene *const scene = sampler->scene;
     size_t n = (size_t)packing->air.n;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)scene->points[kind].n;
-    packing->x = geometry_alloc(packing->g, n, sizeof *packing->x);
-    packing->y = geometry_alloc(packing->g, n, sizeof *packing->y);
-    packing->volume = geometry_alloc(packing->g, n, sizeof *packing->volume);
-    packing->particle = geometry_alloc(packing->g, n, sizeof *packing->particle);
-    packing->line = geometry_alloc(packing->g, n, sizeof *packing->line);
-    if (!packing->x || !packing->y || !packing->volume || !packing->particle || !packing->line)
-        return ERR_MEMORY;
+    TRY(geometry_array(packing->g, &packing->x, n));
+    TRY(geometry_array(packing->g, &packing->y, n));
+    TRY(geometry_array(packing->g, &packing->volume, n));
+    TRY(geometry_array(packing->g, &packing->particle, n));
+    TRY(geometry_array(packing->g, &packing->line, n));
     for (int fixed = 0; fixed < 2; fixed++) {
         for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
             const struct scene_points *const from = &scene->points[kind];
@@ -329,8 +327,8 @@ static enum err settle(struct packing *packing)
     struct point_grid t;
     TRY(point_grid_create(&t, KERNEL_REACH * h, packing->n, packing->x, packing->y,
                           &packing->g->temp, sampler->diag));
-    double(*move)[2] = geometry_alloc(packing->g, (size_t)packing->n_free + 1, sizeof *move);
-    if (!move) return ERR_MEMORY;
+    double(*move)[2];
+    TRY(geometry_array(packing->g, &move, packing->n_free + 1));
     double largest = HUGE_VAL;
     for (int step = 0; step < max_shifts && largest > still * dp; step++) {
         largest = 0;
@@ -354,8 +352,8 @@ enum err geometry_pack(struct sampler *sampler)
     struct scene *const scene = sampler->scene;
     struct scene_points *const points = &scene->points[KIND_FLUID];
     if (scene->top.scheme != SCHEME_STANDARD || points->n == 0) return ERR_OK;
-    struct cut_cells *const cut = geometry_alloc(sampler, (size_t)scene->n_fluid, sizeof *cut);
-    if (!cut) return ERR_MEMORY;
+    struct cut_cells *cut;
+    TRY(geometry_array(sampler, &cut, scene->n_fluid));
     int64_t most = 0;
     int n_cut = 0;
     for (int k = 0; k < sampler->n_regions; k++) {

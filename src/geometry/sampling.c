@@ -74,8 +74,7 @@ static enum err list_regions(struct sampler *sampler)
     const struct scene *scene = sampler->scene;
     const int n_wall = scene->n_fluid ? scene->n_wall : scene_beam_wall(scene, 0),
               n = scene->n_solid + n_wall + scene->n_fluid;
-    sampler->regions = geometry_alloc(sampler, (size_t)n, sizeof *sampler->regions);
-    if (!sampler->regions) return ERR_MEMORY;
+    TRY(geometry_array(sampler, &sampler->regions, n));
     for (int k = 0; k < scene->n_solid; k++)
         add_region(sampler, KIND_SOLID, k, &scene->solid[k].common, &scene->solid[k].shape,
                    &scene->solid[k].minus);
@@ -165,8 +164,8 @@ static enum err lay_points(struct sampler *sampler, struct region *region, int64
 /* Shapes without particles are reported together, before anything needs their particles. */
 static enum err sample_region(struct sampler *sampler, struct region *region, struct samples *to)
 {
-    int64_t *const per_shape = geometry_alloc(sampler, (size_t)region->list->n, sizeof *per_shape);
-    if (!per_shape) return ERR_MEMORY;
+    int64_t *per_shape;
+    TRY(geometry_array(sampler, &per_shape, region->list->n));
     TRY(lay_points(sampler, region, per_shape, to));
     bool missing = region->n == 0;
     for (int k = 0; k < region->list->n; k++) {

@@ -106,11 +106,10 @@ SPHFSI_INLINE enum err geometry_sample(struct sampler *sampler, const struct reg
 {
     struct arena *const a = &sampler->temp;
     const size_t n = (size_t)to->n;
-    to->x = arena_grow(a, to->x, n, sizeof *to->x, "sampling", sampler->diag);
-    to->y = arena_grow(a, to->y, n, sizeof *to->y, "sampling", sampler->diag);
-    to->region = arena_grow(a, to->region, n, sizeof *to->region, "sampling", sampler->diag);
-    to->clamped = arena_grow(a, to->clamped, n, 1, "sampling", sampler->diag);
-    if (!to->x || !to->y || !to->region || !to->clamped) return ERR_MEMORY;
+    TRY(arena_more(a, &to->x, n, "sampling", sampler->diag));
+    TRY(arena_more(a, &to->y, n, "sampling", sampler->diag));
+    TRY(arena_more(a, &to->region, n, "sampling", sampler->diag));
+    TRY(arena_more(a, &to->clamped, n, "sampling", sampler->diag));
     to->x[n] = x;
     to->y[n] = y;
     to->region[n] = (int32_t)(region - sampler->regions);
@@ -118,11 +117,9 @@ SPHFSI_INLINE enum err geometry_sample(struct sampler *sampler, const struct reg
     return ERR_OK;
 }
 
-/* Zeroed memory that lasts until the scene is sampled; NULL: there is none. */
-SPHFSI_INLINE void *geometry_alloc(struct sampler *sampler, size_t n, size_t size)
-{
-    return arena_alloc(&sampler->temp, n, size, "sampling", sampler->diag);
-}
+/* Points *to at n zeroed items, which last until the scene is sampled. */
+#define geometry_array(sampler, to, n) \
+    arena_array(&(sampler)->temp, to, n, "sampling", (sampler)->diag)
 
 /* Turns ERR_INPUT, whose message is in the diag, into ERR_OK, so that the next section is checked
  * too; not after CASE_MAX_PROBLEMS of them, with those of values. scene_sample returns the error

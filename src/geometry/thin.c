@@ -78,9 +78,8 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
             const struct line_dummy dummy = {k, on_part / length, side * (row + 0.5) * dp,
                                              along - on_part};
             if (belongs_elsewhere(line, &dummy, dp)) continue;
-            line->dummy = arena_grow(&sampler->scene->arena, line->dummy, (size_t)line->n_dummies,
-                                     sizeof dummy, "thin walls", sampler->diag);
-            if (!line->dummy) return ERR_MEMORY;
+            TRY(arena_more(&sampler->scene->arena, &line->dummy, line->n_dummies, "thin walls",
+                           sampler->diag));
             line->dummy[line->n_dummies++] = dummy;
         }
     return ERR_OK;
@@ -129,9 +128,7 @@ static bool is_joined(const struct scene *scene, const struct scene_line *line, 
 static enum err add_line(struct sampler *sampler, int wall, const struct shape *shape)
 {
     struct scene *const scene = sampler->scene;
-    scene->line = arena_grow(&scene->arena, scene->line, (size_t)scene->n_line, sizeof *scene->line,
-                             "thin walls", sampler->diag);
-    if (!scene->line) return ERR_MEMORY;
+    TRY(arena_more(&scene->arena, &scene->line, scene->n_line, "thin walls", sampler->diag));
     struct scene_line *const line = &scene->line[scene->n_line++];
     *line = (struct scene_line){.wall = wall, .n = shape->n, .pt = shape->pt};
     const double *const a = line->pt[0], *const b = line->pt[line->n - 1];

@@ -35,15 +35,11 @@ enum err constraint_create(struct implicit *implicit, const struct hinges *hinge
                            struct diag *d)
 {
     const size_t n = 2 * (size_t)hinges->n;
-    implicit->column = arena_alloc(a, 2 * (size_t)implicit->n + ENVELOPE_ALIGN,
-                                   sizeof *implicit->column, "hinges", d);
-    implicit->flexibility = arena_alloc(a, n * n, sizeof *implicit->flexibility, "hinges", d);
-    implicit->hinge_force = arena_alloc(a, n, sizeof *implicit->hinge_force, "hinges", d);
-    implicit->hinge_place = arena_alloc(a, n, sizeof *implicit->hinge_place, "hinges", d);
-    return implicit->column && implicit->flexibility && implicit->hinge_force &&
-                   implicit->hinge_place
-               ? ERR_OK
-               : ERR_MEMORY;
+    TRY(arena_array(a, &implicit->column, 2 * (size_t)implicit->n + ENVELOPE_ALIGN, "hinges", d));
+    TRY(arena_array(a, &implicit->flexibility, n * n, "hinges", d));
+    TRY(arena_array(a, &implicit->hinge_force, n, "hinges", d));
+    TRY(arena_array(a, &implicit->hinge_place, n, "hinges", d));
+    return ERR_OK;
 }
 
 void constraint_factor(struct implicit *implicit, const struct hinges *hinges)

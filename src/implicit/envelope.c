@@ -14,11 +14,10 @@ enum err envelope_create(struct envelope *m, struct arena *a, int64_t n, const i
 {
     static const char what[] = "matrix of the solid";
     *m = (struct envelope){.n = n};
-    m->first = arena_alloc(a, (size_t)n, sizeof *m->first, what, d);
-    m->start = arena_alloc(a, (size_t)n + 1, sizeof *m->start, what, d);
-    m->pivot = arena_alloc(a, (size_t)n, sizeof *m->pivot, what, d);
-    m->row = arena_alloc(a, (size_t)n + ENVELOPE_ALIGN, sizeof *m->row, what, d);
-    if (!m->first || !m->start || !m->pivot || !m->row) return ERR_MEMORY;
+    TRY(arena_array(a, &m->first, n, what, d));
+    TRY(arena_array(a, &m->start, (size_t)n + 1, what, d));
+    TRY(arena_array(a, &m->pivot, n, what, d));
+    TRY(arena_array(a, &m->row, (size_t)n + ENVELOPE_ALIGN, what, d));
     m->start[0] = 0;
     for (int64_t i = 0; i < n; i++) {
         m->first[i] = first[i] - first[i] % ENVELOPE_ALIGN;
@@ -26,8 +25,7 @@ enum err envelope_create(struct envelope *m, struct arena *a, int64_t n, const i
         m->start[i + 1] =
             m->start[i] + (columns + ENVELOPE_ALIGN - 1) / ENVELOPE_ALIGN * ENVELOPE_ALIGN;
     }
-    m->value = arena_alloc(a, (size_t)m->start[n], sizeof *m->value, what, d);
-    if (!m->value) return ERR_MEMORY;
+    TRY(arena_array(a, &m->value, m->start[n], what, d));
     envelope_clear(m);
     return ERR_OK;
 }

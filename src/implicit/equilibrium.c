@@ -168,11 +168,8 @@ enum err equilibrium_find(struct equilibrium *found, const struct solid *from,
     for (int k = 0; k < from->n_bodies; k++)
         if (from->body[k].kappa > 0 && !from->body[k].variational) return ERR_OK;
     enum err e = solid_create(&solid, &arena, scene, particles, true, d);
-    double *const start[2] = {arena_alloc(&arena, (size_t)particles->n, sizeof *particles->ux,
-                                          "start", d),
-                              arena_alloc(&arena, (size_t)particles->n, sizeof *particles->uy,
-                                          "start", d)};
-    if (!e && !(start[0] && start[1])) e = ERR_MEMORY;
+    double *start[2] = {NULL, NULL};
+    for (int c = 0; c < 2 && !e; c++) e = arena_array(&arena, &start[c], particles->n, "start", d);
     if (!e) {
         memcpy(start[0], particles->ux, bytes);
         memcpy(start[1], particles->uy, bytes);

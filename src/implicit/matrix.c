@@ -25,11 +25,10 @@ static enum err link_particles(const struct solid *solid, struct implicit_links 
     int64_t most = n, at = 0;
     for (int64_t k = 0; k < solid->n_packs; k++)
         most += (int64_t)solid->pack[k].n_slots * solid->pack[k].lanes;
-    links->first = arena_alloc(a, (size_t)n + 1, sizeof *links->first, what, d);
-    links->node = arena_alloc(a, (size_t)most, sizeof *links->node, what, d);
-    links->gx = arena_alloc(a, (size_t)most, sizeof *links->gx, what, d);
-    links->gy = arena_alloc(a, (size_t)most, sizeof *links->gy, what, d);
-    if (!links->first || !links->node || !links->gx || !links->gy) return ERR_MEMORY;
+    TRY(arena_array(a, &links->first, (size_t)n + 1, what, d));
+    TRY(arena_array(a, &links->node, most, what, d));
+    TRY(arena_array(a, &links->gx, most, what, d));
+    TRY(arena_array(a, &links->gy, most, what, d));
     for (int64_t k = 0; k < solid->n_packs; k++) {
         const struct solid_pack *const pack = &solid->pack[k];
         for (int l = 0; l < pack->lanes; l++) {
@@ -207,13 +206,9 @@ enum err implicit_create(struct solid *solid, struct arena *a, const struct part
     const size_t n = (size_t)particles->n;
     struct implicit *const implicit = arena_alloc(a, 1, sizeof *implicit, what, d);
     if (!implicit) return ERR_MEMORY;
-    implicit->order = arena_alloc(a, n, sizeof *implicit->order, what, d);
-    implicit->unknown = arena_alloc(a, 2 * n + ENVELOPE_ALIGN, sizeof *implicit->unknown, what, d);
-    if (!implicit->order || !implicit->unknown) return ERR_MEMORY;
-    for (int k = 0; k < 4; k++) {
-        implicit->start[k] = arena_alloc(a, n, sizeof *implicit->start[k], what, d);
-        if (!implicit->start[k]) return ERR_MEMORY;
-    }
+    TRY(arena_array(a, &implicit->order, n, what, d));
+    TRY(arena_array(a, &implicit->unknown, 2 * n + ENVELOPE_ALIGN, what, d));
+    for (int k = 0; k < 4; k++) TRY(arena_array(a, &implicit->start[k], n, what, d));
     TRY(link_particles(solid, &implicit->links, a, particles->n, d));
     struct arena scratch = {.limit = a->limit};
     double *const moves = arena_alloc(&scratch, n, sizeof *moves, what, d);

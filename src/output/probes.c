@@ -105,13 +105,10 @@ static enum err attach(struct probe *probe, const struct simulation *sim, struct
     for (int64_t i = 0; i < particles->n; i++) {
         const double x = particles->X[i] - probe->point[0], y = particles->Y[i] - probe->point[1];
         if (particles->body[i] != probe->body || square(x) + square(y) >= square(reach)) continue;
-        probe->particle =
-            arena_grow(a, probe->particle, (size_t)probe->n, sizeof *probe->particle, "probe", d);
-        if (!probe->particle) return ERR_MEMORY;
+        TRY(arena_more(a, &probe->particle, probe->n, "probe", d));
         probe->particle[probe->n++] = (int32_t)i;
     }
-    probe->weight = arena_alloc(a, (size_t)probe->n, sizeof *probe->weight, "probe", d);
-    if (!probe->weight) return ERR_MEMORY;
+    TRY(arena_array(a, &probe->weight, probe->n, "probe", d));
     find_weights(probe, particles, reach);
     return ERR_OK;
 }
@@ -175,8 +172,7 @@ static enum err find_bodies(struct probe *probe, const struct scene *scene, cons
 {
     char name[SCENE_TEXT];
     while (scene_listed(list, probe->n_bodies, name)) probe->n_bodies++;
-    probe->bodies = arena_alloc(a, (size_t)probe->n_bodies, sizeof *probe->bodies, "probe", d);
-    if (!probe->bodies) return ERR_MEMORY;
+    TRY(arena_array(a, &probe->bodies, probe->n_bodies, "probe", d));
     for (int k = 0; k < probe->n_bodies && scene_listed(list, k, name); k++)
         probe->bodies[k] = find_body(scene, name);
     return ERR_OK;
@@ -277,9 +273,8 @@ enum err probes_create(struct probes *probes, const struct simulation *sim, stru
 {
     const struct scene *scene = sim->scene;
     *probes = (struct probes){.n = scene->n_probe};
-    probes->probe = arena_alloc(a, (size_t)probes->n, sizeof *probes->probe, "probes", d);
-    probes->file = arena_alloc(a, (size_t)probes->n + 1, sizeof *probes->file, "probes", d);
-    if (!probes->probe || !probes->file) return ERR_MEMORY;
+    TRY(arena_array(a, &probes->probe, probes->n, "probes", d));
+    TRY(arena_array(a, &probes->file, (size_t)probes->n + 1, "probes", d));
     for (int k = 0; k < probes->n; k++)
         TRY(create_probe(&probes->probe[k], &scene->probe[k], sim, a, d));
     TRY(create_file(probes, scene, -1, a, d));

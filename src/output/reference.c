@@ -25,9 +25,8 @@ static enum err read_rows(struct reference *r, struct csv *csv, struct arena *a)
 {
     double row[3];
     int more;
-    r->t = arena_alloc(a, (size_t)csv->lines, sizeof *r->t, "reference", csv->diag);
-    r->value = arena_alloc(a, (size_t)csv->lines, sizeof *r->value, "reference", csv->diag);
-    if (!r->t || !r->value) return ERR_MEMORY;
+    TRY(arena_array(a, &r->t, csv->lines, "reference", csv->diag));
+    TRY(arena_array(a, &r->value, csv->lines, "reference", csv->diag));
     while ((more = csv_row(csv, row)) > 0) insert_row(r, row);
     if (more == 0 && r->n == 0)
         return diag_fail(csv->diag, ERR_INPUT, "%s: contains no row of time and value", csv->path);
@@ -68,8 +67,7 @@ enum err references_open(struct references *r, const struct scene *scene, int n,
                          const struct probe_file *files, struct arena *a, struct diag *d)
 {
     *r = (struct references){.n = scene->n_reference};
-    r->item = arena_alloc(a, (size_t)r->n, sizeof *r->item, "references", d);
-    if (!r->item) return ERR_MEMORY;
+    TRY(arena_array(a, &r->item, r->n, "references", d));
     for (int k = 0; k < r->n; k++) {
         r->item[k] = (struct reference){.from = &scene->reference[k]};
         TRY(find_column(&r->item[k], scene, n, files, d));

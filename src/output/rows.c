@@ -185,9 +185,8 @@ static enum err allocate(const struct row_files *r, struct rows *f, struct arena
                          double *carried, struct diag *d)
 {
     const size_t n = (size_t)f->columns;
-    f->angle = arena_alloc(a, n, sizeof *f->angle, "rows", d);
-    f->now = arena_alloc(a, 2 * n, sizeof *f->now, "rows", d);
-    if (!f->angle || !f->now) return ERR_MEMORY;
+    TRY(arena_array(a, &f->angle, n, "rows", d));
+    TRY(arena_array(a, &f->now, 2 * n, "rows", d));
     f->now_rate = f->now + n;
     f->before = carried;
     f->before_rate = carried + n;
@@ -208,8 +207,7 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
     const bool ends =
         ledger && sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
     *r = (struct row_files){.probes = p, .end = ends ? sim->scene->top.end_time : HUGE_VAL};
-    r->file = arena_alloc(a, (size_t)p->n_files + 1, sizeof *r->file, "rows", d);
-    if (!r->file) return ERR_MEMORY;
+    TRY(arena_array(a, &r->file, (size_t)p->n_files + 1, "rows", d));
     list_files(r, sim->scene, ledger);
     size_t n = 0;
     for (int k = 0; k < r->n; k++) n += 2 * (size_t)r->file[k].columns;

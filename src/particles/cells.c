@@ -20,15 +20,13 @@ static enum err list_create(struct cell_list *list, struct arena *a, const struc
     char what[80];
     snprintf(what, sizeof what, "cell list of the [domain], %d x %d cells", cells->nx, cells->ny);
     const size_t n_cells = (size_t)cells->nx * (size_t)cells->ny;
-    list->start = arena_alloc(a, n_cells, sizeof *list->start, what, d);
-    list->count = arena_alloc(a, n_cells, sizeof *list->count, what, d);
-    list->cluster = arena_alloc(a, n_cells, sizeof *list->cluster, what, d);
-    list->active =
-        arena_alloc(a, (size_t)particles->capacity, sizeof *list->active, "cell list", d);
-    if (!list->start || !list->count || !list->cluster || !list->active) return ERR_MEMORY;
+    TRY(arena_array(a, &list->start, n_cells, what, d));
+    TRY(arena_array(a, &list->count, n_cells, what, d));
+    TRY(arena_array(a, &list->cluster, n_cells, what, d));
+    TRY(arena_array(a, &list->active, particles->capacity, "cell list", d));
     if (!keep_order) return ERR_OK;
-    list->order = arena_alloc(a, (size_t)particles->capacity, sizeof *list->order, "cell list", d);
-    return list->order ? ERR_OK : ERR_MEMORY;
+    TRY(arena_array(a, &list->order, particles->capacity, "cell list", d));
+    return ERR_OK;
 }
 
 /* Side of a cell over the reach, as nearly as whole squares of SQUARE x SQUARE particles of a
@@ -73,17 +71,13 @@ enum err cells_create(struct cells *cells, struct arena *a, const double lower[2
         if (kinds[k].capacity > most) most = kinds[k].capacity;
         TRY(list_create(&cells->kind[k], a, cells, &kinds[k], k != KIND_FLUID, d));
     }
-    cells->pair_a = arena_alloc(a, (size_t)most, sizeof *cells->pair_a, "sorting", d);
-    cells->pair_b = arena_alloc(a, (size_t)most, sizeof *cells->pair_b, "sorting", d);
-    cells->permutation = arena_alloc(a, (size_t)most, sizeof *cells->permutation, "sorting", d);
-    cells->scratch = arena_alloc(a, (size_t)most, 8, "sorting", d);
+    TRY(arena_array(a, &cells->pair_a, most, "sorting", d));
+    TRY(arena_array(a, &cells->pair_b, most, "sorting", d));
+    TRY(arena_array(a, &cells->permutation, most, "sorting", d));
+    TRY(arena_place(a, &cells->scratch, (size_t)most, 8, "sorting", d));
     cells->sort_threads = sort_threads();
-    cells->histogram =
-        arena_alloc(a, (size_t)cells->sort_threads, sizeof *cells->histogram, "sorting", d);
-    return cells->pair_a && cells->pair_b && cells->permutation && cells->scratch &&
-                   cells->histogram
-               ? ERR_OK
-               : ERR_MEMORY;
+    TRY(arena_array(a, &cells->histogram, cells->sort_threads, "sorting", d));
+    return ERR_OK;
 }
 
 enum err cells_make_periodic(struct cells *cells, int axis, double reach, struct diag *d)

@@ -3,10 +3,7 @@
 
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
 {
-    for (int k = 0; k < BOX_SIDES; k++) {
-        b->side[k] = arena_alloc(a, (size_t)n, sizeof *b->side[k], "clusters", d);
-        if (!b->side[k]) return ERR_MEMORY;
-    }
+    for (int k = 0; k < BOX_SIDES; k++) TRY(arena_array(a, &b->side[k], n, "clusters", d));
     return ERR_OK;
 }
 

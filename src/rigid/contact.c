@@ -223,14 +223,12 @@ enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag 
     rigid->contact = contact;
     if (!contact) return ERR_MEMORY;
     contact->reach = scene->top.dp;
-    contact->shape = arena_alloc(a, n, sizeof *contact->shape, "rigid bodies", d);
-    contact->law = arena_alloc(a, n * (size_t)rigid->n, sizeof *contact->law, "rigid bodies", d);
-    if (!contact->shape || !contact->law) return ERR_MEMORY;
+    TRY(arena_array(a, &contact->shape, n, "rigid bodies", d));
+    TRY(arena_array(a, &contact->law, n * (size_t)rigid->n, "rigid bodies", d));
     for (int w = 0; w < scene->n_wall; w++) TRY(shape_create(rigid, w, a, d));
     const size_t rows =
         2 * (size_t)contact->most + 4 * (size_t)rigid->n_hinges + (size_t)rigid->n_springs;
-    rigid->row = arena_alloc(a, rows, sizeof *rigid->row, "rigid bodies", d);
-    if (!rigid->row) return ERR_MEMORY;
+    TRY(arena_array(a, &rigid->row, rows, "rigid bodies", d));
     place_shapes(rigid, 0);
     for (int k = 0; k < rigid->n; k++)
         for (int w = 0; w < scene_rigid_wall(scene, k); w++) set_law(rigid, k, w);

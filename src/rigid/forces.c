@@ -260,8 +260,7 @@ enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag 
 {
     const struct scene *const scene = rigid->scene;
     rigid->n_springs = scene->n_spring;
-    rigid->spring = arena_alloc(a, (size_t)rigid->n_springs, sizeof *rigid->spring, "springs", d);
-    if (!rigid->spring) return ERR_MEMORY;
+    TRY(arena_array(a, &rigid->spring, rigid->n_springs, "springs", d));
     for (int k = 0; k < rigid->n_springs; k++) {
         const struct scene_spring *const given = &scene->spring[k];
         const double start =

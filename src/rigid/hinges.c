@@ -28,8 +28,7 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
     const struct scene *const scene = rigid->scene;
     int n = 0;
     for (int k = 0; k < rigid->n; k++) n += scene->rigid[k].hinge.n;
-    rigid->hinge = arena_alloc(a, (size_t)n, sizeof *rigid->hinge, "hinges", d);
-    if (!rigid->hinge) return ERR_MEMORY;
+    TRY(arena_array(a, &rigid->hinge, n, "hinges", d));
     for (int k = 0; k < rigid->n; k++) {
         struct rigid_body *const body = &rigid->body[k];
         body->hinge_motion = -1;

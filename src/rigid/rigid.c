@@ -15,10 +15,9 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
     rigid->centred = centred;
     rigid->impedance = scene->rho0 * scene->c0;
     rigid->mean_time = scene->n_fluid > 0 ? scene->h / scene->c0 : 0;
-    rigid->body = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->body, "rigid bodies", d);
-    rigid->state = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->state, "rigid bodies", d);
-    rigid->eq = arena_alloc(a, (size_t)rigid->n, sizeof *rigid->eq, "rigid bodies", d);
-    if (!rigid->body || !rigid->state || !rigid->eq) return ERR_MEMORY;
+    TRY(arena_array(a, &rigid->body, rigid->n, "rigid bodies", d));
+    TRY(arena_array(a, &rigid->state, rigid->n, "rigid bodies", d));
+    TRY(arena_array(a, &rigid->eq, rigid->n, "rigid bodies", d));
     for (int k = 0; k < rigid->n; k++) {
         const struct rigid_mass *const m = &scene->rigid_mass[k];
         rigid->body[k] = (struct rigid_body){.given = &scene->rigid[k],

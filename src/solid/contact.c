@@ -477,17 +477,11 @@ static enum err bodies_create(struct contact *contact, struct arena *a, struct d
     contact->n_walls = meets_walls(scene) ? scene->n_wall : 0;
     contact->n_bodies = contact->n_solids + contact->n_walls;
     const size_t n = (size_t)contact->n_bodies;
-    contact->law = arena_alloc(a, n * n, sizeof *contact->law, "contact", d);
-    contact->group = arena_alloc(a, n, sizeof *contact->group, "contact", d);
-    contact->motion =
-        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->motion, "contact", d);
-    contact->body_row =
-        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->body_row, "contact", d);
-    contact->body_damping =
-        arena_alloc(a, (size_t)contact->n_walls, sizeof *contact->body_damping, "contact", d);
-    if (!contact->law || !contact->group || !contact->motion || !contact->body_row ||
-        !contact->body_damping)
-        return ERR_MEMORY;
+    TRY(arena_array(a, &contact->law, n * n, "contact", d));
+    TRY(arena_array(a, &contact->group, n, "contact", d));
+    TRY(arena_array(a, &contact->motion, contact->n_walls, "contact", d));
+    TRY(arena_array(a, &contact->body_row, contact->n_walls, "contact", d));
+    TRY(arena_array(a, &contact->body_damping, contact->n_walls, "contact", d));
     for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
     for (int k = 0; k < contact->n_walls; k++)
         contact->group[contact->n_solids + k] =
@@ -506,9 +500,8 @@ enum err contact_create(struct contact *contact, struct arena *a, const struct s
     TRY(contact_surface_create(contact, a, particles, d));
     contact->reach += 2 * contact->max_inset;
     const size_t edges = (size_t)contact->n_edges;
-    contact->middle_x = arena_alloc(a, edges, sizeof *contact->middle_x, "contact", d);
-    contact->middle_y = arena_alloc(a, edges, sizeof *contact->middle_y, "contact", d);
-    if (!contact->middle_x || !contact->middle_y) return ERR_MEMORY;
+    TRY(arena_array(a, &contact->middle_x, edges, "contact", d));
+    TRY(arena_array(a, &contact->middle_y, edges, "contact", d));
     TRY(point_grid_create(&contact->grid, contact->reach, contact->n_edges, contact->middle_x,
                           contact->middle_y, a, d));
     TRY(contact_list_resize(contact, 4 * contact->n_solid_points + 64, d));

@@ -184,9 +184,8 @@ static struct box2 box_of_solids(const struct contact *contact, double more)
 
 enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct diag *d)
 {
-    struct contact_pair *const pair =
-        arena_alloc(contact->arena, (size_t)max_pairs, sizeof *pair, "contact", d);
-    if (!pair) return ERR_MEMORY;
+    struct contact_pair *pair;
+    TRY(arena_array(contact->arena, &pair, max_pairs, "contact", d));
     if (contact->n_pairs) memcpy(pair, contact->pair, (size_t)contact->n_pairs * sizeof *pair);
     contact->pair = pair;
     contact->max_pairs = max_pairs;

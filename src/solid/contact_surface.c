@@ -200,17 +200,14 @@ static enum err find_surface(struct contact *contact, struct arena *a,
     int64_t n_links[2], n = 0;
     for (int k = 0; k < 2; k++) {
         /* A planar graph of n points has fewer than 3 n edges. */
-        link[k] = arena_alloc(temp, 3 * (size_t)of[k].n + 1, sizeof *link[k], "contact", d);
-        of[k].point = arena_alloc(a, (size_t)of[k].n, sizeof *of[k].point, "contact", d);
-        if (!link[k] || !of[k].point) return ERR_MEMORY;
+        TRY(arena_array(temp, &link[k], 3 * (size_t)of[k].n + 1, "contact", d));
+        TRY(arena_array(a, &of[k].point, of[k].n, "contact", d));
         for (int64_t i = 0; i < of[k].n; i++) of[k].point[i] = -1;
         TRY(find_links(contact, &of[k], temp, link[k], &n_links[k], d));
         for (int64_t i = 0; i < of[k].n; i++) n += of[k].point[i] >= 0;
     }
-    contact->point = arena_alloc(a, (size_t)n, sizeof *contact->point, "contact", d);
-    contact->edge =
-        arena_alloc(a, (size_t)(n_links[0] + n_links[1] + n), sizeof *contact->edge, "contact", d);
-    if (!contact->point || !contact->edge) return ERR_MEMORY;
+    TRY(arena_array(a, &contact->point, n, "contact", d));
+    TRY(arena_array(a, &contact->edge, n_links[0] + n_links[1] + n, "contact", d));
     contact->wall_point = of[1].point;
     number_points(contact, &of[0], false);
     contact->n_solid_points = contact->n_points;
@@ -317,9 +314,8 @@ static void find_width(struct contact *contact)
 
 static enum err find_outlines(struct contact *contact, struct arena *temp, struct diag *d)
 {
-    struct body_outlines *const region =
-        arena_alloc(temp, (size_t)contact->n_bodies, sizeof *region, "contact", d);
-    if (!region) return ERR_MEMORY;
+    struct body_outlines *region;
+    TRY(arena_array(temp, &region, contact->n_bodies, "contact", d));
     TRY(find_regions(contact, region, temp, d));
     for (int64_t k = 0; k < contact->n_points; k++) {
         struct contact_point *const p = &contact->point[k];

@@ -148,10 +148,9 @@ enum err hinges_create(struct solid *solid, struct arena *a, const struct scene 
     solid->hinges = hinges;
     for (int body = 0; body < scene->n_solid; body++) n += (size_t)scene->solid[body].hinge.n;
     *hinges = (struct hinges){.scene = scene};
-    hinges->hinge = arena_alloc(a, n, sizeof *hinges->hinge, "hinges", d);
-    hinges->matrix = arena_alloc(a, 4 * n * n, sizeof *hinges->matrix, "hinges", d);
-    hinges->force = arena_alloc(a, 2 * n, sizeof *hinges->force, "hinges", d);
-    if (!hinges->hinge || !hinges->matrix || !hinges->force) return ERR_MEMORY;
+    TRY(arena_array(a, &hinges->hinge, n, "hinges", d));
+    TRY(arena_array(a, &hinges->matrix, 4 * n * n, "hinges", d));
+    TRY(arena_array(a, &hinges->force, 2 * n, "hinges", d));
     for (int body = 0; body < scene->n_solid; body++)
         for (int k = 0; k < scene->solid[body].hinge.n; k++)
             set_hinge(hinges, solid, body, &scene->solid[body].hinge.item[k]);
@@ -164,9 +163,7 @@ enum err hinges_create(struct solid *solid, struct arena *a, const struct scene 
                            hinges->scene->solid[hinges->hinge[k].body[0]].common.name,
                            hinges->scene->solid[hinges->hinge[k].body[1]].common.name);
     hinges->n_nodes = list_nodes(hinges, solid, particles, NULL);
-    hinges->node =
-        arena_alloc(a, (size_t)hinges->n_nodes, sizeof *hinges->node, "particles of hinges", d);
-    if (!hinges->node) return ERR_MEMORY;
+    TRY(arena_array(a, &hinges->node, hinges->n_nodes, "particles of hinges", d));
     list_nodes(hinges, solid, particles, hinges->node);
     for (int k = 0; k < hinges->n; k++) {
         TRY(find_weights(hinges, solid, particles, k, 1, d));

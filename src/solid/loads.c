@@ -19,11 +19,10 @@ static enum err find_held(struct loads *v, struct arena *a, const struct particl
 {
     for (int64_t i = 0; i < particles->n; i++)
         v->n_held += particles->free[i] == 0 && moving_clamp(v->scene, particles->body[i]) >= 0;
-    v->held = arena_alloc(a, (size_t)v->n_held, sizeof *v->held, "moving clamps", d);
-    v->held_power = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_power, "moving clamps", d);
-    v->held_rise = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_rise, "moving clamps", d);
-    v->motion = arena_alloc(a, (size_t)v->scene->n_solid, sizeof *v->motion, "moving clamps", d);
-    if (!v->held || !v->held_power || !v->held_rise || !v->motion) return ERR_MEMORY;
+    TRY(arena_array(a, &v->held, v->n_held, "moving clamps", d));
+    TRY(arena_array(a, &v->held_power, v->n_held, "moving clamps", d));
+    TRY(arena_array(a, &v->held_rise, v->n_held, "moving clamps", d));
+    TRY(arena_array(a, &v->motion, v->scene->n_solid, "moving clamps", d));
     v->n_held = 0;
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->free[i] == 0 && moving_clamp(v->scene, particles->body[i]) >= 0)
@@ -103,18 +102,16 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
                            struct arena *temp, struct diag *d)
 {
     const struct scene *const scene = v->scene;
-    v->load = arena_alloc(a, (size_t)scene->n_load, sizeof *v->load, "loads", d);
+    TRY(arena_array(a, &v->load, scene->n_load, "loads", d));
     const size_t most = (size_t)scene->n_load * (size_t)particles->n;
-    v->loaded = arena_alloc(temp, most, sizeof *v->loaded, "loads", d);
-    if (!v->load || !v->loaded) return ERR_MEMORY;
+    TRY(arena_array(temp, &v->loaded, most, "loads", d));
     for (int k = 0; k < scene->n_load; k++) {
         if (scene_find(scene, SECTION_solid, scene->load[k].body) < 0) continue; /* of a beam */
         v->load[v->n_loads].section = k;
         TRY(find_loaded(v, &v->load[v->n_loads++], particles, temp, d));
     }
     const struct loaded *const found = v->loaded;
-    v->loaded = arena_alloc(a, (size_t)v->n_loaded, sizeof *v->loaded, "loads", d);
-    if (!v->loaded) return ERR_MEMORY;
+    TRY(arena_array(a, &v->loaded, v->n_loaded, "loads", d));
     for (int64_t k = 0; k < v->n_loaded; k++) v->loaded[k] = found[k];
     for (int k = 0; k < v->n_loads; k++) begin_load(v, &v->load[k], particles);
     return ERR_OK;

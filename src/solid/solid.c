@@ -105,9 +105,8 @@ static enum err packed_create(struct solid *solid, struct arena *a,
         if (k == S_DRAG && !mixed) continue;
         solid->lane[k] = field[k];
         if (field[k] && solid->sweeps->size == sizeof(double)) continue;
-        solid->lane[k] = arena_alloc(a, (size_t)particles->n, solid->sweeps->size,
-                                     "packed fields of the solid", d);
-        if (!solid->lane[k]) return ERR_MEMORY;
+        TRY(arena_place(a, &solid->lane[k], (size_t)particles->n, solid->sweeps->size,
+                        "packed fields of the solid", d));
     }
     for (int64_t i = 0; solid->lane[S_DRAG] && i < particles->n; i++) {
         const struct solid_body *const b = &solid->body[particles->body[i]];
@@ -124,8 +123,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     solid->dp = INFINITY;
     solid->coupled = particles->groups & G_COUPLED;
     solid->kick = solid_free_kick;
-    solid->body = arena_alloc(a, (size_t)solid->n_bodies, sizeof *solid->body, "bodies", d);
-    if (!solid->body) return ERR_MEMORY;
+    TRY(arena_array(a, &solid->body, solid->n_bodies, "bodies", d));
     solid->paper_step = INFINITY;
     for (int k = 0; k < solid->n_bodies; k++) {
         solid->body[k] = body_of(scene, k);
@@ -144,15 +142,11 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     solid->sweeps = in_double ? &solid_sweeps_double : &solid_sweeps_mixed;
     TRY(packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));
-    for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++) {
-        solid->scratch[k] =
-            arena_alloc(a, (size_t)particles->n, sizeof(double), "search of the step", d);
-        if (!solid->scratch[k]) return ERR_MEMORY;
-    }
-    solid->work_on =
-        arena_alloc(a, (size_t)solid->n_bodies, sizeof *solid->work_on, "work on bodies", d);
+    for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++)
+        TRY(arena_array(a, &solid->scratch[k], particles->n, "search of the step", d));
+    TRY(arena_array(a, &solid->work_on, solid->n_bodies, "work on bodies", d));
     solid->threads = particles->n < SOLID_PARALLEL ? 1 : thread_count();
-    return solid->work_on ? ERR_OK : ERR_MEMORY;
+    return ERR_OK;
 }
 
 /* The packs of a thread in a parallel region. Each particle is written by one thread and sums over

@@ -249,10 +249,9 @@ static enum err store_slots(struct solid *solid, struct arena *a, struct arena *
 {
     struct slot_sets sets = {.size = 1};
     while (sets.size < 2 * (size_t)solid->n_packs) sets.size *= 2;
-    sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
-    struct draft *const drafts =
-        arena_alloc(scratch, MAX_SLOTS, sizeof *drafts, "slots of the solid", d);
-    if (!sets.pack || !drafts) return ERR_MEMORY;
+    TRY(arena_array(scratch, &sets.pack, sets.size, "slots of the solid", d));
+    struct draft *drafts;
+    TRY(arena_array(scratch, &drafts, MAX_SLOTS, "slots of the solid", d));
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
     const int lanes = solid->sweeps->lanes;
     int64_t capacity = 0;
@@ -320,9 +319,7 @@ static void sum_weights(const struct solid *solid)
 enum err solid_stencil_create(struct solid *solid, struct arena *a,
                               const struct particles *particles, struct diag *d)
 {
-    solid->pack =
-        arena_alloc(a, (size_t)particles->n, sizeof *solid->pack, "packs of the solid", d);
-    if (!solid->pack) return ERR_MEMORY;
+    TRY(arena_array(a, &solid->pack, particles->n, "packs of the solid", d));
     cut_packs(solid, particles);
     struct arena scratch = {.limit = a->limit};
     struct point_grid grid;

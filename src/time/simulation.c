@@ -42,11 +42,8 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
 {
     struct external *const external = &sim->external[kind];
     const size_t n = (size_t)sim->kind[kind].capacity;
-    if (!external->ax)
-        external->ax = arena_alloc(&sim->arena, n, sizeof *external->ax, "accelerations", d);
-    if (!external->ay)
-        external->ay = arena_alloc(&sim->arena, n, sizeof *external->ay, "accelerations", d);
-    if (!external->ax || !external->ay) return ERR_MEMORY;
+    if (!external->ax) TRY(arena_array(&sim->arena, &external->ax, n, "accelerations", d));
+    if (!external->ay) TRY(arena_array(&sim->arena, &external->ay, n, "accelerations", d));
     external->at = at;
     external->context = context;
     sim->evaluated = false; /* without it */
