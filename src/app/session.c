@@ -258,12 +258,13 @@ static enum err check_counts(const struct scene *scene, double step, struct diag
  * cells of the domain. */
 static void name_case(const struct scene *scene, struct diag *d)
 {
-    char place[LOCATION_TEXT], text[sizeof d->text];
+    const struct scene_place at = scene_place(scene, LINE_NONE);
+    char text[sizeof d->text];
     if (!d || d->code != ERR_INPUT) return;
-    scene_location(scene, LINE_NONE, place);
-    if (strncmp(d->text, place, strlen(place)) == 0 || strncmp(d->text, "--set", 5) == 0) return;
+    if (strncmp(d->text, at.text, strlen(at.text)) == 0 || strncmp(d->text, "--set", 5) == 0)
+        return;
     memcpy(text, d->text, sizeof text);
-    snprintf(d->text, sizeof d->text, "%s: %.*s", place, (int)(sizeof text - sizeof place - 8),
+    snprintf(d->text, sizeof d->text, "%s: %.*s", at.text, (int)(sizeof text - sizeof at - 8),
              text);
 }
 

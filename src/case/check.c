@@ -97,7 +97,7 @@ static enum err same_value(struct reader *r, const void *its, const char *key, c
     const void *const section[] = {r->section, its};
     const struct param *const param = param_find((enum section_id)common->section, key);
     double value[2];
-    char title[TITLE_TEXT], text[2][SCENE_NAME];
+    char text[2][SCENE_NAME];
     for (int k = 0; k < 2; k++) {
         value[k] = param_number(param, section[k]);
         if (strcmp(key, "sound_speed") == 0) value[k] = sound_speed(r->scene, section[k]);
@@ -105,9 +105,8 @@ static enum err same_value(struct reader *r, const void *its, const char *key, c
         if (param->type == PARAM_CHOICE) param_choice_name(param, (int)value[k], text[k]);
     }
     if (!(fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))) return ERR_OK;
-    section_title(common, title);
     return bad_section(r, "and %s differ in `%s`: %s and %s; all %s must have the same value",
-                       title, key, text[0], text[1], all);
+                       section_title(common).text, key, text[0], text[1], all);
 }
 
 /* All fluid has the same numbers, but those of its place and of Eq. 3. */

@@ -113,13 +113,14 @@ effect_set effects_of_scene(const struct scene *scene)
     return fx;
 }
 
-/* Writes "[wall bed] slip", or "integrator"; returns the text. */
-static char *caller_name(const struct scene *scene, const struct effect_caller *by,
-                         char name[TITLE_TEXT])
+/* "[wall bed] slip", or "integrator". */
+static struct section_title caller_name(const struct scene *scene, const struct effect_caller *by)
 {
-    char title[TITLE_TEXT] = "";
-    if (by->section != SECTION_top) section_title(section_at(scene, by->section, by->index), title);
-    snprintf(name, TITLE_TEXT, "%.90s%s%.60s", title, *title && *by->key ? " " : "", by->key);
+    struct section_title name;
+    const bool top = by->section == SECTION_top;
+    snprintf(name.text, sizeof name.text, "%.90s%s%.60s",
+             top ? "" : section_title(section_at(scene, by->section, by->index)).text,
+             !top && *by->key ? " " : "", by->key);
     return name;
 }
 
@@ -128,13 +129,13 @@ char *effect_caller_text(const struct scene *scene, const struct effect_caller *
 {
     const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
     const struct scene_section_common *const section = section_at(scene, by->section, by->index);
-    char line[32], name[TITLE_TEXT];
+    char line[32];
     snprintf(line, sizeof line, "line %d", given ? given->line : section->line);
     snprintf(text, EFFECT_CALLER_TEXT, "%s: %s",
              given && given->line == 0                   ? "--set"
              : given || section_table[by->section].named ? line
                                                          : "default",
-             caller_name(scene, by, name));
+             caller_name(scene, by).text);
     return text;
 }
 
@@ -226,14 +227,13 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
     if (effect_called(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
     const struct effect_info *const effect = &effect_table[rule->effect],
                                     *const its = &effect_table[rule->other];
-    char text[TITLE_TEXT], its_text[TITLE_TEXT];
-    caller_name(scene, &by, text);
+    const struct section_title text = caller_name(scene, &by);
     if (rule->verb == NEEDS)
         return bad_line(r, line_of(scene, &by), "%s enables the effect %s, which needs %s (%s): %s",
-                        text, effect->name, its->name, its->key, rule->reason);
+                        text.text, effect->name, its->name, its->key, rule->reason);
     return bad_line(r, line_of(scene, &by),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
-                    text, effect->name, its->name, caller_name(scene, &other, its_text),
+                    text.text, effect->name, its->name, caller_name(scene, &other).text,
                     line_of(scene, &other), rule->reason);
 }
 
@@ -246,17 +246,16 @@ static enum err check_owned(struct reader *r, const struct owned *row)
     if (effect_called(scene, row->effect, &by)) return ERR_OK;
     for (int k = 0; k < section_count(scene, row->section); k++) {
         const void *const section = section_at(scene, row->section, k);
-        char text[TITLE_TEXT];
         double value;
         if (param_is_default(param, section) ||
             (scene_scheme_sets(scene, row->section, row->key, &value) &&
              param_number(param, section) == value))
             continue;
         by = (struct effect_caller){row->section, k, row->key};
-        caller_name(scene, &by, text);
         TRY(case_go_on(r, bad_line(r, line_of(scene, &by),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
-                                   text, effect->name, effect->name, effect->key)));
+                                   caller_name(scene, &by).text, effect->name, effect->name,
+                                   effect->key)));
     }
     return ERR_OK;
 }

@@ -19,23 +19,23 @@ static void store(struct reader *r, const struct problem *p)
 
 enum err problem(struct reader *r, struct problem_place at, const char *format, ...)
 {
-    char place[LOCATION_TEXT], head[200] = "", text[700];
+    char place[120], head[200] = "", text[700];
     const struct entry *const e = at.entry;
     const struct scene_section_common *const s = at.section;
     struct problem p = {.line = e ? e->line : s ? s->line : at.line};
     if (at.key) p.line = scene_line(r->scene, (enum section_id)s->section, s->index, at.key);
-    scene_location(r->scene, p.line, place);
     if (e && e->set) snprintf(place, sizeof place, "--set %.100s", e->set);
     if (at.value)
         snprintf(head, sizeof head, "%s = %.60s%s: ", e ? e->key : at.key, at.value,
                  strlen(at.value) > 60 ? "..." : "");
     else if (s)
-        strcat(section_title(s, head), " ");
+        snprintf(head, sizeof head, "%s ", section_title(s).text);
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    snprintf(p.text, sizeof p.text, "%s: %s%s", place, head, text);
+    snprintf(p.text, sizeof p.text, "%s: %s%s",
+             e && e->set ? place : scene_place(r->scene, p.line).text, head, text);
     store(r, &p);
     return ERR_INPUT;
 }

@@ -54,10 +54,12 @@ void *section_at(const struct scene *scene, enum section_id id, int index)
     return array + (size_t)index * info->size;
 }
 
-char *section_title(const struct scene_section_common *section, char title[TITLE_TEXT])
+struct section_title section_title(const struct scene_section_common *section)
 {
     const struct section_info *const info = &section_table[section->section];
-    snprintf(title, TITLE_TEXT, "[%s%s%s]", info->word, info->named ? " " : "", section->name);
+    struct section_title title;
+    snprintf(title.text, sizeof title.text, "[%s%s%s]", info->word, info->named ? " " : "",
+             section->name);
     return title;
 }
 

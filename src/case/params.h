@@ -84,9 +84,11 @@ int section_count(const struct scene *scene, enum section_id id);
 void *section_at(const struct scene *scene, enum section_id id, int index);
 /* The index of a named section, or -1. */
 int scene_find(const struct scene *scene, enum section_id id, const char *name);
-/* "[fluid water]" or "[output]"; returns `title`. */
-enum { TITLE_TEXT = 2 * SCENE_NAME + 32 };
-char *section_title(const struct scene_section_common *section, char title[TITLE_TEXT]);
+/* "[fluid water]" or "[output]". */
+struct section_title {
+    char text[2 * SCENE_NAME + 32];
+};
+struct section_title section_title(const struct scene_section_common *section);
 
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);

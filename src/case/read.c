@@ -93,7 +93,7 @@ static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
 
 static enum err unknown_key(struct reader *r, int id)
 {
-    char title[TITLE_TEXT];
+    char title[SCENE_NAME];
     struct nearest near = {0};
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
     r->incomplete = true;
@@ -147,9 +147,8 @@ static enum err check_needed(struct reader *r)
             continue;
         const bool top = param->section == SECTION_top,
                    pure = !param->unit || strcmp(param->unit, "1") == 0;
-        char title[TITLE_TEXT];
-        section_title(section_of(r, s), title);
-        TRY(case_go_on(r, bad_line(r, s->line, "%s%s`%s`%s: %.*s%s%s%s", top ? "" : title,
+        TRY(case_go_on(r, bad_line(r, s->line, "%s%s`%s`%s: %.*s%s%s%s",
+                                   top ? "" : section_title(section_of(r, s)).text,
                                    top ? "" : " lacks ", param->key,
                                    top ? " is missing at the top of the file" : "",
                                    (int)strcspn(param->meaning, ".;:"), param->meaning,

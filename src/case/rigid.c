@@ -24,10 +24,9 @@ static enum err check_own_name(struct reader *r, const struct scene_section_comm
     for (size_t n = 0; n < n_kinds; n++)
         for (int k = 0; k < case_given_count(r->scene, kinds[n]); k++) {
             const struct scene_section_common *const other = section_at(r->scene, kinds[n], k);
-            char title[TITLE_TEXT];
             if (strcmp(other->name, common->name) == 0)
                 return bad_section(r, "has the name of %s; rename one of them",
-                                   section_title(other, title));
+                                   section_title(other).text);
         }
     return ERR_OK;
 }

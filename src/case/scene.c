@@ -5,7 +5,6 @@
 #include "case/params.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -166,39 +165,16 @@ bool scene_snapshot_has(const struct scene *scene, const char *field)
 
 /* --- places and files --- */
 
-void scene_location(const struct scene *scene, int line, char place[LOCATION_TEXT])
+struct scene_place scene_place(const struct scene *scene, int line)
 {
-    if (line == 0) {
-        snprintf(place, LOCATION_TEXT, "--set");
-        return;
-    }
+    struct scene_place place = {"--set"};
+    if (line == 0) return place;
     const size_t length = strlen(scene->path), max_shown = 270;
     const bool cut = length > max_shown;
-    const int n = snprintf(place, LOCATION_TEXT, "%s%.270s", cut ? "..." : "",
+    const int n = snprintf(place.text, sizeof place.text, "%s%.270s", cut ? "..." : "",
                            scene->path + (cut ? length - max_shown : 0));
-    if (line != LINE_NONE) snprintf(place + n, LOCATION_TEXT - (size_t)n, ":%d", line);
-}
-
-void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
-{
-    char text[sizeof d->text], place[LOCATION_TEXT];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    scene_location(scene, line, place);
-    diag_warn(d, "%s: %s", place, text);
-}
-
-enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
-{
-    char text[sizeof d->text], place[LOCATION_TEXT];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    scene_location(scene, line, place);
-    return diag_add(d, ERR_INPUT, "%s: %s", place, text);
+    if (line != LINE_NONE) snprintf(place.text + n, sizeof place.text - (size_t)n, ":%d", line);
+    return place;
 }
 
 bool scene_file(const struct scene *scene, const char *name, char *path, size_t size)

@@ -393,15 +393,18 @@ bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
-/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. */
-enum { LOCATION_TEXT = 300, LINE_NONE = -1 };
-void scene_location(const struct scene *scene, int line, char place[LOCATION_TEXT]);
-/* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. For that of a key
- * see scene_line in case/params.h. */
-void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
-    SPHFSI_PRINTF(4, 5);
-enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
-    SPHFSI_PRINTF(4, 5);
+/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. The line of a key:
+ * scene_line in case/params.h. */
+enum { LINE_NONE = -1 };
+struct scene_place {
+    char text[300];
+};
+struct scene_place scene_place(const struct scene *scene, int line);
+/* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. */
+#define warn_at(d, scene, line, format, ...) \
+    diag_warn(d, "%s: " format, scene_place(scene, line).text, ##__VA_ARGS__)
+#define fail_at(d, scene, line, format, ...) \
+    diag_add(d, ERR_INPUT, "%s: " format, scene_place(scene, line).text, ##__VA_ARGS__)
 /* A file name of the case file, relative to the working directory; false: too long. */
 bool scene_file(const struct scene *scene, const char *name, char *path, size_t size);
 

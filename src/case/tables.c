@@ -9,18 +9,18 @@
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d)
 {
-    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
+    char path[4096 + SCENE_TEXT];
     struct diag why = {.code = ERR_OK};
-    scene_location(scene, line, place);
     if (!scene_file(scene, name, path, sizeof path))
-        return diag_add(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
+        return fail_at(d, scene, line, "the path of %s is too long", name);
     csv->path = name;
     csv->diag = &why;
     const enum err e = csv_open(csv, path);
     csv->diag = d;
     if (e && csv->text) return diag_add(d, e, "%s", why.text);
     if (e)
-        return diag_add(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: %s: %.400s", place, key, why.text);
+        return diag_add(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: %s: %.400s",
+                        scene_place(scene, line).text, key, why.text);
     return ERR_OK;
 }
 

@@ -154,8 +154,7 @@ static void write_section(FILE *out, const struct scene *scene, enum section_id 
                           const char *path)
 {
     const void *const section = section_at(scene, id, index);
-    char title[TITLE_TEXT];
-    if (id != SECTION_top) fprintf(out, "\n%s\n", section_title(section, title));
+    if (id != SECTION_top) fprintf(out, "\n%s\n", section_title(section).text);
     for (int k = 0; k < PARAM_COUNT; k++)
         if (param_table[k].section == id && strcmp(param_table[k].key, "like") != 0)
             write_param(out, scene, &param_table[k], section, path);

@@ -65,9 +65,10 @@ double extent_along(const struct scene *scene, enum kind kind, int section, cons
 double start_speed(const struct scene *scene, enum kind kind, int section,
                    const struct scene_expr *velocity);
 
-/* A warning that begins with the place of a section, or of its key, and its title. */
-void warn_section(const struct check *check, const struct scene_section_common *section,
-                  const char *key, const char *format, ...) SPHFSI_PRINTF(4, 5);
+/* A warning that begins with the place of a section and its title. */
+#define warn_section(check, section, format, ...)                         \
+    warn_at((check)->diag, (check)->scene, (section)->line, "%s " format, \
+            section_title(section).text, ##__VA_ARGS__)
 /* Takes note of a speed that the case gives the fluid, and warns if it is near that of sound. */
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
     SPHFSI_PRINTF(4, 5);

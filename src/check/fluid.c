@@ -71,7 +71,7 @@ static void warn_of_surface(struct check *check, int f)
     int64_t above = 0;
     if (scene->top.gravity[1] > 0)
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "has a `surface`, but gravity points upwards, by %.3g m/s^2 at t = 0; gravity that "
             "points down has a negative second component",
             scene->top.gravity[1]);
@@ -85,13 +85,13 @@ static void warn_of_surface(struct check *check, int f)
     }
     if (above > 0)
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "reaches up to y = %.4g m, above its `surface = %.4g m`: %lld particles begin with "
             "a pressure below zero; `surface` is the height of the free surface",
             top, fluid->surface, (long long)above);
     if (isfinite(lowest) && scene->top.gravity[1] < 0)
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "has a free surface at y = %.4g m, below its `surface = %.4g m`: the pressure "
             "there begins with %.3g Pa and drives a jet; `surface` is the height of the free "
             "surface, one for each [fluid]",
@@ -113,7 +113,7 @@ static void warn_of_density(struct check *check, int f)
     const struct scene_fluid *const fluid = &scene->fluid[f];
     if (fluid->density < LIGHTEST_LIQUID)
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "has a density of %.4g kg/m^3, less than any liquid, so its forces will be small; "
             "water has 1000 kg/m^3",
             fluid->density);
@@ -122,7 +122,7 @@ static void warn_of_density(struct check *check, int f)
     const double fall = extent_along(scene, KIND_FLUID, f, scene->top.gravity);
     if (fall > 0.01 * square(scene->c0))
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "is compressed by %.2g %% under its own weight, because its speed of sound is only "
             "%.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
             100 * fall / square(scene->c0), scene->c0, sqrt(fall));
@@ -157,7 +157,7 @@ static void warn_of_weight(struct check *check, int fluid)
     const double pressure = f->density * size * depth;
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
         warn_section(
-            check, &f->common, NULL,
+            check, &f->common,
             "has a `surface`, but nothing is below it: the pressure at its lower end begins "
             "with up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out "
             "`surface`",
@@ -166,7 +166,7 @@ static void warn_of_weight(struct check *check, int fluid)
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
         warn_section(
-            check, &f->common, NULL,
+            check, &f->common,
             "begins without the pressure of its weight, %.3g Pa, so it falls onto its floor "
             "and its pressure oscillates between 0 and twice this value; add %s",
             pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
@@ -196,7 +196,7 @@ static void warn_of_start_gap(struct check *check, int fluid)
     const int walls_from = p->kind[body] == KIND_WALL ? check->scene->n_solid : 0;
     const struct body other = body_at(check->scene, walls_from + p->section[body]);
     warn_section(
-        check, &check->scene->fluid[fluid].common, NULL,
+        check, &check->scene->fluid[fluid].common,
         "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run against it; "
         "let their shapes touch, or leave a gap of 2 dp or more",
         dp, other.word, other.common->name, p->x[first], p->y[first]);
@@ -247,7 +247,7 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
         point_at(check, behind, 0.8 * dp, POINT_ANY) >= 0)
         return;
     warn_section(
-        check, o->common, NULL,
+        check, o->common,
         "ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the line "
         "and is lost; add a [wall], or let the line end at a wall or at the surface",
         o->from[0] + (last ? o->length * o->along[0] : 0),
@@ -300,7 +300,7 @@ static void warn_of_balance(struct check *check)
     if (fabs(more) <= 0.01 * volume) return;
     const struct scene_open o = scene_open_at(scene, n_open - 1);
     warn_section(
-        check, o.common, NULL,
+        check, o.common,
         "is one of the open boundaries whose velocities let %.3g m^2 more %s than %s by t = "
         "%.3g s, %.2g %% of the fluid. There is no free surface, so %s; give one boundary a "
         "`pressure` instead of a velocity",
@@ -346,7 +346,7 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
             snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
                      quantity, 2 * scene->h);
         warn_section(
-            check, &probe->common, NULL,
+            check, &probe->common,
             "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "
             "it to the face",
             at[0], at[1], value);
@@ -374,7 +374,7 @@ static void warn_of_turning(struct check *check)
                     scene->probe[p].quantity == PROBE_FORCE && strcmp(name, b.common->name) == 0;
         if (turns && asked && b.slip == SLIP_NONE)
             warn_section(
-                check, b.common, NULL,
+                check, b.common,
                 "%s with slip = none: the viscous moment on it is off by 2 mu A omega (mu = "
                 "%.3g Pa s, A: area of the body, omega: angular velocity); forces are right%s",
                 solid ? "is free to turn" : "turns", nu * scene->rho0,
@@ -396,7 +396,7 @@ static void warn_of_drift(struct check *check)
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting > 0)
             warn_section(
-                check, &scene->fluid[k].common, NULL,
+                check, &scene->fluid[k].common,
                 "fills its periodic domain, so its mean pressure drifts with `shifting`, by "
                 "about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, or a smaller "
                 "`shifting`",

@@ -6,22 +6,6 @@
 #include "case/params.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-
-void warn_section(const struct check *check, const struct scene_section_common *section,
-                  const char *key, const char *format, ...)
-{
-    char text[sizeof check->diag->text], title[TITLE_TEXT];
-    int line = section->line;
-    if (key)
-        line = scene_line(check->scene, (enum section_id)section->section, section->index, key);
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    warn_at(check->diag, check->scene, line, "%s %s", section_title(section, title), text);
-}
 
 int drawn_at(const struct check *check, double x, double y)
 {

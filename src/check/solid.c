@@ -80,7 +80,7 @@ static enum err warn_of_loose_bodies(struct check *check)
                 ? "a [load] acts on it, so it is driven away unless something stops it"
                 : NULL;
         if (why)
-            warn_section(check, &b->common, NULL,
+            warn_section(check, &b->common,
                          "has no clamp, and %s; give it a `clamp` if it is fixed%s", why,
                          falls ? ", or gravity = off" : "");
     }
@@ -147,7 +147,7 @@ static void warn_of_material(struct check *check, int body)
     const struct scene_solid *const b = &scene->solid[body];
     if (b->density < LIGHTEST_FOAM)
         warn_section(
-            check, &b->common, NULL,
+            check, &b->common,
             "has a density of %.4g kg/m^3, less than any foam, so it has hardly any inertia; "
             "rubber has about 1100 kg/m^3",
             b->density);
@@ -161,7 +161,7 @@ static void warn_of_material(struct check *check, int body)
     const double own = b->gravity ? b->density * weight : 0, pressure = max2(own, water);
     if (pressure > 0.1 * b->young)
         warn_section(
-            check, &b->common, NULL,
+            check, &b->common,
             "is too soft for %s of %.3g Pa, which is %.2g times its `young` = %.3g Pa: it may "
             "collapse and a guard stop the run; check the unit, such as MPa",
             own > water ? "its own weight" : "the pressure of the water", pressure,
@@ -170,12 +170,12 @@ static void warn_of_material(struct check *check, int body)
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_section(
-            check, &b->common, "velocity",
-            "begins with up to %.4g m/s, faster than waves in it, sqrt(young/density) = %.3g "
-            "m/s: an impact crushes it and a guard stops the run; check the units of "
-            "`velocity`, `young` and `density`",
-            speed, sound);
+        warn_at(check->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
+                "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
+                "sqrt(young/density) = %.3g "
+                "m/s: an impact crushes it and a guard stops the run; check the units of "
+                "`velocity`, `young` and `density`",
+                b->common.name, speed, sound);
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
@@ -187,7 +187,7 @@ static void warn_of_flutter(const struct check *check, int body)
     if (b->hourglass_form == HOURGLASS_VARIATIONAL || !(b->hourglass > (quadratic ? 0 : 10)))
         return;
     warn_section(
-        check, &b->common, NULL,
+        check, &b->common,
         "hourglass_form = printed with %s is unstable at any time step%s; use hourglass_form = "
         "variational%s",
         quadratic ? "gradient = quadratic" : "hourglass above 10",

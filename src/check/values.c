@@ -15,18 +15,18 @@ static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fl
     const double least = 10 * max2(fluid->max_speed, sqrt(fluid->max_pressure / fluid->density));
     if (scene->c0 < least * (1 - 1e-9))
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary by more "
             "than 1 %%",
             scene->c0, least);
     if (!isnan(fluid->surface) && scene->top.gravity[1] == 0)
         warn_section(
-            check, &fluid->common, NULL,
+            check, &fluid->common,
             "has a `surface`, but gravity has no vertical component at t = 0, so the initial "
             "pressure is zero");
     if (fluid != scene->fluid || fluid->shifting_speed != SHIFTING_LARGEST) return;
     if (fluid->shifting * scene->numerics.cfl > 5 * (1 + 1e-9))
-        warn_section(check, &fluid->common, NULL,
+        warn_section(check, &fluid->common,
                      "shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
                      "shifting_speed = largest; reduce one of them",
                      fluid->shifting, scene->numerics.cfl);
@@ -57,7 +57,7 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
             const char *const section = section_at(scene, key->section, k);
             if (strcmp(section + key->offset, motion->common.name) == 0) return;
         }
-    warn_section(check, &motion->common, NULL,
+    warn_section(check, &motion->common,
                  "moves nothing: name it by `motion` of a [wall] or [beam], by `clamp_motion` of a "
                  "[solid] or by `hinge_motion` of a [rigid]");
 }
@@ -72,12 +72,12 @@ static void warn_of_motion_table(struct check *check, int k)
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_section(
-        check, &motion->common, "file",
-        "file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last two rows "
-        "differ: the motion stops there within a step; continue the table, end it at rest, or "
-        "use end_time = %.6g s",
-        motion->file, end, scene->top.end_time, end);
+    warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, "file"),
+            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last "
+            "two rows "
+            "differ: the motion stops there within a step; continue the table, end it at rest, or "
+            "use end_time = %.6g s",
+            motion->common.name, motion->file, end, scene->top.end_time, end);
 }
 
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
@@ -113,17 +113,19 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
     }
     if (largest > DENS_WARNING * stiffness)
         warn_section(
-            check, open->common, NULL,
+            check, open->common,
             "gives the fluid up to %.4g Pa, which changes its density by about %.2g %%; 1 %% "
             "is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
             largest, 100 * largest / stiffness, sqrt(largest / (0.01 * scene->rho0)));
     if (open->absorb > 0 && wave < reach)
-        warn_section(
-            check, open->common, "absorb",
-            "absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the fluid "
+        warn_at(
+            check->diag, scene,
+            scene_line(scene, (enum section_id)open->common->section, open->common->index,
+                       "absorb"),
+            "[%s %s] absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the fluid "
             "resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 lets "
             "waves up to the length L pass",
-            open->absorb, wave, reach);
+            open->word, open->common->name, open->absorb, wave, reach);
 }
 
 void warn_of_values(struct check *check)
@@ -138,7 +140,7 @@ void warn_of_values(struct check *check)
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)
-            warn_section(check, open.common, NULL,
+            warn_section(check, open.common,
                          "adjoins fluid without density_diffusion, so pressure noise grows at this "
                          "boundary; use density_diffusion = 0.1");
         warn_of_open(check, &open);

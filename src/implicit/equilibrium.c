@@ -133,7 +133,6 @@ static enum err find(struct equilibrium *found, struct solid *solid, struct part
                      const struct scene *scene, struct contact *contact, struct diag *d)
 {
     double sum[2];
-    char place[LOCATION_TEXT];
     if (contact && contact_watch(contact, particles, 0, 0, 0)) return ERR_OK;
     implicit_keep_start(solid, particles);
     if (implicit_residual(solid, particles, (double)INFINITY, 0) == 0) {
@@ -146,13 +145,13 @@ static enum err find(struct equilibrium *found, struct solid *solid, struct part
         return ERR_OK;
     }
     if (contact && (solid->n_bodies > 1 || scene->n_wall > 0)) return ERR_OK;
-    scene_location(scene, scene->solid[fallen].common.line, place);
     return diag_fail(
         d, ERR_GUARD,
         "%s: [relax]: nothing holds [solid %s] against a force of (%.3g, %.3g) N/m, so there "
         "is no state of rest; give it a `clamp` or a `hinge`, put a [wall] below it, or "
         "leave [relax] out",
-        place, scene->solid[fallen].common.name, sum[0], sum[1]);
+        scene_place(scene, scene->solid[fallen].common.line).text, scene->solid[fallen].common.name,
+        sum[0], sum[1]);
 }
 
 enum err equilibrium_find(struct equilibrium *found, const struct solid *from,

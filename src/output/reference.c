@@ -50,7 +50,7 @@ static enum err find_column(struct reference *r, const struct scene *scene, int 
                             const struct probe_file *files, struct diag *d)
 {
     const char *const wanted = r->from->probe, *name;
-    char place[LOCATION_TEXT], list[301] = "";
+    char list[301] = "";
     size_t length;
     for (r->file = 0; r->file < n; r->file++) {
         const char *const header = files[r->file].header;
@@ -58,9 +58,9 @@ static enum err find_column(struct reference *r, const struct scene *scene, int 
             if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) return ERR_OK;
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s", strchr(header, ','));
     }
-    scene_location(scene, r->from->common.line, place);
-    return diag_fail(d, ERR_INPUT, "%s: [reference %s] probe = %.80s: no such column; there are %s",
-                     place, r->from->common.name, wanted, list + 1);
+    return fail_at(d, scene, r->from->common.line,
+                   "[reference %s] probe = %.80s: no such column; there are %s",
+                   r->from->common.name, wanted, list + 1);
 }
 
 enum err references_open(struct references *r, const struct scene *scene, int n,

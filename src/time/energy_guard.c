@@ -51,7 +51,7 @@ static void write_remedy(const struct simulation *sim, enum energy_term term, ch
 
 /* What has the most speed in a region: "[solid gate] at (0.1, 0.2) m", or the region's first
  * section where it has no particles. */
-enum { PLACE = TITLE_TEXT + 64 };
+enum { PLACE = sizeof(struct section_title) + 64 };
 static void write_fastest(const struct simulation *sim, int region, char text[PLACE])
 {
     static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
@@ -69,11 +69,10 @@ static void write_fastest(const struct simulation *sim, int region, char text[PL
             y = particles->y[i];
         }
     }
-    section_title(section_at(sim->scene, id[fastest / SCENE_MAX_SECTIONS],
-                             fastest % SCENE_MAX_SECTIONS),
-                  text);
-    const size_t used = strlen(text);
-    if (top >= 0) snprintf(text + used, PLACE - used, " at (%.4g, %.4g) m", x, y);
+    const void *const section =
+        section_at(sim->scene, id[fastest / SCENE_MAX_SECTIONS], fastest % SCENE_MAX_SECTIONS);
+    const int used = snprintf(text, PLACE, "%s", section_title(section).text);
+    if (top >= 0) snprintf(text + used, PLACE - (size_t)used, " at (%.4g, %.4g) m", x, y);
 }
 
 enum err energy_guard(struct simulation *sim, struct diag *d)

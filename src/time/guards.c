@@ -157,13 +157,12 @@ static struct finding too_fast(const struct simulation *sim, const struct partic
 static enum err check_contact(struct simulation *sim, struct diag *d)
 {
     const struct contact_depth *const at = &sim->contact.deepest;
-    char one[TITLE_TEXT], other[TITLE_TEXT];
     if (sim->contact.list_full)
         return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
                          time_text(sim).text);
     if (at->overlap < OVERLAP_WARNING) return ERR_OK;
-    section_title(contact_section(&sim->contact, at->body), one);
-    section_title(contact_section(&sim->contact, at->other), other);
+    const struct section_title one = section_title(contact_section(&sim->contact, at->body)),
+                               other = section_title(contact_section(&sim->contact, at->other));
     sim->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
     if (sim->guard.case_at_fault)
         return diag_fail(
@@ -171,12 +170,12 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
             "%s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
             "m, the limit of contact; a larger stiffness in [contact], a stiffer body or a slower "
             "motion may help",
-            time_text(sim).text, (long long)sim->state.steps, one, other, at->overlap, at->x,
-            at->y);
+            time_text(sim).text, (long long)sim->state.steps, one.text, other.text, at->overlap,
+            at->x, at->y);
     warn_once(sim, &sim->guard.warned_contact, d,
               "%s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
               "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
-              one, other, at->overlap, at->x, at->y);
+              one.text, other.text, at->overlap, at->x, at->y);
     return ERR_OK;
 }
 
@@ -254,17 +253,15 @@ static enum err check_motion(struct simulation *sim, struct diag *d)
                            m->rate + m->angular_acceleration;
         if (isfinite(sum)) continue;
         const struct scene_motion *const motion = &sim->scene->motion[b->motion];
-        char place[LOCATION_TEXT];
-        scene_location(sim->scene, motion->common.line, place);
         sim->guard.case_at_fault = true;
         return diag_fail(
             d, ERR_GUARD,
             "%s: %s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
             "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite, so change "
             "its expression or table there",
-            place, time_text(sim).text, motion->common.name,
-            sim->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
-            m->a[1]);
+            scene_place(sim->scene, motion->common.line).text, time_text(sim).text,
+            motion->common.name, sim->scene->wall[b->section].common.name, m->d[0], m->d[1],
+            m->v[0], m->v[1], m->a[0], m->a[1]);
     }
     return ERR_OK;
 }

@@ -101,65 +101,38 @@ static void judge(struct simulation *sim)
     if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) relax_end(sim);
 }
 
-/* The diagonal of the domain, m: all walls and bodies are in it. */
-static double domain_size(const struct scene *scene)
+/* T-78: what has moved further than the size of the domain since the last stop, by its mean
+ * velocity now and an even acceleration, meets nothing that could hold it; nor does fluid that has
+ * left. */
+static enum err check_held(const struct simulation *sim, const struct particles *particles,
+                           int body, const struct scene_section_common *common, struct diag *d)
 {
-    return elementary_hypot(scene->domain_upper[0] - scene->domain_lower[0],
-                            scene->domain_upper[1] - scene->domain_lower[1]);
+    const double *const low = sim->scene->domain_lower, *const high = sim->scene->domain_upper;
+    const double size = elementary_hypot(high[0] - low[0], high[1] - low[1]),
+                 since = sim->state.time - sim->state.relax_swing;
+    double n = 0, vx = 0, vy = 0;
+    for (int64_t i = 0; i < particles->n; i++) {
+        if (body >= 0 && particles->body[i] != body) continue;
+        n++;
+        vx += particles->vx[i];
+        vy += particles->vy[i];
+    }
+    if (n > 0 && !(0.5 * since * elementary_hypot(vx, vy) / n > size)) return ERR_OK;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: [relax]: %s has moved further than the size of the domain, %.3g m: "
+                     "nothing holds it, so there is no state of rest; put a [wall] below it, give "
+                     "a body a `clamp`, or leave [relax] out",
+                     scene_place(sim->scene, common->line).text, section_title(common).text, size);
 }
 
-/* A body whose particles have all moved further than that will meet nothing that could hold it. */
 static enum err check_fall(const struct simulation *sim, struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
-    const double size = domain_size(sim->scene);
-    double least[SCENE_MAX_SECTIONS];
-    for (int b = 0; b < sim->scene->n_solid; b++) least[b] = HUGE_VAL;
-    for (int64_t i = 0; i < particles->n; i++) {
-        double *const of_body = &least[particles->body[i]];
-        *of_body = min2(*of_body, square(particles->ux[i]) + square(particles->uy[i]));
-    }
-    for (int b = 0; b < sim->scene->n_solid; b++) {
-        const struct scene_solid *const body = &sim->scene->solid[b];
-        char place[LOCATION_TEXT];
-        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(size))) continue;
-        scene_location(sim->scene, body->common.line, place);
-        return diag_fail(
-            d, ERR_GUARD,
-            "%s: [relax]: [solid %s] has moved by %.3g m as a whole, more than the size "
-            "of the domain (%.3g m): nothing holds it, so there is no state of rest; "
-            "give it a `clamp`, put a [wall] below it, or leave [relax] out",
-            place, body->common.name, sqrt(least[b]), size);
-    }
-    return ERR_OK;
-}
-
-/* Fluid that falls within the domain is never faster, on average, than after a fall through
- * all of it. One that is faster falls through periodic sides for ever. */
-static enum err check_held_fluid(const struct simulation *sim, struct diag *d)
-{
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
     const struct scene *const scene = sim->scene;
-    double g[2], mean[2] = {0, 0};
-    char place[LOCATION_TEXT];
-    if (!(sim->effects & FX_FLUID)) return ERR_OK;
-    scene_location(scene, scene->fluid[0].common.line, place);
-    if (particles->n == 0)
-        return diag_fail(d, ERR_GUARD,
-                         "%s: [relax]: all fluid has left the domain: nothing holds it, so there "
-                         "is no state of rest; put a [wall] below it, or leave [relax] out",
-                         place);
-    for (int64_t i = 0; i < particles->n; i++)
-        mean[0] += particles->vx[i], mean[1] += particles->vy[i];
-    scene_gravity_at(scene, 0, g);
-    const double pull = elementary_hypot(g[0], g[1]), high = domain_size(scene);
-    const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)particles->n);
-    if (!(pull > 0 && fall > sqrt(2 * pull * high))) return ERR_OK;
-    return diag_fail(d, ERR_GUARD,
-                     "%s: [relax]: the fluid falls with %.3g m/s on average, more than a fall "
-                     "through the whole domain gives: nothing holds it, so there is no state of "
-                     "rest; put a [wall] below it, or leave [relax] out",
-                     place, fall);
+    if (scene->n_fluid)
+        TRY(check_held(sim, &sim->kind[KIND_FLUID], -1, &scene->fluid[0].common, d));
+    for (int b = 0; b < scene->n_solid; b++)
+        TRY(check_held(sim, &sim->kind[KIND_SOLID], b, &scene->solid[b].common, d));
+    return ERR_OK;
 }
 
 /* T-78a: solids without fluid, at once; if that fails, they move as with fluid. */
@@ -203,7 +176,6 @@ enum err relax_step(struct simulation *sim, struct diag *d)
     TRY(simulation_step(sim, (double)INFINITY, d));
     sim->guard.case_at_fault = true; /* for what follows */
     TRY(check_fall(sim, d));
-    TRY(check_held_fluid(sim, d));
     judge(sim);
     if (sim->state.seeks_rest) TRY(check_limit(sim, d));
     sim->guard.case_at_fault = false;

@@ -176,12 +176,12 @@ static void test_fluid_that_nothing_holds(void)
     HEAD "gravity = 0, -9.81\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n[relax]\n"
     rig_open(&rig, FALLING, NULL);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, ":5: [relax]: all fluid has left"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, ":5: [relax]: [fluid w] has moved further"),
                                  rig.diag.text);
     TEST_ASSERT_TRUE(rig.sim.guard.case_at_fault);
     rig_open(&rig, FALLING "[domain]\nlower = 0, 0\nupper = 0.1, 0.1\nperiodic = xy\n", NULL);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, ":5: [relax]: the fluid falls with 1.6"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "the size of the domain, 0.141 m"),
                                  rig.diag.text);
 #undef FALLING
 }
@@ -220,7 +220,7 @@ static void test_a_body_that_falls_has_no_rest(void)
                   "[relax]\n[wall aside]\nshape = box 0.1, -0.02, 0.14, 0\n",
              NULL);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[solid b] has moved by 0.3"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[solid b] has moved further"),
                                  rig.diag.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "nothing holds it"), rig.diag.text);
     relax_progress(&rig.sim, text);
