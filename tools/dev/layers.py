@@ -1,9 +1,7 @@
 #!/usr/bin/env python3
-"""The layers of src/: its folders, lowest first. Checks that dependencies point down, and draws
-them.
+"""The layers of src/: its folders, lowest first. Checks that dependencies point down.
 
     tools/dev/layers.py --archive build/release/libsphfsi.a     check includes, calls and cycles
-    tools/dev/layers.py --draw docs/img/layers.png              draw the folders and their includes
 
 An include, or a call that the linker resolves, may lead to a lower folder or stay in its own.
 Within a folder no chain of them may come back to the file where it started. A header may not
@@ -155,55 +153,13 @@ def findings(root, build=None):
         yield place / group[0], 0, "depends on itself through " + ", ".join(group[1:])
 
 
-def draw(root, path):
-    """The folders as boxes, an arrow for each pair that an include joins, with the number of
-    includes."""
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    files = sources(root)
-    count = defaultdict(int)
-    for name, _, target, quoted in includes(files):
-        if quoted and target in files and layer(name) != layer(target):
-            count[layer(name), layer(target)] += 1
-    figure, axes = plt.subplots(figsize=(8, 6))
-    for k, folder in enumerate(LAYERS):
-        held = [name for name in files if layer(name) == k]
-        lines = sum(len(files[name]) for name in held)
-        axes.add_patch(plt.Rectangle((0, k - 0.3), 2, 0.6, facecolor="#dde8f4",
-                                     edgecolor="#3a5f8a"))
-        axes.text(0.1, k, folder, va="center", fontsize=11, weight="bold")
-        axes.text(1.9, k, f"{len(held)} files, {lines:,} lines", va="center", ha="right",
-                  fontsize=8)
-    colours = plt.get_cmap("tab20")
-    for (above, below), n in sorted(count.items()):
-        right = above - below > 1
-        start, end = (2, above - 0.05), (2, below + 0.05)
-        bend = -0.28 - 0.05 * (above - below)
-        if not right:
-            start, end, bend = (1, above - 0.3), (1, below + 0.3), 0
-        axes.annotate("", end, start, arrowprops={
-            "arrowstyle": "-|>", "color": colours(above), "lw": 0.6 + n / 20, "shrinkA": 0,
-            "shrinkB": 0,
-            "connectionstyle": f"arc3,rad={bend}"})
-    axes.text(2.2, -0.75, "An arrow: includes of a lower layer, the wider the more.", fontsize=8)
-    axes.set(xlim=(-0.1, 4.6), ylim=(-0.9, len(LAYERS) - 0.4))
-    axes.axis("off")
-    figure.savefig(path, dpi=120, bbox_inches="tight")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], epilog=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--archive", type=Path, help="library beside whose objects calls are "
                                                      "looked up")
-    parser.add_argument("--draw", type=Path, metavar="PNG", help="draw the layers instead of "
-                                                                 "checking")
     args = parser.parse_args()
     root = Path(__file__).resolve().parents[2]
-    if args.draw:
-        draw(root, args.draw)
-        return 0
     found = list(findings(root, args.archive and args.archive.resolve().parent))
     for path, line, text in found:
         print(f"{path.relative_to(root)}:{line}: {text}" if line else f"{path.relative_to(root)}: "

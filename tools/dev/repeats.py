@@ -67,19 +67,9 @@ def same_names(files):
                 yield name, line, function, other
 
 
-def nested_comments(text):
-    """Lines on which a comment opens within a comment."""
-    for comment in COMMENT.finditer(TEXT.sub(lambda hit: " " * len(hit[0]), text)):
-        if "/*" in comment[0][2:]:
-            yield text.count("\n", 0, comment.start()) + 1
-
-
 def findings(files):
     """(file, line, what) of all of it."""
     for name, line, other, at, count in equal_runs(files):
         yield name, line, f"{count} lines equal those of {other}:{at}"
     for name, line, function, other in same_names(files):
         yield name, line, f"{function}() is the name of a function in {other}, too"
-    for name, text in files.items():
-        for line in nested_comments(text):
-            yield name, line, "a comment opens within a comment"
