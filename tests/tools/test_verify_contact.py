@@ -15,7 +15,7 @@ with packages():
     import contact as reference
     import numpy as np
     from common import figures_report
-    import verify_contact_measures as of
+    import verify_contact as of
 
 
 def test_a_soft_floor_is_not_reached():

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The figures of tools/report/verify_fluid_measures.py, of made-up runs with known answers. Exit
+"""The figures of tools/report/verify_fluid.py, of made-up runs with known answers. Exit
 77: a package is missing."""
 
 import math
@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import packages
 with packages():
     import numpy as np
-    import verify_fluid_measures as of
+    import verify_fluid as of
 
 
 class Made:
@@ -81,7 +81,7 @@ WALL = np.array([(0.5, 0.5 + j) for j in range(12)])
 
 def at_the_wall(fluid, what):
     run = Made(shots=[(fluid, WALL)])
-    with mock.patch.object(of, "snapshots", run.snapshots):
+    with mock.patch.object(of, "steps_of", run.snapshots):
         return what(run)
 
 

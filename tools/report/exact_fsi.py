@@ -12,7 +12,7 @@ import math
 from concurrent.futures import ProcessPoolExecutor
 
 from common import OUT, QUICK, ROOT, np, options, program_version, run_tool, table, write
-from metrics import order
+from metrics import bisect, order
 import sphfsi
 
 REPORT = OUT / "exact_fsi.md"
@@ -22,15 +22,6 @@ STEPS = ("explicit", "implicit")
 COUNTS, FINEST = (1, 2, 4), 16
 ASKED = {"space": 1.0, "time": 2.0}
 LENGTH, RHO = 1.0, 1000.0  # of all cases: L, density of the fluid
-
-
-def bisect(f, low, high):
-    """The root of f between two numbers at which it has different signs."""
-    sign = f(low) > 0
-    for _ in range(100):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if (f(middle) > 0) == sign else (low, middle)
-    return 0.5 * (low + high)
 
 
 class Pulse:

@@ -3,13 +3,22 @@
 
 import math
 
-from common import BadFile, np
+from common import ROOT, BadFile, np, read_table
 from sphfsi.snapshots import KINDS, Snapshots
+
+
+def reference(name):
+    """Columns of a table of cases/reference, in order."""
+    return np.array(list(read_table(ROOT / "cases" / "reference" / name)[0].values()))
+
+
+def snapshots(run):
+    return Snapshots(run.folder / "fields.vtkhdf")
 
 
 def water(run):
     """Time, positions and velocities of the fluid in each snapshot of a run."""
-    shots = Snapshots(run.folder / "fields.vtkhdf")
+    shots = snapshots(run)
     for step, time in enumerate(shots.times):
         fluid = shots.load(step, "kind") == KINDS["fluid"]
         yield (time, shots.load(step, "Points")[fluid, :2], shots.load(step, "velocity")[fluid, :2])
@@ -79,32 +88,31 @@ def running_mean(value, n):
     return np.convolve(value, np.ones(n) / n, "valid")
 
 
+def bisect(f, low, high):
+    """The root of f between two numbers at which it has different signs."""
+    sign = f(low) > 0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if (f(middle) > 0) == sign else (low, middle)
+    return 0.5 * (low + high)
+
+
 def wet_bed_bore(high, low, g=9.81):
     """Stoker (1957): depth and speed of the bore where water of depth `high` breaks into `low`."""
     def excess(depth):  # of the velocity behind the bore over that in the rarefaction
         bore = math.sqrt(g * depth * (depth + low) / (2 * low))
         return bore * (1 - low / depth) - 2 * (math.sqrt(g * high) - math.sqrt(g * depth))
 
-    lower, upper = low, high
-    for _ in range(80):
-        depth = 0.5 * (lower + upper)
-        lower, upper = (lower, depth) if excess(depth) > 0 else (depth, upper)
+    depth = bisect(excess, low, high)
     return depth, math.sqrt(g * depth * (depth + low) / (2 * low))
 
 
 def nearest(points, others, reach):
     """Distance from each point to the nearest of the others; reach where none is nearer."""
     result = np.full(len(points), reach, dtype=float)
-    if not len(points) or not len(others):
-        return result
-    low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
-    others = others[((others > low) & (others < high)).all(axis=1)]
-    for k in range(0, len(points), 256):
-        part = points[k:k + 256]
-        if len(others):
-            d = np.hypot(part[:, None, 0] - others[None, :, 0],
-                         part[:, None, 1] - others[None, :, 1])
-            result[k:k + 256] = np.minimum(reach, d.min(axis=1))
+    if len(points) and len(others):
+        a, b = close_pairs(points, others, reach)
+        np.minimum.at(result, a, np.hypot(*(points[a] - others[b]).T))
     return result
 
 

@@ -6,7 +6,7 @@ Each returns the value that was found (None where it is a whole curve) and its r
 
 import metrics
 from common import BadFile, Run, np, read_table
-from sphfsi.snapshots import KINDS, Snapshots
+from sphfsi.snapshots import KINDS
 
 
 def column(run, name):
@@ -123,7 +123,7 @@ def against_finest(error, run, finest, _root):
 
 def hydrostatic(error, run, _finest, _root):
     """L2 norm over the fluid of p - rho g (surface - y), by rho g times the largest depth."""
-    shots = Snapshots(Run(run).folder / "fields.vtkhdf")
+    shots = metrics.snapshots(Run(run))
     step = len(shots.times) - 1
     fluid = shots.load(step, "kind") == KINDS["fluid"]
     y, p = shots.load(step, "Points")[fluid, 1], shots.load(step, "pressure")[fluid]

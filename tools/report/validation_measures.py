@@ -3,12 +3,8 @@
 
 import metrics
 from common import BadFile, np
+from metrics import snapshots
 from sphfsi.draw_ledger import energy_shares, read_ledger
-from sphfsi.snapshots import Snapshots
-
-
-def snapshots(run):
-    return Snapshots(run.folder / "fields.vtkhdf")
 
 
 def balance(run):
