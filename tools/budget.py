@@ -4,16 +4,17 @@
 
 example: tools/budget.py 10min cases/gate.cfg --threads 2"""
 
-from casetool import Parser, make_case, run_tool, seconds
+from runfiles import add_case, make_case, options, run_tool, seconds
 
 
 def main():
-    parser = Parser(__doc__)
+    parser = options(__doc__)
     parser.add_argument("time", type=seconds, metavar="TIME", help="wall time: 90s, 10min, 2h")
-    parser.add_case()
+    add_case(parser)
     args = parser.parse_args()
-    make_case(args).budget(args.time, until=args.until, threads=args.threads, notes=print)
+    make_case(args.case, args.set).budget(args.time, until=args.until, threads=args.threads,
+                                          notes=print)
 
 
 if __name__ == "__main__":
-    run_tool(main)
+    run_tool(main, failure=2)

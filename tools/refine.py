@@ -8,12 +8,12 @@ DIR/refine.json.
 examples: tools/refine.py cases/gate.cfg --set dp=2mm --until 50ms --plan
           tools/refine.py cases/gate.cfg --set dp=2mm --until 50ms --without step"""
 
-from casetool import Parser, make_case, number, run_tool, until
-from sphfsi.refine import DIRECTIONS, MAX_RUNS, REPEATS
+from runfiles import add_case, make_case, number, options, run_tool, until
 
 
 def main():
-    parser = Parser(__doc__)
+    from sphfsi.refine import DIRECTIONS, MAX_RUNS, REPEATS  # needs the library
+    parser = options(__doc__)
     parser.add_argument("-n", dest="runs", type=number(3, MAX_RUNS, int), default=3, metavar="N",
                         help=f"spacings, from 3 to {MAX_RUNS} (%(default)s); the case's is the "
                              "finest")
@@ -28,11 +28,11 @@ def main():
     parser.add_argument("--from", dest="start", type=until, metavar="TIME",
                         help="measure from this time on (mean: the last quarter, others: all)")
     parser.add_argument("--plan", action="store_true", help="only print the runs and their cost")
-    parser.add_case()
+    add_case(parser)
     parser.add_argument("--out", metavar="DIR", help="folder of the results (runs/<case name>)")
     parser.add_argument("--quiet", action="store_true", help="only warnings and the table")
     args = parser.parse_args()
-    study = make_case(args).refinement(
+    study = make_case(args.case, args.set).refinement(
         args.out, runs=args.runs, ratio=args.ratio, until=args.until, threads=args.threads,
         start=args.start, without=list(filter(None, args.without.split(","))),
         repeats=args.repeats, notes=(lambda _: None) if args.quiet else print)
@@ -44,4 +44,4 @@ def main():
 
 
 if __name__ == "__main__":
-    run_tool(main)
+    run_tool(main, failure=2)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Reads the files of a run's folder and holds what all figures share: style, colours, saving."""
+"""What all tools share: the package of this clone, options, the style of figures, exit status."""
 
 import argparse
+import re
 import shlex
 import sys
+import warnings
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -35,12 +37,21 @@ except ImportError as missing:
 
 __all__ = ["COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "make_runs", "np", "options",
            "plt", "read_case", "read_table", "read_text", "run_tool", "save"]
+UNITS = {"s": 1, "ms": 1e-3, "us": 1e-6, "min": 60, "h": 3600}
+
+
+# --- options ---
+class Parser(argparse.ArgumentParser):
+    """A wrong option ends a tool with exit status 1, as it ends the program."""
+
+    def error(self, message):
+        self.exit(1, f"{self.prog}: {message}; --help lists the options\n")
 
 
 def options(text, example=""):
     """A parser that shows both as they are written."""
-    return argparse.ArgumentParser(description=text, epilog=example,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+    return Parser(description=text, epilog=example,
+                  formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 def parse(parser):
@@ -52,14 +63,75 @@ def parse(parser):
     return args
 
 
-def run_tool(main):
-    """Runs main() of a tool; what is wrong with a file or a case becomes one sentence and exit
-    status 1."""
+def number(low, high, kind=float):
+    """The type of an option that takes a number from `low` to `high`."""
+    word = "whole number" if kind is int else "number"
+
+    def convert(text):
+        try:
+            value = kind(text)
+        except ValueError:
+            value = None
+        if value is None or not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"'{text}': give a {word} from {low} to {high}")
+        return value
+    return convert
+
+
+def seconds(text, example="90s, 10min or 2h"):
+    """A time with its unit."""
+    found = re.fullmatch(r"\s*([\d.]+(?:[eE][+-]?\d+)?)\s*(s|ms|us|min|h)\s*", text)
+    value = float(found[1]) * UNITS[found[2]] if found else 0
+    if not 0 < value <= 1e9:
+        raise argparse.ArgumentTypeError(f"'{text}': give a time such as {example}")
+    return value
+
+
+def until(text):
+    """A simulated time: without a unit it is in s."""
+    bare = re.fullmatch(r"\s*[\d.]+(?:[eE][+-]?\d+)?\s*", text)
+    return seconds(text + "s" if bare else text, "0.5, 0.5s or 500ms")
+
+
+def add_case(parser):
+    """The options of a tool that runs a case."""
+    parser.add_argument("case", metavar="CASE", help="case file")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
+                        help="replace a value of the case: dp=1mm, gate.young=12MPa; repeatable")
+    parser.add_argument("--until", type=until, default=0.0, metavar="TIME",
+                        help="simulated time to end at, in s or as 50ms (end_time of the case)")
+    parser.add_argument("--threads", type=number(1, 2**31 - 1, int), default=0, metavar="N",
+                        help="threads to use (as many as are useful)")
+
+
+def make_case(path, settings):
+    from sphfsi import Case, InputError  # needs the library
+    changes = {}
+    for text in settings:
+        key, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"--set {text}: give key=value or section.key=value")
+        changes[key] = value
+    return Case(path, **changes)
+
+
+# --- ends ---
+def run_tool(main, failure=1):
+    """Runs main() of a tool. What is wrong becomes one sentence and an exit status: 1 for a wrong
+    input or a missing library, `failure` for a broken file or a run that did not end well."""
+    name = Path(sys.argv[0]).stem
     plt.rcParams.update(STYLE)
+    warnings.simplefilter("always", UserWarning)
+    warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
     try:
         sys.exit(main())
-    except Error as problem:
-        sys.exit(f"{Path(sys.argv[0]).stem}: {problem}")
+    except KeyboardInterrupt as stop:
+        print(f"{name}: {stop or 'interrupted'}", file=sys.stderr)
+        sys.exit(130)
+    except (Error, OSError, MemoryError) as problem:
+        print(f"{name}: {str(problem).removeprefix(name + ': ')}", file=sys.stderr)
+        broken = isinstance(problem, (BadFile, ArithmeticError, OSError, MemoryError))
+        sys.exit(failure if broken else 1)
 
 
 def save(figure, path):

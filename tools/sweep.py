@@ -7,12 +7,12 @@ import argparse
 import itertools
 import json
 import os
-import re
 import shlex
 import shutil
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import runfiles
@@ -41,7 +41,8 @@ def arguments():
     parser.add_argument("--seed", type=int, default=1, help="of the sample (%(default)s)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                         help="in every run")
-    parser.add_argument("--until", metavar="TIME", help="end of every run, s")
+    parser.add_argument("--until", type=runfiles.until, default=0.0, metavar="TIME",
+                        help="end of every run, in s or as 50ms")
     parser.add_argument("--threads", type=int, default=1, help="of a run (%(default)s)")
     parser.add_argument("--metric", metavar="COLUMN:WHAT", help="what the plot shows: a column of "
                                                                 "the "
@@ -69,38 +70,31 @@ def arguments():
 
 # --- the plan ---
 
+def settings(plan, k):
+    return [f"{key}={value}" for key, value in plan["runs"][k].items()] + plan["sets"]
+
+
 def command(plan, k, folder, *options):
-    sets = [f"{key}={value}" for key, value in plan["runs"][k].items()] + plan["sets"]
-    until = ["--until", plan["until"]] if plan["until"] else []
+    until = ["--until", repr(plan["until"])] if plan["until"] else []
     return [plan["program"], plan["case"],
-            *itertools.chain.from_iterable(("--set", s) for s in sets), *until,
+            *itertools.chain.from_iterable(("--set", s) for s in settings(plan, k)), *until,
             "--threads", str(plan["threads"]), "--out", str(folder), *options]
 
 
 def forecast(plan):
-    """Wall time (s) and memory (MB) of a run each, foreseen by --explain for some of them; and a
+    """The largest wall time (s) and memory (MB) of a run, foreseen for some of them; and a
     sentence. A case that is wrong is refused here, before anything is written."""
     n = len(plan["runs"])
     picked = sorted({round(k * (n - 1) / max(1, min(n, MOST_FORECASTS) - 1)) for k in
                      range(min(n, MOST_FORECASTS))})
-    seconds, memory = [], []
-    for k in picked:
-        said = subprocess.run(command(plan, k, "unused", "--explain"), capture_output=True,
-                              text=True)
-        if said.returncode:
-            raise BadFile(f"run {k}: "
-                          f"{said.stderr.strip().splitlines()[-1].removeprefix('sphfsi: ')}")
-        found = re.search(r"([\d.e+-]+) (s|min|h) on this machine when idle, "
-                          r"memory ([\d.e+-]+) (MB|GB)", said.stdout)
-        if found:
-            seconds.append(float(found[1]) * {"s": 1, "min": 60, "h": 3600}[found[2]])
-            memory.append(float(found[3]) * {"MB": 1, "GB": 1000}[found[4]])
-    if not seconds:
-        return None, None, f"{n} runs; what they cost cannot be foreseen"
+    warnings.simplefilter("ignore")  # each run says its own
+    costs = [runfiles.make_case(plan["case"], settings(plan, k)).explain(
+        until=plan["until"], threads=plan["threads"])["cost"] for k in picked]
+    seconds = [cost["wall_seconds"] for cost in costs]
     whole = sum(seconds) / len(seconds) * n
-    return max(seconds), max(memory), (f"{n} runs of {min(seconds):.3g} to {max(seconds):.3g} s on "
-                                       f"{plan['threads']} thread(s) of this machine when idle, "
-                                       f"{whole / 3600:.3g} h one after the other")
+    return (max(seconds), max(cost["memory_bytes"] for cost in costs) / 1e6,
+            f"{n} runs of {min(seconds):.3g} to {max(seconds):.3g} s on {plan['threads']} thread(s)"
+            f" of this machine when idle, {whole / 3600:.3g} h one after the other")
 
 
 SNAKEFILE = """# Written by tools/sweep.py; sweep.json beside it holds the runs.
@@ -143,8 +137,8 @@ def write_plan(args, out):
             raise BadFile(f"{out} holds another sweep; choose another --out or remove it")
     seconds, memory, sentence = forecast(plan)
     # Jobs get thrice the time and twice the memory that is foreseen for the dearest.
-    plan["minutes"] = int(3 * (seconds or 3600) / 60) + 5
-    plan["mem_mb"] = int(2 * (memory or 1000)) + 200
+    plan["minutes"] = int(3 * seconds / 60) + 5
+    plan["mem_mb"] = int(2 * memory) + 200
     (out / "runs").mkdir(parents=True, exist_ok=True)
     old.write_text(json.dumps(plan, indent=1) + "\n", encoding="utf-8")
     (out / "Snakefile").write_text(SNAKEFILE, encoding="utf-8")
