@@ -15,9 +15,7 @@ where it stopped. Examples:
 """
 
 import json
-import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import study_report
@@ -40,36 +38,28 @@ def arguments():
     parser.add_argument("--cached", action="store_true",
                         help="run nothing; report what has been run or was collected before")
     parser.add_argument("--report", action="store_true", help="only write the report")
-    parser.add_argument("--jobs", type=int, default=1,
-                        help="points at a time; their timings are marked as taken side by side")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the report")
     parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
     return parser.parse_args()
 
 
-def forecast(jobs, cost, at_a_time):
+def forecast(jobs, cost):
     known = [cost[job.words] for job in jobs if job.words in cost]
     unknown = len(jobs) - len(known)
-    return f"about {sum(known) / at_a_time / 60:.1f} min left" + \
+    return f"about {sum(known) / 60:.1f} min left" + \
         (f" without {unknown} of unknown cost" if unknown else "")
 
 
-def run_all(missing, study, args, cost):
-    """Runs the jobs, `args.jobs` at a time."""
-    print(f"{len(missing)} points to run; {forecast(missing, cost, args.jobs)}", flush=True)
-    started, left = time.monotonic(), list(missing)
-
-    def run(job):
-        record = run_point(job, study, args.jobs - 1)
-        left.remove(job)
+def run_all(missing, study, cost):
+    """One after the other, so that they do not disturb each other's timing."""
+    print(f"{len(missing)} points to run; {forecast(missing, cost)}", flush=True)
+    started = time.monotonic()
+    for number, job in enumerate(missing, 1):
+        record = run_point(job, study)
         cpu = [t["cpu"] for t in record["timings"]]
-        print(f"[{len(missing) - len(left)}/{len(missing)}, "
-              f"{(time.monotonic() - started) / 60:.1f} min] {job.words}: {record['outcome']}, "
-              f"{min(cpu):.2f} s of CPU ({len(cpu)} runs); {forecast(left, cost, args.jobs)}",
-              flush=True)
-
-    with ThreadPoolExecutor(args.jobs) as pool:
-        list(pool.map(run, missing))
+        print(f"[{number}/{len(missing)}, {(time.monotonic() - started) / 60:.1f} min] "
+              f"{job.words}: {record['outcome']}, {min(cpu):.2f} s of CPU ({len(cpu)} runs); "
+              f"{forecast(missing[number:], cost)}", flush=True)
 
 
 def add_errors(records, jobs, study):
@@ -122,7 +112,7 @@ def main():
     evidence = ROOT / "src" / "app" / "data" / "evidence.csv" if ours else None
     if args.report:
         return study_report.write(args.data, args.out, evidence)
-    study, args.jobs = read_study(args.study), max(1, args.jobs)
+    study = read_study(args.study)
     points = points_of(study)
     if QUICK:  # the coarsest of each case with the defaults
         points = [p for p in points if p["level"] == 0 and p["knob"] == "base"]
@@ -143,19 +133,14 @@ def main():
             state = job and done(job).get("outcome", "missing") or "refused"
             expected = f"{cost[p['name']]:8.1f} s" if p["name"] in cost else 10 * " "
             print(f"{state:9s} {expected}  {p['name']}  {' '.join(p['set'])}")
-        print(f"{len(chosen)} points, {len(missing)} to run: "
-              f"{forecast(missing, cost, args.jobs)} with --jobs {args.jobs}")
+        print(f"{len(chosen)} points, {len(missing)} to run: {forecast(missing, cost)}")
         return 0
     if missing and not args.cached:
-        run_all(missing, study, args, cost)
+        run_all(missing, study, cost)
     records = [record_of(p, jobs[p["name"]], before) for p in points]
     collect(records, add_errors(records, jobs, study), study, args.data)
     return study_report.write(args.data, args.out, evidence)
 
 
 if __name__ == "__main__":
-    try:
-        run_tool(main)
-    except KeyboardInterrupt:
-        complain("interrupted; the same command goes on")
-        sys.exit(130)
+    run_tool(main)

@@ -23,7 +23,7 @@ import study_report
 from common import OUT, PROGRAM, QUICK, ROOT, BadFile, ask, load, options, run_tool, store_rows
 from runs import effective, timed
 from study import machine
-from study_tables import forecast_cells
+from study_results import forecast_cells
 
 UNITS = {"s": 1, "min": 60, "h": 3600}
 CASES = ["*.cfg", "templates/*.cfg", "turek_hron/fsi2.cfg", "verify/elastica.cfg"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes pictures for the repository small, without changing the colours that their legends name."""
 
-from PIL import Image, PngImagePlugin  # comes with matplotlib
+from PIL import Image  # comes with matplotlib
 
 from common import COLOURS, np
 
@@ -51,14 +51,10 @@ def save(figure, path, **look):
     shrink(path)
 
 
-def shrink(path, texts=None, width=1500):
-    """Makes a picture file small: at most `width` pixels wide, from a palette. `texts` are written
-    into it, {name: text}."""
-    words = PngImagePlugin.PngInfo()
-    for name, text in (texts or {}).items():
-        words.add_text(name, text)
+def shrink(path, width=1500):
+    """Makes a picture file small: at most `width` pixels wide, from a palette."""
     with Image.open(path) as image:
         image = image.convert("RGB")
         if image.width > width:
             image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-        indexed(image).save(path, optimize=True, pnginfo=words)
+        indexed(image).save(path, optimize=True)

@@ -104,14 +104,14 @@ def repeats_of(cpu, rules):
     return rules.get("repeats", 1) if cpu < rules.get("repeat_below", 1e9) else 1
 
 
-def run_point(job, study, beside):
+def run_point(job, study):
     """Runs a point, a cheap one several times for its timing, and keeps what it gave and took."""
     rules, timings = study["study"], job.record().get("timings", [])
     wanted = len(timings) + 1
     while len(timings) < wanted:
         record = job.run(lambda text: None, rules.get("threads", 1), rules.get("time_limit", 600),
                          anew=True)
-        timings.append({**record["timing"], "beside": beside})
+        timings.append(record["timing"])
         if record["outcome"] == "finished" and len(timings) == 1:
             wanted = repeats_of(timings[0]["cpu"], rules)
     if record["outcome"] != "finished":

@@ -14,11 +14,9 @@ from matplotlib.ticker import LogFormatter
 
 from common import IMAGES, OUT, COLOURS, ROOT, WIDTH, BadFile, fill, load, np, plt, read_text
 from palette import save
-from study import SCENES
-from study_results import (CROSSING, Study, across, against, cost, machine_text, main_error,
+from study_results import (CROSSING, Study, across, against, aims_table, base_table, cost, failures,
+                           forecast_table, halving_table, knob_table, machine_text, main_error,
                            percent)
-from study_tables import (aims_table, base_table, failures, forecast_table, halving_table,
-                          knob_table, ranked_knobs, schemes_table)
 
 
 # --- figures ---
@@ -76,8 +74,7 @@ def case_text(study, case):
 
 
 def summary(study):
-    """Three sentences: the price of half the error, the finest runs, the settings that save
-    most."""
+    """The price of half the error, and the finest runs."""
     price, finest, none = [], [], []
     for case, entry in study.cases.items():
         title = entry.get("title", case)
@@ -97,13 +94,7 @@ def summary(study):
         (low, fast, best), (high, slow, worst) = min(finest), max(finest)
         text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to "
                  f"{percent(high)} % ({worst}, {slow:.3g} s). ")
-    saving = []
-    for scene, words in SCENES.items():
-        safe = [row for row in ranked_knobs(study, scene) if not row[4] and row[0] > 1]
-        saving += [f"`{study.label(*safe[0][2:4])}` ({words})"] if safe else []
-    return text + ("Without zero crossings, the settings that save most time at equal error are "
-                   f"{' and '.join(saving)}." if saving else "No setting saves time at equal error "
-                                                             "everywhere.")
+    return text
 
 
 def circumstances(study):
@@ -113,16 +104,12 @@ def circumstances(study):
     machines = "; ".join(map(machine_text, study.head["machines"])) or "unknown machine"
     versions = ", ".join(study.head["versions"]) or "unknown"
     lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a "
-             f"run: {study.threads()}.",
+             f"run: {study.definition['study'].get('threads', 1)}.",
              f"* {len(points)} of {len(study.points)} points ran, in {len(timings)} runs."]
     if timings:
         loads = [t["load"] for t in timings]
         lines.append(f"* Load average before a run: median {np.median(loads):.1f}, "
                      f"{min(loads):.1f} to {max(loads):.1f}.")
-    for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
-                               ("‡", study.beside, "was timed beside another run of the study")):
-        number = sum(map(is_so, points))
-        lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
     return "\n".join(lines)
 
 
@@ -187,7 +174,6 @@ def write(data, out, evidence=None):
         data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
         circumstances=circumstances(study), note=rules.get("note", ""),
         repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),
-        schemes=schemes_table(study),
         cases="\n".join(case_text(study, c) for c in study.cases),
         halving=halving_table(study), knobs=knobs,
         forecast=forecast_section(data.with_name("forecast.json")),
