@@ -31,8 +31,6 @@ from runs import Job
 
 SUITE = ROOT / "tests" / "stability"
 REPORT = OUT / "stability.md"
-# Steps of the comparison of the integrators, over the limit; the first run finds the limit.
-FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
 FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` runs the long form)",
         "long": "long"}
 COMMAND = {"quick": "tools/report/stability.py --quick --report", "long": "make stability"}
@@ -69,9 +67,6 @@ def measure(folder, log):
         "apart": lambda column, other: abs(probes[column] - probes[other]).max(),
         "lowest": lambda column: probes[column].min(),
         "message": summary["message"], "version": summary["version"],
-        "guarded": summary["exit_reason"] == "guard",
-        "solid_bound": (summary["time_step"].get("solid") or 0.0) /
-                       summary["parameters"]["numerics"]["solid_safety"],
     }
 
 
@@ -100,7 +95,7 @@ def words(found):
     if not found["finished"]:
         text.insert(0, f"stopped at {found['time']:.3g} s: {found['message'].split(': ', 1)[-1]}")
     if found["crossed"]:
-        text.append("fluid entered a body")
+        text.append("single particles entered a body")
     return ", ".join(text)
 
 
@@ -117,26 +112,6 @@ def run_suite(scenes, form, top, minutes):
         rows.append((scene, good, as_said, found, seconds, form))
         print(f"{'ok  ' if as_said else 'NOT '} {seconds:6.1f} s  {scene['name']}: "
               f"{'passes' if good else 'fails'} ({words(found)})", flush=True)
-    return rows
-
-
-def integrators(top):
-    """Rows (multiple of the solid's limit, result of the plate with each integrator)."""
-    rows, bound = [], None
-    for factor in FACTORS:
-        cells = []
-        for integrator in ("symplectic", "verlet", "leapfrog"):
-            sets = ["numerics.multirate=off", "end_time=5 ms", f"integrator={integrator}"]
-            sets += [] if factor is None else [f"numerics.fixed_step={factor * bound:.9g}"]
-            scene = {"name": f"plate {integrator} {factor}", "case": "plate.cfg", "set": sets}
-            found, _ = measured(job_of(scene, "quick", top))
-            cells.append(f"gain {found['gain']:.1e}" if found["finished"] else
-                         f"stopped at {1e3 * found['time']:.2g} ms")
-        if factor is None:
-            bound = found["solid_bound"]
-            continue
-        rows.append((f"{factor:g}", *cells))
-        print(f"step {factor:g} of the limit: {', '.join(cells)}", flush=True)
     return rows
 
 
@@ -177,19 +152,13 @@ def scene_row(row):
         verdict = "**unexpected pass**" if good else "**unexpected failure**"
     elif not good and scene["fails"] == form:
         verdict += " in this form"
-    numbers = f"gain {found['gain']:.1e}, density {found['dens']:.1e}"
-    if found["crossed"]:
-        numbers += "; single particles entered a body"
-    if not found["finished"]:
-        by = "a guard" if found["guarded"] else "the limit of minutes"
-        numbers = f"stopped by {by} at {found['time']:.3g} s; {numbers}"
     right = verdict_of(scene, found, False)
     against = "-" if right == "-" else scene.get("against", "-")
     return [scene["name"], f"{scene['about']} (`{scene['case']}`)", verdict_of(scene, found, True),
-            right, against, verdict, form, numbers, f"{seconds:.1f}"]
+            right, against, verdict, form, words(found), f"{seconds:.1f}"]
 
 
-def write_report(rows, integrators, form):
+def write_report(rows, form):
     scenes = [row[0] for row in rows]
     limits = [f"* {scene['name']}: {scene['limit']}." for scene in scenes if "limit" in scene]
     limits += [f"* {row[0]['name']}: unexpected; {row[3]['message'] or 'criterion'}"
@@ -200,9 +169,7 @@ def write_report(rows, integrators, form):
                         "measured", "s"], map(scene_row, rows)),
           settings="\n".join(f"* {scene['name']}: {scene['settings']}" for scene in scenes
                              if "settings" in scene),
-          limits="\n".join(limits),
-          integrators=table(["step over the limit", "symplectic", "Verlet", "leapfrog"],
-                            integrators))
+          limits="\n".join(limits))
 
 
 def main():
@@ -225,7 +192,7 @@ def main():
         if bad:
             print(f"not as the table expects: {', '.join(bad)}")
         if args.report:
-            write_report(rows, integrators(top), form)
+            write_report(rows, form)
         return bool(bad) and not args.report
 
 

@@ -15,9 +15,12 @@ import os
 import random
 from concurrent.futures import ThreadPoolExecutor
 
+from matplotlib.colors import LogNorm
+
 import common
-from common import (IMAGES, OUT, QUICK, ROOT, fill, options, plt, program_version, store_rows,
-                    summary_of, table)
+import palette
+from common import (COLOURS, IMAGES, OUT, QUICK, ROOT, fill, np, options, plt, program_version,
+                    store_rows, summary_of, table)
 
 CASE = ROOT / "tests/stability/thin.cfg"
 RESULTS = OUT / "stability_map.json"
@@ -162,17 +165,14 @@ def report(rows):
     verdicts = [judge(row) for row in rows]
     gains = [row for row, verdict in zip(rows, verdicts) if verdict == "gains"]
     early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))
-    drawn = "" if len(rows) == grid_size() else (
-        f"The grid has {grid_size()} plates, {grid_size() // len(DENSITIES)} of each density. Here "
-        f"are {len(rows)} of them, drawn at random for each density:\n" + ", ".join(
-            f"{sum(row['density'] == d for row in rows)} of {d:g}" for d in DENSITIES) +
-        " times that of water.\n")
     gained = [[f"{row['density']:g}", row["across"], row["sides"], row["integrator"], row["scheme"],
                f"{row['substeps']:g}", f"{100 * row['in_run']:.2g} %", row["term"]]
               for row in sorted(gains, key=lambda row: -row["in_run"])]
     head = ["density", "across", "wet sides", "integrator", "scheme", "sub-steps", "gain", "term"]
-    return fill("stability_map.md", drawn=drawn, plates=len(rows) - verdicts.count("left out"),
-                early=early, stopped=verdicts.count("stopped"), gains=len(gains),
+    missing = grid_size() - len(rows)
+    return fill("stability_map.md", plates=len(rows) - verdicts.count("left out"),
+                missing=f"{missing} are not run yet. " * (missing > 0), early=early,
+                stopped=verdicts.count("stopped"), gains=len(gains),
                 percent=100 * LIMIT, gained="\n" + table(head, gained) + "\n" if gains else "",
                 left_out=verdicts.count("left out"), end=END, height=HEIGHT, right=RIGHT[2],
                 versions=", ".join(common.load(RESULTS)["versions"]),
@@ -181,43 +181,27 @@ def report(rows):
 
 
 def draw(rows):
-    passes = plt.get_cmap("YlGn_r")
-
-    def colour(row):
-        verdict = judge(row)
-        if verdict == "passes" and row["gain"] > LIMIT:
-            return "#f2c879"
-        if verdict == "passes":  # 1e-6 dark to 1e-2 light
-            return passes(0.15 + 0.7 * min(1, max(0, (math.log10(row["gain"] + 1e-12) + 6) / 4)))
-        return {"left out": "0.93", "gains": "#e06a10", "stopped": "#9c1010"}[verdict]
-
-    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(8.2, 5.2), sharex=True,
-                                sharey=True)
-    for row in rows:
-        panel = axes[SIDES.index(row["sides"])][ACROSS.index(row["across"])]
-        x = DENSITIES.index(row["density"]) + INTEGRATORS.index(row["integrator"]) * 0.3
-        y = SUBSTEPS.index(row["substeps"]) + SCHEMES.index(row["scheme"]) * 0.45
-        panel.add_patch(plt.Rectangle((x, y), 0.3, 0.45, color=colour(row), lw=0))
-    for i, j in itertools.product(range(len(SIDES)), range(len(ACROSS))):
-        panel = axes[i][j]
-        panel.set(xlim=(-0.1, len(DENSITIES)), ylim=(-0.1, len(SUBSTEPS)))
-        panel.set_xticks([k + 0.45 for k in range(len(DENSITIES))], [f"{d:g}" for d in DENSITIES],
-                         fontsize=8)
-        panel.set_yticks([k + 0.45 for k in range(len(SUBSTEPS))], [f"{n:g}" for n in SUBSTEPS],
-                         fontsize=8)
-        wet = "one side" if SIDES[i] == 1 else "both sides"
-        panel.set_title(f"{ACROSS[j]} across, water on {wet}", fontsize=8)
+    """The largest gain of the plates that differ in wet sides, integrator and scheme alone, as a
+    share of the largest energy of the run."""
+    figure, axes = plt.subplots(1, len(ACROSS), figsize=(8.2, 2.9), sharey=True,
+                                layout="constrained")
+    for across, panel in zip(ACROSS, axes):
+        worst = np.full((len(SUBSTEPS), len(DENSITIES)), np.nan)
+        for row in rows:
+            if row["across"] == across and judge(row) != "left out":
+                at = SUBSTEPS.index(row["substeps"]), DENSITIES.index(row["density"])
+                worst[at] = np.fmax(worst[at], 100 * max(row["in_run"], row["result"] == "stopped"))
+        shown = panel.pcolormesh(worst, norm=LogNorm(1e-3, 100 * LIMIT),
+                                 cmap=plt.get_cmap("Blues").with_extremes(over=COLOURS[1]))
+        panel.set_xticks(np.arange(len(DENSITIES)) + 0.5, [f"{d:g}" for d in DENSITIES], fontsize=8)
+        panel.set_yticks(np.arange(len(SUBSTEPS)) + 0.5, [f"{n:g}" for n in SUBSTEPS], fontsize=8)
+        panel.set_title(f"{across} particles across", fontsize=9)
         panel.tick_params(length=0)
     figure.supxlabel("density of the plate over that of water", fontsize=10)
-    figure.supylabel("fluid step over the limit of the solid's step", fontsize=10)
-    handles = [plt.Rectangle((0, 0), 1, 1, color=c) for c in
-               (passes(0.15), passes(0.5), passes(0.85), "#f2c879", "#e06a10", "#9c1010", "0.93")]
-    words = ("gain 1e-6", "1e-4", "1e-2", "above 1 % at the start", "above 1 % of the run",
-             "stopped",
-             "cannot stand by statics")
-    figure.legend(handles, words, loc="upper center", ncol=4, fontsize=8, frameon=False)
-    figure.tight_layout(rect=(0.01, 0, 1, 0.92))
-    figure.savefig(PICTURE, dpi=150)
+    figure.supylabel("fluid step over the limit\nof the solid's step", fontsize=10)
+    bar = figure.colorbar(shown, extend="both", label="gain of energy, %")
+    bar.set_ticks([1e-3, 0.01, 0.1, 1], labels=["0.001", "0.01", "0.1", "1: limit"])
+    palette.save(figure, PICTURE, dpi=150)
     print(f"wrote {PICTURE.relative_to(ROOT)}")
 
 

@@ -6,10 +6,9 @@ docs/results/turek_hron.md.
 
 examples:
   tools/report/turek_hron.py run fsi2 --across 10        runs the case into runs/turek_hron/fsi2-10
-  tools/report/turek_hron.py read runs/turek_hron/*      prints what the runs show
   tools/report/turek_hron.py keep runs/turek_hron/*      adds it to docs/results/turek_hron.json
   tools/report/turek_hron.py report                      writes docs/results/turek_hron.md from it
-  tools/report/turek_hron.py pictures runs/turek_hron/fsi2-10   draws docs/img/turek_hron_*.png
+  tools/report/turek_hron.py picture                     draws docs/img/turek_hron_cost.png
 """
 import json
 import math
@@ -350,8 +349,8 @@ def report():
           others="\n".join(f"| {n} | {e:+.1f} | {c:.0f} | {s} |" for n, e, c, s in OTHERS))
 
 
-def pictures(run):
-    """Error of the amplitude of uy against core-seconds, from the kept runs; histories of a run."""
+def picture():
+    """Error of the amplitude of uy against core-seconds, from the kept runs."""
     fig, ax = plt.subplots(figsize=(6, 3.6))
     for case, mark in (("fsi2", "o"), ("fsi3", "s")):
         wanted = REFERENCE[case]["uy"][1]
@@ -377,30 +376,7 @@ def pictures(run):
                 va="top")
     ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %", xlim=(40, 3e7))
     ax.margins(y=0.2)
-    fig.savefig(IMAGES / "turek_hron_cost.png", dpi=150, bbox_inches="tight")
-    if not run:
-        return
-    draw_history(Path(run))
-
-
-def draw_history(run):
-    """The last four periods of ux or drag, beside the range of the reference."""
-    times, series = columns(run)
-    found = period(times, series["uy"] if "uy" in series else series["lift"])
-    if not found:
-        raise SystemExit(f"{run} is not periodic: a history of its last periods cannot be drawn")
-    late = times >= times[-1] - 4 / found[0]
-    fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.7 * len(series)), sharex=True)
-    for axis, (name, values) in zip(axes, series.items()):
-        mean, size, _ = REFERENCE[run.name.split("-")[0]][name]
-        axis.axhspan(mean - size, mean + size, color="0.88", lw=0)
-        axis.plot(times[late], values[late], lw=1.5, color=COLOURS[0])
-        axis.set_ylabel(f"{name}, {UNIT[name]}", fontsize=15)
-        axis.tick_params(labelsize=14)
-    axes[0].set_title("last four periods; grey: range of the reference", fontsize=15)
-    axes[-1].set_xlabel("time, s", fontsize=15)
-    fig.align_ylabels()
-    save(fig, IMAGES / f"turek_hron_{run.name.replace('-', '_')}.png", dpi=110, bbox_inches="tight")
+    save(fig, IMAGES / "turek_hron_cost.png", dpi=150, bbox_inches="tight")
 
 
 def main():
@@ -413,21 +389,16 @@ def main():
     run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                      help="change a constant of the case; the report names it")
     run.add_argument("--threads", type=int, default=os.cpu_count())
-    for name in ("read", "keep"):
-        sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+",
-                                                                         type=Path)
+    sub.add_parser("keep", help="keep what runs show").add_argument("runs", nargs="+", type=Path)
     sub.add_parser("report", help="write docs/results/turek_hron.md")
-    draw = sub.add_parser("pictures", help="draw error against cost, and the histories of a run")
-    draw.add_argument("history", nargs="?", type=Path)
+    sub.add_parser("picture", help="draw error against cost")
     args = parser.parse_args()
     if args.command == "run":
         return run_case(args)
-    if args.command == "read":
-        print(json.dumps([read(folder) for folder in args.runs], indent=2))
-    elif args.command == "keep":
+    if args.command == "keep":
         keep(args.runs)
-    elif args.command == "pictures":
-        pictures(args.history)
+    elif args.command == "picture":
+        picture()
     else:
         report()
     return 0

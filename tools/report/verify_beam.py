@@ -366,17 +366,16 @@ def draw(known):
     figure, axes = plt.subplots(figsize=(7, 4.5))
     ratio = np.logspace(-1.5, 4.5, 200)
     axes.plot(ratio, 1 / np.sqrt(1 + ratio), "k-", lw=1, label="theory")
-    for sides, marker in ((1, "o"), (2, "s")):
+    for sides, marker, colour in ((1, "o", COLOURS[0]), (2, "s", COLOURS[1])):
         rows = known.get(f"plate in a basin, {SIDES[sides]}", {"figures": []})["figures"]
         for k, (_, error, _) in enumerate(rows):
             thick, density = POINTS[k]
             inside, alone = theory(sides, thick, density)
             axes.plot((alone / inside)**2 - 1, inside / alone * (1 + error / 100), marker,
-                      mfc="none", color=COLOURS[k // 3],
-                      label=f"{thick:g} dp, {SIDES[sides]}" if k % 3 == 1 else None)
+                      mfc="none", color=colour, label=SIDES[sides] if k == 0 else None)
     axes.set(xscale="log", yscale="log", xlabel="mass of the water over that of the plate",
              ylabel="frequency in water over that in vacuum")
-    axes.legend(fontsize=8, ncol=2)
+    axes.legend(fontsize=10)
     save(figure, IMAGES / "beam_wet.png", dpi=130, bbox_inches="tight")
 
 
