@@ -137,22 +137,18 @@ def main():
     parser.add_argument("--bench", action="store_true", help="the bench only")
     parser.add_argument("--reps", type=int, default=1 if QUICK else 5, help="repetitions, of which "
                         "the median counts (%(default)s)")
-    parser.add_argument("--kept", type=Path, metavar="FILE", help="take the bench of this file, "
-                        "which may be of another processor, as it is")
     args = parser.parse_args()
-    path = args.kept
-    if not path:
-        text = run_bench(args.reps, large=not (QUICK or args.bench))
-        path = bench_file(parse(text)[0][0].split(",")[0])
-        compare(parse(text)[1], path)
-        path.write_text(text)
+    text = run_bench(args.reps, large=not (QUICK or args.bench))
+    path = bench_file(parse(text)[0][0].split(",")[0])
+    compare(parse(text)[1], path)
+    path.write_text(text)
     if args.bench:
         return
-    notes, rows = parse(path.read_text())
+    notes, rows = parse(text)
     repeats = 1 if QUICK else args.reps
     write(REPORT, "performance.md", version=program_version(), date=date.today(),
-          processor=machine(), bench=notes[0] + ", of an earlier program" * bool(args.kept),
-          load=os.getloadavg()[0], file=path.name, gate=real_gate(repeats),
+          processor=machine(), bench=notes[0], load=os.getloadavg()[0], file=path.name,
+          gate=real_gate(repeats),
           sweeps=table(["kernel", "particles", "sort", "packed", "wall", "fluid", "update", "all",
                         "bytes"], sweep_rows(rows)),
           work=table(["work", "particles", "steps", "solid steps", "CPU s", "ms a step",
