@@ -2,9 +2,6 @@
  * Which changes of a case a restart or a fork accepts. */
 #include "app/session.h"
 
-#include <stdio.h>
-#include <string.h>
-
 /* A line of an effective case, and the section that it is in. */
 struct line {
     const char *text, *next;

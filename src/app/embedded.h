@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Text files that the program carries: cases/templates and src/app/data, put into C by
  * tools/embed.sh. */
-#ifndef SPHFSI_APP_EMBEDDED_H
-#define SPHFSI_APP_EMBEDDED_H
+#pragma once
 
 #include "base/base.h"
-
-#include <string.h>
 
 struct embedded_file {
     const char *name; /* from the top of the sources */
@@ -22,5 +19,3 @@ SPHFSI_INLINE const char *embedded_text(const char *name)
     while (strcmp(file->name, name) != 0) file++;
     return file->text;
 }
-
-#endif

@@ -7,10 +7,7 @@
 #include "case/params.h"
 #include "geometry/sampling.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum evidence_column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
 enum { MAX_ERRORS = 256 };

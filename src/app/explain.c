@@ -9,10 +9,6 @@
 #include "output/report.h"
 #include "time/timestep.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static void say_scene(const struct session *session, const struct sphfsi_options *o)
 {
     const struct scene *scene = &session->scene;

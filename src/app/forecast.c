@@ -11,9 +11,7 @@
 #include "time/energy.h"
 #include "time/timestep.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { FIRST_STEPS = 20, EVALUATIONS_MEASURED = 5 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured

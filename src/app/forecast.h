@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run. The bounds of the time step give the number of steps; trial steps of this
  * scene on this machine give the time of each. */
-#ifndef SPHFSI_APP_FORECAST_H
-#define SPHFSI_APP_FORECAST_H
+#pragma once
 
 #include "app/session.h"
 
@@ -33,5 +32,3 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
 
 /* The cost of the whole run. */
 struct forecast forecast_run(const struct unit_costs *c, const struct simulation *sim);
-
-#endif

@@ -5,8 +5,6 @@
 #include "base/csv.h"
 #include "output/checkpoint.h"
 
-#include <string.h>
-
 static void say_image(const char *path, const struct image *m, const struct sphfsi_options *o)
 {
     const struct image_info info = checkpoint_info(m);

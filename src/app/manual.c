@@ -10,10 +10,6 @@
 #include "output/json.h"
 #include "output/probes.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static bool pure(const struct param *param)
 {
     return !param->unit || strcmp(param->unit, "1") == 0;

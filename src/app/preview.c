@@ -6,10 +6,7 @@
 #include "case/params.h"
 
 #include <errno.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Pixels: the longer side of the drawing, its margins, a line of text. */
 enum { DRAWING = 1000, LEFT = 70, RIGHT = 30, HEAD = 60, FOOT = 52, LINE = 18 };

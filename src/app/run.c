@@ -15,9 +15,7 @@
 #include "time/energy.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum output { OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };

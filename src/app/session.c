@@ -6,11 +6,8 @@
 #include "output/rows.h"
 #include "time/timestep.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static void forward_warning(void *context, const char *text)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A call of the public header: its options, what it must give back to the calling program, its
  * result and message. A session: a scene and its simulation, opened with these options. */
-#ifndef SPHFSI_APP_SESSION_H
-#define SPHFSI_APP_SESSION_H
+#pragma once
 
 #include "sphfsi.h"
 
@@ -84,5 +83,3 @@ void evidence_say(const struct scene *scene, const struct sphfsi_options *o);
  * default; "". */
 struct param;
 void manual_example(const struct param *param, char *text, size_t size);
-
-#endif

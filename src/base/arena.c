@@ -4,7 +4,6 @@
 #include "base/threads.h"
 
 #include <stdlib.h>
-#include <string.h>
 #ifdef __linux__
 #include <sys/mman.h>
 #endif

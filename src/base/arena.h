@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The memory of one simulation: zeroed, 64-byte aligned arrays that are freed together. */
-#ifndef SPHFSI_BASE_ARENA_H
-#define SPHFSI_BASE_ARENA_H
+#pragma once
 
 #include "base/error.h"
 
@@ -37,5 +36,3 @@ void arena_free(struct arena *a);
 
 /* For tests: makes the n-th allocation from now fail (0: the next); negative: none. */
 void arena_fail_after(long n);
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * The smallest box around points. */
-#ifndef SPHFSI_BASE_BOX2_H
-#define SPHFSI_BASE_BOX2_H
+#pragma once
 
 #include "base/macros.h"
-
-#include <math.h>
 
 struct box2 {
     double low[2], high[2];
@@ -44,5 +41,3 @@ SPHFSI_INLINE bool box2_near(const struct box2 *a, const struct box2 *b, double 
         near &= a->low[c] - b->high[c] <= reach && b->low[c] - a->high[c] <= reach;
     return near;
 }
-
-#endif

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Small dense systems of equations. */
-#ifndef SPHFSI_BASE_CHOLESKY_H
-#define SPHFSI_BASE_CHOLESKY_H
+#pragma once
 
 #include "base/base.h"
-
-#include <math.h>
 
 /* Solves M z = z for the first n rows of a symmetric positive matrix with `stride` columns, of
  * which only the lower triangle is read; it is overwritten. Returns n, or the first row at which M
@@ -29,5 +26,3 @@ SPHFSI_INLINE int cholesky_solve(double *M, int n, int stride, double least, dou
     }
     return n;
 }
-
-#endif

@@ -4,9 +4,7 @@
 #include "base/files.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { CSV_MAX_LINES = 1000000 };
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Text tables: rows of numbers, or fields with commas between them. */
-#ifndef SPHFSI_BASE_CSV_H
-#define SPHFSI_BASE_CSV_H
+#pragma once
 
 #include "base/error.h"
 
@@ -32,5 +31,3 @@ enum err csv_open(struct csv *c, const char *file) SPHFSI_CHECKED;
 /* 1: a row; 0: the end; -1: failed, in the diag. */
 int csv_row(struct csv *c, double row[3]);
 void csv_close(struct csv *c);
-
-#endif

@@ -3,8 +3,6 @@
 
 #include "base/base.h"
 
-#include <math.h>
-
 /* A double-double: the number hi + lo, hi being its nearest double (Dekker 1971). Operations on
  * them have relative errors of some 2^-104. */
 struct dd {

@@ -9,8 +9,7 @@
  * glibc 0.002 to 0.02 us. Calls are rare: all of them are 0.01 % of the instructions of gate.cfg
  * (dp = 2 mm), 0.04 % of hydrostatic_plate.cfg (50 mm) and 0.25 % of channel.cfg, up to 2, 5 and
  * 100 ms (callgrind). */
-#ifndef SPHFSI_BASE_ELEMENTARY_H
-#define SPHFSI_BASE_ELEMENTARY_H
+#pragma once
 
 double elementary_sin(double x);
 double elementary_cos(double x);
@@ -23,5 +22,3 @@ double elementary_log(double x);
 double elementary_pow(double x, double y);
 double elementary_atan2(double y, double x);
 double elementary_hypot(double x, double y);
-
-#endif

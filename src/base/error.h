@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Errors: a code for the program, one sentence for the user. */
-#ifndef SPHFSI_BASE_ERROR_H
-#define SPHFSI_BASE_ERROR_H
+#pragma once
 
 #include "base/macros.h"
 
@@ -44,5 +43,3 @@ void diag_more(struct diag *d, const char *text);
         const enum err err_ = (call); \
         if (err_) return err_;        \
     } while (0)
-
-#endif

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Files: paths, whole-file reads, and atomic replacement (a reader sees the old file or the new
  * one). */
-#ifndef SPHFSI_BASE_FILES_H
-#define SPHFSI_BASE_FILES_H
+#pragma once
 
 #include "base/error.h"
-
-#include <stdio.h>
 
 enum { PATH_BYTES = 4096 };
 
@@ -43,5 +40,3 @@ enum err atomic_file_open(struct atomic_file *out, const char *folder, const cha
 /* Flushes, syncs, closes and renames. On failure it removes the part and keeps the old file. */
 enum err atomic_file_commit(struct atomic_file *out, struct diag *d) SPHFSI_CHECKED;
 void atomic_file_abandon(struct atomic_file *out);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * FNV-1a hashes (Fowler, Noll and Vo), 64 bits. Every step is invertible: one changed byte
  * always changes the hash. */
-#ifndef SPHFSI_BASE_HASH_H
-#define SPHFSI_BASE_HASH_H
+#pragma once
 
 #include "base/macros.h"
 
@@ -25,5 +24,3 @@ SPHFSI_INLINE uint32_t hash_cell(int64_t i, int64_t j, uint32_t mask)
     key *= 0xBF58476D1CE4E5B9u;
     return (uint32_t)(key >> 32) & mask;
 }
-
-#endif

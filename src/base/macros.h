@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Compiler attributes, ASSERT, and a few functions of scalars that the C library lacks. */
-#ifndef SPHFSI_BASE_MACROS_H
-#define SPHFSI_BASE_MACROS_H
+ * Headers of the C library that nearly every file uses, compiler attributes, ASSERT, and a few
+ * functions of scalars that the library lacks. */
+#pragma once
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <string.h>
 
 #define SPHFSI_INLINE static inline __attribute__((always_inline))
 #define SPHFSI_PRINTF(fmt_index, args_index) __attribute__((format(printf, fmt_index, args_index)))
@@ -26,5 +29,3 @@
 SPHFSI_INLINE double min2(double a, double b) { return a < b ? a : b; }
 SPHFSI_INLINE double max2(double a, double b) { return a > b ? a : b; }
 SPHFSI_INLINE double square(double a) { return a * a; }
-
-#endif

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/point_grid.h"
 
-#include <string.h>
-
 static enum err create_table(struct point_grid *g, int64_t n, struct arena *a, struct diag *d)
 {
     uint64_t size = 64;

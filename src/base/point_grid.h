@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Points in square cells, in a hash table: sparse scenes need no more memory than dense ones. */
-#ifndef SPHFSI_BASE_POINT_GRID_H
-#define SPHFSI_BASE_POINT_GRID_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/hash.h"
-
-#include <math.h>
 
 struct point_grid {
     double side;   /* of a cell, m */
@@ -89,5 +86,3 @@ SPHFSI_INLINE bool point_grid_any(const struct point_grid *g, double x, double y
     struct point_visit v = point_grid_visit(g, x, y, reach);
     return point_grid_next(g, &v);
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Names of the arithmetic in sweeps and pair laws that are compiled for double precision. A file
  * includes this header or base/real_float.h. */
-#ifndef SPHFSI_BASE_REAL_DOUBLE_H
-#define SPHFSI_BASE_REAL_DOUBLE_H
+#pragma once
 
 #include "base/simd.h"
 
@@ -29,5 +28,3 @@
 #define four_widen four_widen_double
 #define vput vput_double
 #define vwiden vwiden_double
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Names of the arithmetic in sweeps and pair laws that are compiled for mixed precision: pairs
  * in float. A file includes this header or base/real_double.h. */
-#ifndef SPHFSI_BASE_REAL_FLOAT_H
-#define SPHFSI_BASE_REAL_FLOAT_H
+#pragma once
 
 #include "base/simd.h"
 
@@ -29,5 +28,3 @@
 #define four_widen four_widen_float
 #define vput vput_float
 #define vwiden vwiden_float
-
-#endif

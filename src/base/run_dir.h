@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The folder of a run: created, locked against a second run, and never overwritten. */
-#ifndef SPHFSI_BASE_RUN_DIR_H
-#define SPHFSI_BASE_RUN_DIR_H
+#pragma once
 
 #include "base/files.h"
 
@@ -26,5 +25,3 @@ enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use us
 void run_dir_close(struct run_dir *dir);
 /* Closes it, and removes the folders that run_dir_open has made, as far as they are empty. */
 void run_dir_withdraw(struct run_dir *dir);
-
-#endif

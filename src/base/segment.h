@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A point and a segment: the geometry of contact between solids, rigid bodies and beams alike. */
-#ifndef SPHFSI_BASE_SEGMENT_H
-#define SPHFSI_BASE_SEGMENT_H
+#pragma once
 
 #include "base/macros.h"
-
-#include <math.h>
 
 /* A place on a segment: 0 to 1 from its start to its end, and the vector from there to the point.
  */
@@ -38,5 +35,3 @@ SPHFSI_INLINE struct segment_foot segment_foot(const double at[2], const double 
     f.distance = sqrt(f.offset[0] * f.offset[0] + f.offset[1] * f.offset[1]);
     return f;
 }
-
-#endif

@@ -4,12 +4,9 @@
  * follow one fixed tree and fma is explicit, so the bits do not depend on compiler or
  * instruction set (-ffp-contract=off). -DSPHFSI_LANES=8 gives an AVX-512 machine the 8 float
  * lanes of AVX2. */
-#ifndef SPHFSI_BASE_SIMD_H
-#define SPHFSI_BASE_SIMD_H
+#pragma once
 
 #include "base/base.h"
-
-#include <string.h>
 
 #if defined __AVX2__ && defined __FMA__
 #include <immintrin.h>
@@ -384,5 +381,3 @@ SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, flo
     return n;
 #endif
 }
-
-#endif

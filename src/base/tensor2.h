@@ -2,8 +2,7 @@
  * 2x2 tensors over an arithmetic type T, inlined by hand. The macro defines the struct and its
  * routines for double and for vectors of `real`, which is double unless the file includes
  * base/real_float.h. */
-#ifndef SPHFSI_BASE_TENSOR2_H
-#define SPHFSI_BASE_TENSOR2_H
+#pragma once
 
 #ifndef real
 #include "base/real_double.h"
@@ -34,5 +33,3 @@
 
 TENSOR2(double, tensor2)
 TENSOR2(vreal, vtensor2)
-
-#endif

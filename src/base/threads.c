@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/threads.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <time.h>
 #ifdef _OPENMP

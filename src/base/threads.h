@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Number and index of OpenMP threads; one thread in a build without OpenMP. The wall clock, and
  * what the library sets in the calling thread. */
-#ifndef SPHFSI_BASE_THREADS_H
-#define SPHFSI_BASE_THREADS_H
+#pragma once
 
 #include "base/error.h"
 
 #include <locale.h>
-#include <stdint.h>
 #if defined __APPLE__
 #include <xlocale.h>
 #endif
@@ -63,5 +61,3 @@ struct host host_use(struct host settings);
 /* Puts the locale "C" in effect and, unless it is 0, a number of threads; what was goes to
  * *before. */
 enum err host_enter(struct host *before, int threads, struct diag *d) SPHFSI_CHECKED;
-
-#endif

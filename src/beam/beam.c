@@ -8,9 +8,6 @@
 #include "case/params.h"
 #include "geometry/outline.h"
 
-#include <math.h>
-#include <string.h>
-
 static const char what[] = "beams";
 
 /* --- lines --- */

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Beams: lines of nodes with two displacements and a rotation each, which two-node elements join
  * (T-103). README.md tells the order of a step. */
-#ifndef SPHFSI_BEAM_BEAM_H
-#define SPHFSI_BEAM_BEAM_H
+#pragma once
 
 #include "beam/element.h"
 #include "case/scene.h"
@@ -122,5 +121,3 @@ void beam_section(const struct beams *beams, const struct beam_place *place, dou
 void beam_reaction(const struct beams *beams, int beam, const double about[2], double out[3]);
 
 struct body_energy beam_energy(const struct beams *beams, int beam);
-
-#endif

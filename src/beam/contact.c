@@ -6,9 +6,6 @@
 #include "geometry/motion.h"
 #include "geometry/outline.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Of the particle spacing: a distance that counts as kept. */
 #define KEPT 1e-9
 

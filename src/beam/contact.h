@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Contact of beams with walls, rigid bodies, other beams and themselves, without friction: a force
  * in the step that keeps their distance at its end (T-106). */
-#ifndef SPHFSI_BEAM_CONTACT_H
-#define SPHFSI_BEAM_CONTACT_H
+#pragma once
 
 #include "beam/beam.h"
 
@@ -31,5 +30,3 @@ void beams_finish_touches(struct beams *beams, double time, double dt);
  * beams have no contact. */
 int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,
                          int *beam);
-
-#endif

@@ -2,9 +2,6 @@
 #include "beam/element.h"
 #include "base/elementary.h"
 
-#include <math.h>
-#include <string.h>
-
 static double across(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
 static double along(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 

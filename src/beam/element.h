@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The two-node element of a geometrically exact beam (Reissner 1972, Simo and Vu-Quoc 1986). */
-#ifndef SPHFSI_BEAM_ELEMENT_H
-#define SPHFSI_BEAM_ELEMENT_H
+#pragma once
 
 #include "base/base.h"
 
@@ -32,5 +31,3 @@ struct beam_start {
  * by d. */
 void beam_force(const struct beam_element *e, const struct beam_start *start,
                 const double *const d[2], double dt, double force[2][3], double matrix[6][6]);
-
-#endif

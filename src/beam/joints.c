@@ -4,9 +4,6 @@
 #include "base/elementary.h"
 #include "rigid/forces.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Of the particle spacing: a distance that counts as none. */
 #define JOINED 1e-9
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Clamps and hinges of beams on rigid bodies: forces that are unknowns of the step beside the
  * displacements (T-107). */
-#ifndef SPHFSI_BEAM_JOINTS_H
-#define SPHFSI_BEAM_JOINTS_H
+#pragma once
 
 #include "beam/beam.h"
 
@@ -32,5 +31,3 @@ void beams_resist_joints(const struct beams *beams, double *unknown);
 
 /* After a part of the step. */
 void beams_finish_joints(struct beams *beams, double dt);
-
-#endif

@@ -8,8 +8,6 @@
 #include "geometry/motion.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 /* Of the residual over the largest force; of round-off over the largest stiffness. */
 #define TOLERANCE 1e-9

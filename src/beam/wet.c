@@ -3,9 +3,6 @@
 #include "base/elementary.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-#include <string.h>
-
 static double impedance(const struct beams *beams) { return beams->scene->rho0 * beams->scene->c0; }
 
 /* T-111a: the first node that is held or on a rigid body carries the beam along. Without any, each

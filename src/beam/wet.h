@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Fluid on both sides of beams: each is a thin line (fluid/lines.h) with the nodes of the beam. */
-#ifndef SPHFSI_BEAM_WET_H
-#define SPHFSI_BEAM_WET_H
+#pragma once
 
 #include "beam/beam.h"
 #include "fluid/lines.h"
@@ -21,5 +20,3 @@ void beams_find_fluid(struct beams *beams, const struct beam_times *times);
 /* After the step: the impulse and pressure that the fluid has still to receive, the motion that it
  * uses, and its work. */
 void beams_return_impulse(struct beams *beams, const struct beam_times *times);
-
-#endif

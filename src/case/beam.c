@@ -3,9 +3,6 @@
 #include "case/case.h"
 #include "base/elementary.h"
 
-#include <math.h>
-#include <string.h>
-
 static enum err check_line(struct reader *r, const struct scene_beam *beam)
 {
     if (beam->shape.n > 1)

@@ -18,8 +18,7 @@
  * `like = NAME` takes the values, but not the regions, of an earlier section of the same kind as
  * defaults. --set key=value and --set section.key=value replace an entry, or add it, before
  * anything is evaluated; the section is NAME, `kind NAME`, or the word of an unnamed section. */
-#ifndef SPHFSI_CASE_CASE_H
-#define SPHFSI_CASE_CASE_H
+#pragma once
 
 #include "case/params.h"
 
@@ -163,5 +162,3 @@ enum err table_open(const struct scene *scene, struct csv *csv, const char *name
                     const char *key, struct diag *d) SPHFSI_CHECKED;
 /* The tables of gravity and of motions. */
 enum err case_load_tables(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
-
-#endif

@@ -4,10 +4,6 @@
 #include "case/case.h"
 #include "expr/expr.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* --- names of other sections --- */
 
 static enum err check_name(struct reader *r, const struct param *param, const char *name,

@@ -3,10 +3,6 @@
 #include "case/effects.h"
 #include "case/case.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 const struct effect_info effect_table[EFFECT_COUNT] = {
 #define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
     {#name, key, equation, meaning, groups, KIND_##kind},

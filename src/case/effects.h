@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The effects of a scene as a set of bits, from case/effects.def. */
-#ifndef SPHFSI_CASE_EFFECTS_H
-#define SPHFSI_CASE_EFFECTS_H
+#pragma once
 
 #include "case/params.h"
 #include "particles/particles.h"
@@ -119,5 +118,3 @@ SPHFSI_INLINE bool phase_runs(enum phase phase, effect_set effects)
 
 /* Field groups that the set needs for particles of one kind. */
 unsigned effects_groups(effect_set effects, enum kind kind);
-
-#endif

@@ -3,8 +3,6 @@
 #include "case/case.h"
 
 #include <ctype.h>
-#include <stdio.h>
-#include <string.h>
 
 static bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 

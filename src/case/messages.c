@@ -3,8 +3,6 @@
 #include "case/case.h"
 
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 /* In the order of their lines, each once: numbers at the top are also read as constants. */
 static void store(struct reader *r, const struct problem *p)

@@ -2,9 +2,6 @@
  * Named constants, and numbers with units. */
 #include "case/case.h"
 
-#include <stdio.h>
-#include <string.h>
-
 enum { MAX_CONSTANT_DEPTH = 32 };
 
 /* --- constants --- */

@@ -3,8 +3,6 @@
 #include "case/case.h"
 #include "base/elementary.h"
 
-#include <math.h>
-
 int scene_open_count(const struct scene *scene) { return scene->n_inflow + scene->n_outflow; }
 
 struct scene_open scene_open_at(const struct scene *scene, int k)

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "case/params.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #define WHERE_0(section) offsetof(struct scene, section), 0
 #define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * case/params.def as data: one row for each section and each key, used to read, check, write or
  * list the values of a scene. */
-#ifndef SPHFSI_CASE_PARAMS_H
-#define SPHFSI_CASE_PARAMS_H
+#pragma once
 
 #include "case/scene.h"
 
@@ -135,5 +134,3 @@ const char *nearest_hint(struct nearest *near);
 /* What an unknown key of a section may mean, for the end of a message; it may be "": the section
  * that has it, or the nearest key of its own, or of those that `near` brings. */
 const char *param_hint(enum section_id section, const char *word, struct nearest *near);
-
-#endif

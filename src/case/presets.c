@@ -2,8 +2,6 @@
  * Defaults that follow from `scheme` and `accuracy`. */
 #include "case/case.h"
 
-#include <string.h>
-
 enum { ANY = -1 };
 
 /* Whether the case gives a gravity, before it is read. */

@@ -3,10 +3,6 @@
  * all that knows moving walls knows rigid bodies. A [beam] section is a wall. */
 #include "case/case.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 int case_given_count(const struct scene *scene, enum section_id id)
 {
     const int added = id == SECTION_wall     ? scene->n_rigid + scene->n_beam

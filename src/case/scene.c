@@ -4,10 +4,6 @@
 #include "base/elementary.h"
 #include "case/params.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 void scene_free(struct scene *scene)
 {
     arena_free(&scene->arena);

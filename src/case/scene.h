@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The content of a case file as a struct (from case/params.def) and the points sampled from its
  * shapes. All memory belongs to the scene's arena. Units: SI. */
-#ifndef SPHFSI_CASE_SCENE_H
-#define SPHFSI_CASE_SCENE_H
+#pragma once
 
 #include "expr/expr.h"
 
@@ -407,5 +406,3 @@ struct scene_place scene_place(const struct scene *scene, int line);
     diag_add(d, ERR_INPUT, "%s: " format, scene_place(scene, line).text, ##__VA_ARGS__)
 /* A file name of the case file, relative to the working directory; false: too long. */
 bool scene_file(const struct scene *scene, const char *name, char *path, size_t size);
-
-#endif

@@ -13,10 +13,6 @@
 #include "case/case.h"
 #include "base/elementary.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static enum err read_coordinate(struct reader *r, struct slice text, double *value)
 {
     TRY(case_number(r, text, "m", value));

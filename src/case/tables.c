@@ -3,9 +3,6 @@
 #include "case/case.h"
 #include "base/csv.h"
 
-#include <stdio.h>
-#include <string.h>
-
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d)
 {

@@ -2,10 +2,6 @@
  * Values of a case file by the type of their key: numbers, choices, texts, expressions, shapes. */
 #include "case/case.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static enum err check_range(struct reader *r, const struct param *param, double value)
 {
     const bool low = param->low.open ? value > param->low.value : value >= param->low.value;

@@ -4,10 +4,7 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #ifndef SPHFSI_VERSION
 #define SPHFSI_VERSION "(unversioned build)"

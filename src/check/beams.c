@@ -5,9 +5,6 @@
 
 #include "base/elementary.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Of dp: lengths along a line and beside it that count as nothing. */
 static const double ahead = 1e-3, beside = 1e-5;
 

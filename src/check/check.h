@@ -2,8 +2,7 @@
  * Judges a scene before it runs: what can be simulated but is probably a mistake, or costs more
  * time than it needs. Each warning has the consequence and the remedy. What cannot be simulated is
  * refused where it is read or sampled. */
-#ifndef SPHFSI_CHECK_CHECK_H
-#define SPHFSI_CHECK_CHECK_H
+#pragma once
 
 #include "base/point_grid.h"
 #include "geometry/sampling.h"
@@ -77,5 +76,3 @@ enum err refuse_beams(const struct check *check) SPHFSI_CHECKED;
 enum err warn_of_shapes(struct check *check) SPHFSI_CHECKED;
 enum err warn_of_fluid(struct check *check) SPHFSI_CHECKED;
 enum err warn_of_solids(struct check *check) SPHFSI_CHECKED;
-
-#endif

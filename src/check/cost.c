@@ -6,8 +6,6 @@
 #include "coupling/bounds.h"
 #include "time/timestep.h"
 
-#include <stdio.h>
-
 /* The largest cfl of an integrator is that up to which a falling column of water was found stable
  * (tests/stability/column.cfg); the analysis in docs/theory.md gives the same for leapfrog.
  * fixed_step is used unchanged, even if the run then becomes unstable. */

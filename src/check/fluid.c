@@ -8,9 +8,6 @@
 #include "case/params.h"
 #include "geometry/motion.h"
 
-#include <stdio.h>
-#include <string.h>
-
 static double dot(const double a[2], double x, double y) { return a[0] * x + a[1] * y; }
 
 /* --- nothing below the fluid --- */

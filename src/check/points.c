@@ -5,8 +5,6 @@
 #include "base/elementary.h"
 #include "case/params.h"
 
-#include <math.h>
-
 int drawn_at(const struct check *check, double x, double y)
 {
     for (int r = 0; r < check->scene->n_solid + check->scene->n_wall; r++)

@@ -6,8 +6,6 @@
 #include "base/elementary.h"
 #include "case/effects.h"
 
-#include <stdio.h>
-
 /* --- off the lattice --- */
 
 static double cells_to(const struct region *region, int c, double x)

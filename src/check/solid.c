@@ -7,8 +7,6 @@
 #include "case/effects.h"
 #include "case/params.h"
 
-#include <string.h>
-
 /* --- what holds a body --- */
 
 enum support { LOOSE, STANDS, HELD };

@@ -4,10 +4,7 @@
 
 #include "case/params.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fluid)
 {

@@ -2,9 +2,6 @@
  * Bounds of the time step that the exchange sets: what one side does, the other side follows a step
  * later. */
 #include "coupling/bounds.h"
-
-#include <math.h>
-
 #include "coupling/motion.h"
 
 /* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).

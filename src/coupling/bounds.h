@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Bounds of the time step that the exchange sets. */
-#ifndef SPHFSI_COUPLING_BOUNDS_H
-#define SPHFSI_COUPLING_BOUNDS_H
+#pragma once
 
 #include "coupling/coupling.h"
 
@@ -11,5 +10,3 @@ double coupling_added_mass_step(const struct coupling *coupling, int *lightest);
 /* T-35g: largest step with the viscous drag at the corners of structures that fluid sticks to,
  * s; INFINITY without any. */
 double coupling_drag_step(const struct coupling *coupling);
-
-#endif

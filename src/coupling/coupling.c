@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The order of the exchange in a step of the fluid. */
 #include "coupling/coupling.h"
-
-#include <math.h>
-
 #include "coupling/impulse.h"
 #include "coupling/motion.h"
 #include "implicit/implicit.h"

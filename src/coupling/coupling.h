@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The exchange between fluid and structure: what it knows, and its part of a step. README.md
  * tells the order. */
-#ifndef SPHFSI_COUPLING_COUPLING_H
-#define SPHFSI_COUPLING_COUPLING_H
+#pragma once
 
 #include "case/effects.h"
 #include "fluid/fluid.h"
@@ -51,5 +50,3 @@ void coupling_predict(struct coupling *coupling, double dt);
 /* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
  * `last` is the step before. Returns the largest displacement of a particle, m. */
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
-
-#endif

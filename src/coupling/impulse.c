@@ -3,9 +3,6 @@
  * it later. As a constant force over the sub-steps this pressure acts a step late. Oscillations
  * with periods between 4/3 and 4 steps then gain energy. */
 #include "coupling/impulse.h"
-
-#include <math.h>
-
 #include "solid/loads.h"
 
 /* T-35f: fluid beside a body that is thinner than two of its spacings receives impulses of both

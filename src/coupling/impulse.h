@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The impedance of the fluid at a structure within the structure's sub-steps, and the impulse
  * that it exchanges (T-35a to T-35e). */
-#ifndef SPHFSI_COUPLING_IMPULSE_H
-#define SPHFSI_COUPLING_IMPULSE_H
+#pragma once
 
 #include "coupling/coupling.h"
 
@@ -22,5 +21,3 @@ void impulse_set_time(struct coupling *coupling, double dt);
 
 /* Particle i and the fluid have no impulse to exchange. */
 void impulse_clear(struct particles *particles, int64_t i);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The motion of a structure that the fluid uses: velocity wx, wy and acceleration ax, ay
  * (T-14, T-35). */
-#ifndef SPHFSI_COUPLING_MOTION_H
-#define SPHFSI_COUPLING_MOTION_H
+#pragma once
 
 #include "coupling/coupling.h"
 
@@ -46,5 +45,3 @@ void motion_ahead(struct coupling *coupling, double half);
 /* Single rate: position and velocity of the structure; a share `weight` of the present acceleration
  * enters the mean. */
 void motion_at_single_rate(struct coupling *coupling, double weight);
-
-#endif

@@ -5,11 +5,8 @@
 #include "expr/ops.h"
 
 #include <ctype.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const struct function {
     const char *name;

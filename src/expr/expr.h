@@ -14,8 +14,7 @@
  *
  * Dimensions are carried along. A plain number, written without a unit, may stand for any dimension
  * (it is SI); in a product with a number that has a unit it is a pure number. */
-#ifndef SPHFSI_EXPR_H
-#define SPHFSI_EXPR_H
+#pragma once
 
 #include "base/base.h"
 
@@ -136,5 +135,3 @@ struct slice slice_identifier(struct slice s);
 size_t number_length(struct slice s);
 /* Hint for a message on the count of numbers if a comma stands between digits; otherwise "". */
 const char *comma_hint(const char *value);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The stack program of a compiled expression, which expr/expr.c makes and expr/run.c runs. */
-#ifndef SPHFSI_EXPR_OPS_H
-#define SPHFSI_EXPR_OPS_H
+#pragma once
 
 #include "base/base.h"
 
@@ -49,5 +48,3 @@ SPHFSI_INLINE int operands(enum op_code code) { return code < OP_ADD ? 0 : code 
 
 /* The result of an operation; `b` of two operands only. */
 double expr_operate(enum op_code code, double a, double b);
-
-#endif

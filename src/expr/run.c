@@ -6,9 +6,6 @@
 #include "base/elementary.h"
 #include "expr/ops.h"
 
-#include <math.h>
-#include <string.h>
-
 double expr_operate(enum op_code code, double a, double b)
 {
     switch (code) {

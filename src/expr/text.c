@@ -3,7 +3,6 @@
 #include "expr/expr.h"
 
 #include <ctype.h>
-#include <string.h>
 
 struct slice slice_of(const char *text) { return (struct slice){text, strlen(text)}; }
 

@@ -4,10 +4,7 @@
 #include "base/elementary.h"
 
 #include <ctype.h>
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* A unit is up/down SI units. Two whole numbers, so that 140 mm is the same double as 0.14. */
 static const struct unit {

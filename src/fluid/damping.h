@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Zones in which the fluid is damped, so that waves leave (T-101). */
-#ifndef SPHFSI_FLUID_DAMPING_H
-#define SPHFSI_FLUID_DAMPING_H
+#pragma once
 
 #include "fluid/fluid.h"
 
@@ -24,5 +23,3 @@ void damping_book(struct damping *damping, double dt);
 
 /* Energy that all zones have taken so far, J/m. */
 double damping_energy(const struct damping *damping);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Tait's equation of state (Eq. 2) with gamma = 7, in terms of dens = rho/rho0 - 1, which keeps the
  * digits that rho itself would lose. */
-#ifndef SPHFSI_FLUID_EOS_H
-#define SPHFSI_FLUID_EOS_H
+#pragma once
 
 #include "base/base.h"
 
@@ -88,5 +87,3 @@ SPHFSI_INLINE double eos_energy(double d, double c0)
 
 /* P rho0/rho^2, m^2/s^2: the rate at which that energy changes with dens. */
 #define EOS_ENERGY_RATE(d, c0) ((c0) * (c0) / EOS_GAMMA * EOS_POWER(d) / ((1 + (d)) * (1 + (d))))
-
-#endif

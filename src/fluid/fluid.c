@@ -3,9 +3,6 @@
 
 #include "fluid/eos.h"
 
-#include <math.h>
-#include <string.h>
-
 static struct fluid_constants constants_of(const struct scene *scene)
 {
     const struct scene_fluid *fluid = &scene->fluid[0];

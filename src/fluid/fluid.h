@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The fluid's model and its sweeps: one evaluation of all rates of fluid, walls and coupling. */
-#ifndef SPHFSI_FLUID_FLUID_H
-#define SPHFSI_FLUID_FLUID_H
+#pragma once
 
 #include "particles/clusters.h"
 #include "case/effects.h"
@@ -258,5 +257,3 @@ void fluid_repulsion_energy(const struct fluid *fluid, const struct particles ki
 
 /* The fluid's own pressures to p, which no step needs. */
 void fluid_show(const struct fluid *fluid, struct particles *particles);
-
-#endif

@@ -4,8 +4,6 @@
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
-#include <string.h>
-
 static int parts_of(const struct thin_line *line) { return line->scene->n - 1; }
 
 /* The ends as the scene has them, at rest. */

@@ -2,8 +2,7 @@
  * Thin lines (T-110): walls thinner than a particle with fluid on both sides. Particles that a line
  * separates do not interact; behind the line each side has dummies of its own. The nodes of a line
  * may move in any way; its dummies follow them, and hand their forces back. */
-#ifndef SPHFSI_FLUID_LINES_H
-#define SPHFSI_FLUID_LINES_H
+#pragma once
 
 #include "base/box2.h"
 #include "geometry/thin.h"
@@ -62,5 +61,3 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
  * 0: none. (x, y) is the second place less the first, `from`. */
 int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
                   double x, double y);
-
-#endif

@@ -5,8 +5,6 @@
 
 #include "base/hash.h"
 
-#include <math.h>
-
 /* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this
  * far in front of it is relabelled without delay. Fluid that oscillates about the line by less
  * creates no copies. */

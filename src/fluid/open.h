@@ -4,8 +4,7 @@
  * across the line, with a given pressure their velocity. A buffer particle that crosses the line
  * becomes fluid, and a copy of it starts at the far end of the buffer. Fluid that crosses the line
  * joins the buffer, and is removed at its far end; at once if the buffer brings fluid in there. */
-#ifndef SPHFSI_FLUID_OPEN_H
-#define SPHFSI_FLUID_OPEN_H
+#pragma once
 
 #include "fluid/fluid.h"
 
@@ -99,5 +98,3 @@ void open_forget(struct open *o);
 
 /* FNV-1a hash of the data carried from step to step, continuing from h. */
 uint64_t open_hash(const struct open *o, uint64_t h);
-
-#endif

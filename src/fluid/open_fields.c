@@ -7,8 +7,6 @@
 #include "expr/expr.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-
 /* --- the fluid across a line --- */
 
 /* Sums of the kernel, without its norm, over the fluid around a point: of the pressure and of

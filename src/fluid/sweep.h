@@ -6,9 +6,6 @@
  * lane of a group of four has its own sum over candidates, so the bits do not depend on the number
  * of groups in a vector. */
 
-#include <math.h>
-#include <string.h>
-
 #include "fluid/eos.h"
 #include "fluid/fluid.h"
 #include "particles/kernel.h"

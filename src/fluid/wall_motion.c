@@ -3,9 +3,6 @@
 #include "case/params.h"
 #include "geometry/motion.h"
 
-#include <math.h>
-#include <string.h>
-
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,
                             const struct particles *walls, struct diag *d)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Walls that move: set to their positions, sorted if they have moved, and skipped while they rest.
  * */
-#ifndef SPHFSI_FLUID_WALL_MOTION_H
-#define SPHFSI_FLUID_WALL_MOTION_H
+#pragma once
 
 #include "particles/cells.h"
 #include "case/scene.h"
@@ -39,5 +38,3 @@ void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particl
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
 double moving_wall_power(const struct moving_wall *b, const struct particles *walls);
-
-#endif

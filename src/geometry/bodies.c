@@ -6,8 +6,6 @@
 #include "base/point_grid.h"
 #include "case/case.h"
 
-#include <math.h>
-
 /* --- thickness and area --- */
 
 double geometry_rows_across(const struct region *region)

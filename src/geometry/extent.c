@@ -6,8 +6,6 @@
 #include "case/case.h"
 #include "geometry/motion.h"
 
-#include <math.h>
-
 static struct box2 box_of(const struct scene *scene, int kind, int body)
 {
     const struct scene_points *p = &scene->points[kind];

@@ -6,9 +6,7 @@
 
 #include "case/case.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Tolerances: directions closer than this are equal, rad; edges closer than this to the lattice are
  * on it, dp. */

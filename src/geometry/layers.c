@@ -8,9 +8,6 @@
 #include "base/elementary.h"
 #include "base/point_grid.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Two points of a wall nearer than this many dp count as one. */
 static const double coincident = 0.65;
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * From a case to a scene with its particles. */
-#ifndef SPHFSI_GEOMETRY_LOAD_H
-#define SPHFSI_GEOMETRY_LOAD_H
+#pragma once
 
 #include "case/scene.h"
 
@@ -14,5 +13,3 @@ enum err scene_load_text(struct scene *scene, const char *text, const char *path
 
 /* Samples all shapes into s->points; sets h and the effective domain (geometry/sampling.c). */
 enum err scene_sample(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
-
-#endif

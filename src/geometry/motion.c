@@ -3,9 +3,6 @@
 #include "geometry/motion.h"
 #include "base/elementary.h"
 
-#include <math.h>
-#include <string.h>
-
 /* The row at or before a time, but not before the first nor the last one. */
 static int table_row(const struct scene_table *table, double t)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Gravity and motions of a scene at a time. */
-#ifndef SPHFSI_GEOMETRY_MOTION_H
-#define SPHFSI_GEOMETRY_MOTION_H
+#pragma once
 
 #include "case/scene.h"
 
@@ -18,5 +17,3 @@ struct motion_point {
     double x[2], v[2], a[2];
 };
 struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
-
-#endif

@@ -6,10 +6,6 @@
 
 #include "case/case.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 

@@ -5,9 +5,7 @@
 
 #include "case/case.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* A joint longer than this many thicknesses is too sharp and refused. */
 static const double max_mitre = 4;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Outlines of shapes, and the intervals of a horizontal line inside them. */
-#ifndef SPHFSI_GEOMETRY_OUTLINE_H
-#define SPHFSI_GEOMETRY_OUTLINE_H
+#pragma once
 
 #include "base/box2.h"
 #include "case/scene.h"
@@ -72,5 +71,3 @@ bool outline_contains(const struct outline *o, double x, double y);
 int outlines_find(const struct outlines *o, double x, double y);
 /* Whether an edge of any piece is at most `reach` away. */
 bool outlines_edge_within(const struct outlines *o, double x, double y, double reach);
-
-#endif

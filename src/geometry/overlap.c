@@ -9,8 +9,6 @@
 #include "case/case.h"
 #include "particles/kernel.h"
 
-#include <string.h>
-
 /* Beside a common edge of shapes that are sampled on different lattices, or in layers, particles
  * may be nearer to each other than this many dp. The one of less priority is left out. */
 static const double too_near = 0.7;

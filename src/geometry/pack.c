@@ -13,8 +13,6 @@
 #include "case/case.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-
 /* Lines through a cell, for its area in the shape. */
 enum { LINES = 16 };
 /* Slope of an edge that counts as one along the lattice. */

@@ -5,8 +5,6 @@
 #include "geometry/load.h"
 #include "geometry/sampling.h"
 
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 /* Approximate bytes of a particle, to refuse absurd cases: fields, neighbour lists and copies. */

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Internal to scene_sample: regions (geometry/sampling.c), their overlaps (geometry/overlap.c),
  * data of all points together (geometry/extent.c). */
-#ifndef SPHFSI_GEOMETRY_SAMPLING_H
-#define SPHFSI_GEOMETRY_SAMPLING_H
+#pragma once
 
 #include "base/box2.h"
 #include "case/case.h"
@@ -196,5 +195,3 @@ enum err geometry_extent(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* Bodies that are bonded touch (geometry/bodies.c). */
 enum err geometry_check_joined(struct sampler *sampler) SPHFSI_CHECKED;
-
-#endif

@@ -9,8 +9,6 @@
 #include "base/elementary.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-
 /* A part of a line: its length and its direction. */
 struct part {
     const double *from;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What thin lines separate (T-110), as they are drawn. */
-#ifndef SPHFSI_GEOMETRY_THIN_H
-#define SPHFSI_GEOMETRY_THIN_H
+#pragma once
 
 #include "case/scene.h"
 
@@ -23,5 +22,3 @@ SPHFSI_INLINE bool crosses_piece(const double to[2], const double a[2], const do
 int geometry_between(const struct scene *scene, const double from[2], const double to[2]);
 /* Distance of a place from the nearest line, m; INFINITY: there are none. */
 double geometry_line_distance(const struct scene *scene, const double at[2]);
-
-#endif

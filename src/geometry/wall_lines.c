@@ -8,8 +8,6 @@
 #include "case/case.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-
 static bool is_fluid(const struct sampler *sampler, const double at[2])
 {
     for (int k = 0; k < sampler->n_regions; k++)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Hinges within implicit steps (T-90a). */
-#ifndef SPHFSI_IMPLICIT_CONSTRAINT_H
-#define SPHFSI_IMPLICIT_CONSTRAINT_H
+#pragma once
 
 #include "implicit/implicit.h"
 
@@ -23,5 +22,3 @@ void constraint_solve(struct implicit *implicit, struct hinges *hinges,
 /* After a step of dt: the hinges' forces and the velocities of their points, for their work. */
 void constraint_end(const struct implicit *implicit, struct hinges *hinges,
                     const struct particles *particles, double dt);
-
-#endif

@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "implicit/envelope.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "base/simd.h"
 
 /* Vectors of one stride of columns. */

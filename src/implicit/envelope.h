@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Symmetric matrices of which each row is stored from its first entry to the diagonal, and their
  * factors L D L^T. The sums have one order on every machine. */
-#ifndef SPHFSI_IMPLICIT_ENVELOPE_H
-#define SPHFSI_IMPLICIT_ENVELOPE_H
+#pragma once
 
 #include "base/base.h"
 
@@ -39,5 +38,3 @@ int64_t envelope_factor(struct envelope *m);
 
 /* x = A^-1 x with the factors of A; x has n items, and ENVELOPE_ALIGN more that are numbers. */
 void envelope_solve(const struct envelope *m, double *x);
-
-#endif

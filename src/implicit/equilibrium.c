@@ -4,10 +4,6 @@
 #include "implicit/equilibrium.h"
 
 #include "implicit/constraint.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Static equilibrium of solids without fluid (T-78a). */
-#ifndef SPHFSI_IMPLICIT_EQUILIBRIUM_H
-#define SPHFSI_IMPLICIT_EQUILIBRIUM_H
+#pragma once
 
 #include "implicit/implicit.h"
 
@@ -18,5 +17,3 @@ struct equilibrium {
 enum err equilibrium_find(struct equilibrium *found, const struct solid *solid,
                           struct particles *particles, const struct scene *scene,
                           struct contact *contact, struct diag *d) SPHFSI_CHECKED;
-
-#endif

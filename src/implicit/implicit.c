@@ -4,8 +4,6 @@
 #include "implicit/constraint.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "implicit/stress.h"
 #include "solid/hinges.h"

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of the solid: one that conserves energy and momentum takes the place of its
  * sub-steps (T-90). */
-#ifndef SPHFSI_IMPLICIT_IMPLICIT_H
-#define SPHFSI_IMPLICIT_IMPLICIT_H
+#pragma once
 
 #include "implicit/envelope.h"
 #include "solid/solid.h"
@@ -91,5 +90,3 @@ void implicit_correct(const struct solid *solid, struct particles *particles);
  * without any. From the number of negative pivots of K - omega^2 M, which is the number of
  * frequencies below omega (Sylvester), three of them zero for each free piece. */
 double implicit_period(struct solid *solid, struct particles *particles);
-
-#endif

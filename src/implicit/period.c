@@ -3,7 +3,6 @@
 #include "implicit/implicit.h"
 
 #include <float.h>
-#include <math.h>
 
 double implicit_period(struct solid *solid, struct particles *particles)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Stress as a function of strain, for all laws of the solid. */
-#ifndef SPHFSI_IMPLICIT_STRESS_H
-#define SPHFSI_IMPLICIT_STRESS_H
+#pragma once
 
 #include "base/real_double.h"
 
@@ -78,5 +77,3 @@ SPHFSI_INLINE struct vtensor2 load_tensor(double *const field[4], int64_t i)
     return (struct vtensor2){vload(field[0] + i), vload(field[1] + i), vload(field[2] + i),
                              vload(field[3] + i)};
 }
-
-#endif

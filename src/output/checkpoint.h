@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Checkpoints: the whole state of a run in one file. A restart from it gives the same bits as an
  * uninterrupted run. docs/formats.md describes the file byte by byte. */
-#ifndef SPHFSI_OUTPUT_CHECKPOINT_H
-#define SPHFSI_OUTPUT_CHECKPOINT_H
+#pragma once
 
 #include "base/files.h"
 #include "time/simulation.h"
@@ -99,5 +98,3 @@ enum err checkpoint_remove_others(const char *folder, int64_t newest, struct dia
     SPHFSI_CHECKED;
 
 void checkpoint_free(struct image *m);
-
-#endif

@@ -2,9 +2,6 @@
  * Sampling the fluid: at a point, at its surface, at its front, through a line. */
 #include "output/fluid_sample.h"
 #include "base/elementary.h"
-
-#include <math.h>
-
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The fluid at a point, at its surface, at its front, through a line: for probes. */
-#ifndef SPHFSI_OUTPUT_FLUID_SAMPLE_H
-#define SPHFSI_OUTPUT_FLUID_SAMPLE_H
+#pragma once
 
 #include "time/state.h"
 
@@ -30,5 +29,3 @@ double fluid_flux(const struct simulation *sim, const double a[2], const double 
  * its force on a surface with the fluid to the left of the line, N/m. */
 void fluid_pressure_on(const struct simulation *sim, const double a[2], const double b[2],
                        double out[3]);
-
-#endif

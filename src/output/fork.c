@@ -9,7 +9,6 @@
 #include "time/relax.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 /* What moves has to be where its motion puts it: a jump would move it through the fluid. */
 static enum err check_jump(const struct simulation *sim, const char *what, const char *name,

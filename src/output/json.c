@@ -3,8 +3,6 @@
 
 #include "output/series.h"
 
-#include <math.h>
-
 static void quote(struct json *j, const char *text)
 {
     fputc('"', j->file);

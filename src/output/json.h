@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Writes indented JSON. A number that is not finite becomes null. */
-#ifndef SPHFSI_OUTPUT_JSON_H
-#define SPHFSI_OUTPUT_JSON_H
+#pragma once
 
-#include <stdint.h>
-#include <stdio.h>
+#include "base/macros.h"
 
 struct json {
     FILE *file;
@@ -20,5 +18,3 @@ void json_integer(struct json *j, const char *name, int64_t value);
 void json_text(struct json *j, const char *name, const char *value);
 /* An array of numbers in one line. */
 void json_numbers(struct json *j, const char *name, const double *values, int n);
-
-#endif

@@ -4,7 +4,6 @@
 #include "base/files.h"
 #include "output/report.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* The mean of largest magnitude over as many intervals between rows as come next to the window, two

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What fields.vtkhdf says of a particle. Here and not in snapshot.h, so that programs that only
  * read fields build without HDF5. */
-#ifndef SPHFSI_OUTPUT_POINT_DATA_H
-#define SPHFSI_OUTPUT_POINT_DATA_H
+#pragma once
 
 #include "time/simulation.h"
 
@@ -26,5 +25,3 @@ enum data {
 /* Value of one particle in a floating dataset; simulation_refresh comes first. */
 double snapshot_value(enum data what, const struct simulation *sim, enum kind kind, int64_t i,
                       int column);
-
-#endif

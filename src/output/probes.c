@@ -5,9 +5,6 @@
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
-#include <stdio.h>
-#include <string.h>
-
 const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
     [PROBE_DISPLACEMENT] = {"displacement", "dx_m,dy_m",
                             "displacement of a material point of a solid or beam"},

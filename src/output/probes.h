@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Probes: the quantities of quantity_table, at a point, of a body, or of the fluid. */
-#ifndef SPHFSI_OUTPUT_PROBES_H
-#define SPHFSI_OUTPUT_PROBES_H
+#pragma once
 
 #include "time/simulation.h"
 
@@ -80,5 +79,3 @@ bool probe_column(const struct scene_probe *sp, int column, char *name, size_t s
 
 /* The values of probe k now, as many as it has columns; its mean so far, if it has one. */
 void probes_values(const struct probes *probes, struct simulation *sim, int k, double *row);
-
-#endif

@@ -5,9 +5,7 @@
 #include "base/files.h"
 #include "case/case.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Inserts a row by time: times of digitised points need not ascend. */
 static void insert_row(struct reference *r, const double row[2])

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Reference curves of a case, and the deviation of its probes from them. */
-#ifndef SPHFSI_OUTPUT_REFERENCE_H
-#define SPHFSI_OUTPUT_REFERENCE_H
+#pragma once
 
 #include "output/json.h"
 #include "output/probes.h"
@@ -60,5 +59,3 @@ void references_write(struct json *j, const struct references *r);
 
 /* Writes one line for the user. */
 void reference_line(const struct reference *r, char *text, size_t size);
-
-#endif

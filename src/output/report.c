@@ -7,9 +7,6 @@
 #include "output/json.h"
 #include "case/params.h"
 
-#include <math.h>
-#include <string.h>
-
 static void write_shapes(struct json *j, const char *key, const struct shape_list *list)
 {
     static const char *const names[] = {"box", "polygon", "polyline", "circle"};

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * summary.json: parameters, progress, cost, conservation and extremes of a run. */
-#ifndef SPHFSI_OUTPUT_REPORT_H
-#define SPHFSI_OUTPUT_REPORT_H
+#pragma once
 
 #include "output/json.h"
 #include "output/reference.h"
@@ -40,5 +39,3 @@ enum err loads_write(struct json *j, const char *folder, const struct probes *pr
 
 /* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *sim, const struct record *r);
-
-#endif

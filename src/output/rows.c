@@ -3,10 +3,7 @@
 
 #include "time/energy.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char ledger_header[] =
 #define LEDGER(name, unit, meaning) "," #name "_" unit

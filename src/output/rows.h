@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Rows of probes and of the ledger at uniform times, interpolated between the states of a run on
  * both sides of each time; means of probes over time. No step depends on them. */
-#ifndef SPHFSI_OUTPUT_ROWS_H
-#define SPHFSI_OUTPUT_ROWS_H
+#pragma once
 
 #include "output/probes.h"
 #include "output/series.h"
@@ -65,5 +64,3 @@ void rows_follow(struct row_files *r, struct simulation *sim);
 /* Makes all rows survive a power failure. */
 enum err rows_sync(const struct row_files *r, struct diag *d) SPHFSI_CHECKED;
 void rows_close(struct row_files *r);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Time series as CSV: a header, then rows, each written at once. */
-#ifndef SPHFSI_OUTPUT_SERIES_H
-#define SPHFSI_OUTPUT_SERIES_H
+#pragma once
 
 #include "base/files.h"
 
@@ -33,5 +32,3 @@ void series_close(struct series *s);
 
 /* Writes the number with as many digits as give back the same bits; "nan" and "inf" as in C. */
 int series_number(char text[SERIES_NUMBER], double value);
-
-#endif

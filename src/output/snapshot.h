@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * fields.vtkhdf: snapshots of all particles in the VTKHDF layout, readable by ParaView and h5py. */
-#ifndef SPHFSI_OUTPUT_SNAPSHOT_H
-#define SPHFSI_OUTPUT_SNAPSHOT_H
+#pragma once
 
 #include "base/files.h"
 #include "time/simulation.h"
@@ -34,5 +33,3 @@ double snapshots_seconds(struct simulation *sim);
 
 /* Removes the spare. */
 void snapshots_close(struct snapshots *w);
-
-#endif

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/snapshot_file.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Rows that a snapshot of n points adds to a dataset: 1, n, n + 1. */
 enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };

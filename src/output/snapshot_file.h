@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * For snapshot.c: the datasets of fields.vtkhdf, and appending to them with HDF5. */
-#ifndef SPHFSI_OUTPUT_SNAPSHOT_FILE_H
-#define SPHFSI_OUTPUT_SNAPSHOT_FILE_H
+#pragma once
 
 #include "case/scene.h"
 #include "output/point_data.h"
@@ -52,5 +51,3 @@ bool snapshot_file_copy_missing(const struct snapshot_layout *layout, hid_t from
 /* Bytes of a point before compression; the most bytes that a snapshot of n points adds. */
 int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout);
 int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n);
-
-#endif

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "particles/cells.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* A particle outside the grid is sorted after all cells. */
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Cell list in Morton order: it sorts the particles in memory and finds neighbours. */
-#ifndef SPHFSI_PARTICLES_CELLS_H
-#define SPHFSI_PARTICLES_CELLS_H
+#pragma once
 
 #include "particles/particles.h"
 
@@ -221,5 +220,3 @@ SPHFSI_INLINE void cells_each_near(const struct cells *cells, enum kind kind,
         }
     }
 }
-
-#endif

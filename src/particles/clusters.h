@@ -2,8 +2,7 @@
  * Cluster pair lists, as in Pall and Hess (2013): which clusters of four particles are within
  * reach of each other, by their bounding boxes. Boxes follow the present positions; an older
  * sort makes them larger, but never misses a pair. */
-#ifndef SPHFSI_PARTICLES_CLUSTERS_H
-#define SPHFSI_PARTICLES_CLUSTERS_H
+#pragma once
 
 #include "particles/cells.h"
 #include "particles/kernel.h"
@@ -141,5 +140,3 @@ SPHFSI_INLINE void cluster_list_build_half(struct cluster_list *near, struct nei
      * load right after this scalar store would stall. */
     if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
 }
-
-#endif

@@ -3,8 +3,7 @@
  *   W(q) = alpha_D (1 - q/2)^4 (2q + 1),  0 <= q = r/h <= 2,  alpha_D = 7/(4 pi h^2),
  *   grad_a W_ab = -(5 alpha_D/h^2) (1 - q/2)^3 x_ab,
  * so the gradient needs no division by r. */
-#ifndef SPHFSI_PARTICLES_KERNEL_H
-#define SPHFSI_PARTICLES_KERNEL_H
+#pragma once
 
 #include "base/base.h"
 
@@ -27,5 +26,3 @@ SPHFSI_INLINE double kernel_slope(double r, double h)
     const double t = max2(0, 1 - 0.5 * r / h);
     return -KERNEL_SLOPE / square(h * h) * (t * t * t);
 }
-
-#endif

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "particles/particles.h"
 
-#include <string.h>
-
 const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};
 
 const struct field_info field_table[] = {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Particles as flat arrays (SoA), declared from particles/fields.def; one set of arrays for each
  * kind. */
-#ifndef SPHFSI_PARTICLES_PARTICLES_H
-#define SPHFSI_PARTICLES_PARTICLES_H
+#pragma once
 
 #include "base/base.h"
 
@@ -88,5 +87,3 @@ SPHFSI_INLINE void particles_clear(double *field, int64_t n)
 {
     for (int64_t i = 0; field && i < n; i++) field[i] = 0;
 }
-
-#endif

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "rigid/forces.h"
 #include "case/params.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "base/elementary.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"

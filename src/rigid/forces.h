@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What holds, pulls and stops rigid bodies: hinges, guides, springs and contact. */
-#ifndef SPHFSI_RIGID_FORCES_H
-#define SPHFSI_RIGID_FORCES_H
+#pragma once
 
 #include "rigid/rigid.h"
 
@@ -125,5 +124,3 @@ void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_st
 
 /* Their work in the last step, of walls that move and of bodies on each other. */
 void rigid_impulse_work(struct rigid *rigid);
-
-#endif

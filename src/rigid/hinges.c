@@ -2,10 +2,6 @@
  * Hinges between rigid bodies, and what acts in any hinge: spring, damper, friction, drive. */
 #include "rigid/forces.h"
 #include "case/params.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "base/elementary.h"
 #include "geometry/motion.h"
 

@@ -3,9 +3,6 @@
  * and springs (T-100), found together. */
 #include "rigid/forces.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Changes of the relative velocity below this are round-off: of velocities and places. */
 static double round_off(const struct rigid *rigid, const struct rigid_row *row,
                         const struct rigid_step *step)

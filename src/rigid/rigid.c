@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "rigid/rigid.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "geometry/motion.h"
 #include "rigid/forces.h"
 

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Rigid bodies: moving walls whose motion is three unknowns, the displacement of the centre of mass
  * and the angle. README.md tells the order of a step. */
-#ifndef SPHFSI_RIGID_RIGID_H
-#define SPHFSI_RIGID_RIGID_H
+#pragma once
 
 #include "fluid/wall_motion.h"
 
@@ -119,5 +118,3 @@ struct body_energy {
     double kinetic, potential, elastic, momentum[2], mass, waiting;
 };
 struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt);
-
-#endif

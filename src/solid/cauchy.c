@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * True stress of a particle and energy of bodies, for output. */
-#include <math.h>
 
 #include "solid/material_energy.h"
 

@@ -5,10 +5,6 @@
 #include "base/elementary.h"
 #include "solid/contact_pair.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* --- potential of a pair --- */
 
 /* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is the least reach R; r = R less the

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Contact of solids with each other, with walls and with themselves: a surface particle and the
  * line through the surface particles opposite repel each other (docs/theory.md, Contact). */
-#ifndef SPHFSI_SOLID_CONTACT_H
-#define SPHFSI_SOLID_CONTACT_H
+#pragma once
 
 #include "base/point_grid.h"
 #include "rigid/rigid.h"
@@ -138,5 +137,3 @@ double contact_energy(struct contact *contact, const struct particles *particles
 
 /* The section of a body, walls after solids. */
 const struct scene_section_common *contact_section(const struct contact *contact, int body);
-
-#endif

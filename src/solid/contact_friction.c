@@ -3,8 +3,6 @@
  * and a place that moves with the surface which it presses. */
 #include "solid/contact_pair.h"
 
-#include <math.h>
-
 /* --- what presses a point --- */
 
 /* The load of an edge's surface among the n on a point, with the nearest edge; NULL: too many. */

@@ -8,9 +8,6 @@
 #include "geometry/motion.h"
 #include "particles/kernel.h"
 
-#include <math.h>
-#include <string.h>
-
 /* --- distance --- */
 
 static struct contact_closest closest_of(const struct contact *contact, int32_t point, int32_t edge,

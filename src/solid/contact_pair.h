@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A point and an edge in contact: their distance and their law (T-61, T-62). And what the files of
  * contact call of each other. */
-#ifndef SPHFSI_SOLID_CONTACT_PAIR_H
-#define SPHFSI_SOLID_CONTACT_PAIR_H
+#pragma once
 
 #include "solid/contact.h"
 
@@ -104,5 +103,3 @@ double contact_friction_energy(struct contact *contact, const struct particles *
 /* The part in the step bound of the pairs from first to before end, of one point. */
 void contact_friction_rows(struct contact *contact, const struct particles *particles,
                            int64_t first, int64_t end);
-
-#endif

@@ -9,9 +9,6 @@
 #include "particles/kernel.h"
 #include "solid/hinges.h"
 
-#include <math.h>
-#include <string.h>
-
 /* Radius of the circle that rolls over the surface, in spacings. Four particles of a lattice cell
  * lie on a circle of 0.71, and a circle below 1 enters a slit of one missing row. Between these
  * values the surface of a body on the lattice does not depend on it. */

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/hinges.h"
 #include "case/params.h"
-
-#include <string.h>
-
 #include "base/cholesky.h"
 #include "geometry/motion.h"
 #include "particles/kernel.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Hinges: points of bodies that stay in place, on another body or on a wall (T-81). */
-#ifndef SPHFSI_SOLID_HINGES_H
-#define SPHFSI_SOLID_HINGES_H
+#pragma once
 
 #include "solid/types.h"
 
@@ -64,5 +63,3 @@ void hinges_place(const struct hinges *hinges, int hinge, double time, double to
  * before it. Adds each body's part to `on`. */
 double hinges_work(const struct hinges *hinges, const double *vx, const double *vy, double dt,
                    double *on);
-
-#endif

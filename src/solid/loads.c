@@ -5,8 +5,6 @@
 #include "geometry/outline.h"
 #include "geometry/sampling.h"
 
-#include <math.h>
-
 /* --- start --- */
 
 static int moving_clamp(const struct scene *scene, int body)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Prescribed action on a solid from outside: loads on a part of a body, and clamps that move. */
-#ifndef SPHFSI_SOLID_LOADS_H
-#define SPHFSI_SOLID_LOADS_H
+#pragma once
 
 #include "geometry/motion.h"
 #include "solid/types.h"
@@ -62,5 +61,3 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
  * part to `on`. */
 double loads_work(const struct loads *v, const struct particles *particles, const double *vx,
                   const double *vy, double dt, double *on);
-
-#endif

@@ -2,8 +2,7 @@
  * Stress laws of the solid, one short function each, on vectors of `real`. All use the displacement
  * gradient U = F - I, which keeps the digits of small strains, and return the first Piola-Kirchhoff
  * stress P. */
-#ifndef SPHFSI_SOLID_MATERIAL_H
-#define SPHFSI_SOLID_MATERIAL_H
+#pragma once
 
 #include "solid/solid.h"
 #include "base/tensor2.h"
@@ -96,5 +95,3 @@ SPHFSI_INLINE struct vtensor2 material_pk1(const struct solid_body *b, struct vt
     default: return paper_pk1(b, U);
     }
 }
-
-#endif

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Parts of the stress laws that only output needs: stored energy, and the state across the plane.
  * In double. */
-#ifndef SPHFSI_SOLID_MATERIAL_ENERGY_H
-#define SPHFSI_SOLID_MATERIAL_ENERGY_H
-
-#include <math.h>
+#pragma once
 
 #include "base/real_double.h"
 #include "base/elementary.h"
@@ -103,5 +100,3 @@ SPHFSI_INLINE void material_across(const struct solid_body *b, struct vtensor2 U
                        : 1 / sqrt(1 - 2 * ratio * trace_eps);
     }
 }
-
-#endif

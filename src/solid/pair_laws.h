@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One inline function for each law between two particles of the solid, for a pack of pairs.
  * Included by the sweeps (solid/sweep.h), once for each precision. */
-#ifndef SPHFSI_SOLID_PAIR_LAWS_H
-#define SPHFSI_SOLID_PAIR_LAWS_H
+#pragma once
 
 #include "solid/material.h"
 #include "solid/solid.h"
@@ -190,5 +189,3 @@ SPHFSI_INLINE void hourglass_printed(const struct solid_pair *q, const struct so
     s->ax = vfma(along, q->x, s->ax);
     s->ay = vfma(along, q->y, s->ay);
 }
-
-#endif

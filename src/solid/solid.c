@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/solid.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "base/box2.h"
 #include "solid/contact.h"
 #include "solid/hinges.h"

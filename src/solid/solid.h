@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Total-Lagrangian elastic solid: reference neighbours as packs, deformation gradient, stress,
  * forces. */
-#ifndef SPHFSI_SOLID_SOLID_H
-#define SPHFSI_SOLID_SOLID_H
+#pragma once
 
 #include "solid/types.h"
 
@@ -101,5 +100,3 @@ double solid_von_mises(const double sigma[4]);
 enum { SOLID_ALL = -1 };
 void solid_energy(const struct solid *solid, const struct particles *particles, int body,
                   double *elastic, double *hourglass, double *det_low);
-
-#endif

@@ -2,8 +2,6 @@
  * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the paper
  * contains the speed of sound only; the hourglass springs are stiffer than the material and limit
  * the step. */
-#include <math.h>
-#include <string.h>
 
 #include "solid/material.h"
 #include "solid/solid.h"

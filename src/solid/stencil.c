@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The solid's reference neighbours, which never change: packs of particles and their slots. */
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/cholesky.h"
 #include "base/point_grid.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The data of a solid: bodies, packs and slots. */
-#ifndef SPHFSI_SOLID_TYPES_H
-#define SPHFSI_SOLID_TYPES_H
+#pragma once
 
 #include "particles/particles.h"
 #include "case/scene.h"
@@ -157,5 +156,3 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
     return solid->sweeps->size == sizeof(double) ? ((const double *)array)[i]
                                                  : (double)((const float *)array)[i];
 }
-
-#endif

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-
-#include <math.h>
-
 #include "geometry/motion.h"
 #include "time/timestep.h"
 #include "time/energy.h"

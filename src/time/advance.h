@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The state at time zero, and what a step consists of: evaluation of the rates, advance of fluid
  * and structure, sorting into cells. All integrators share it. */
-#ifndef SPHFSI_TIME_ADVANCE_H
-#define SPHFSI_TIME_ADVANCE_H
+#pragma once
 
 #include "time/state.h"
 
@@ -100,5 +99,3 @@ enum err lone_step(struct simulation *sim, double t_limit, struct diag *d) SPHFS
 extern const struct integrator integrator_symplectic; /* Eqs. 22-24 */
 extern const struct integrator integrator_verlet;     /* Eqs. 25-27 */
 extern const struct integrator integrator_leapfrog;   /* T-32a, T-32b */
-
-#endif

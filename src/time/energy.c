@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/energy.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "base/box2.h"
 #include "fluid/eos.h"
 #include "geometry/motion.h"

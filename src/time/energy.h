@@ -2,8 +2,7 @@
  * The energy of a run: the rows of ledger.csv, and the account of work (T-46), which finds energy
  * that nothing supplied. The account is the effect ENERGY_ACCOUNT: without it, the functions that
  * add to it do nothing. */
-#ifndef SPHFSI_TIME_ENERGY_H
-#define SPHFSI_TIME_ENERGY_H
+#pragma once
 
 #include "time/state.h"
 
@@ -47,5 +46,3 @@ struct energy_gain energy_find_gain(struct simulation *sim);
 /* Reads the last test of the account: warns once if a region has gained energy, and fails if the
  * gain is nine tenths of its available energy. */
 enum err energy_guard(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
-
-#endif

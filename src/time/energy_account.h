@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What a run keeps of its energy: a row of ledger.csv, and the account of work (T-46). */
-#ifndef SPHFSI_TIME_ENERGY_ACCOUNT_H
-#define SPHFSI_TIME_ENERGY_ACCOUNT_H
+#pragma once
 
 #include "case/scene.h"
 #include "particles/particles.h"
@@ -88,5 +87,3 @@ struct energy_gain {
     double available; /* largest available energy since then */
     bool found;       /* the guards have yet to read it */
 };
-
-#endif

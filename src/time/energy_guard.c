@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What is said of energy that a region has gained, and when the run stops (T-46). */
 #include "time/energy.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "case/params.h"
 #include "time/timestep.h"
 

@@ -3,8 +3,6 @@
 #include "time/advance.h"
 
 #include <float.h>
-#include <math.h>
-#include <string.h>
 
 #include "beam/wet.h"
 #include "geometry/motion.h"

@@ -4,10 +4,7 @@
 #include "base/box2.h"
 #include "base/elementary.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "implicit/implicit.h"
 #include "particles/kernel.h"

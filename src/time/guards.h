@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Guards: limits beyond which a state is invalid. */
-#ifndef SPHFSI_TIME_GUARDS_H
-#define SPHFSI_TIME_GUARDS_H
+#pragma once
 
 #include "time/state.h"
 
@@ -30,5 +29,3 @@ bool guards_strain_due(const struct simulation *sim);
 /* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time,
  * quantity and likely cause; warns once if a limit is near. */
 enum err guards_check(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
-
-#endif

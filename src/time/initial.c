@@ -1,9 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "beam/wet.h"
 #include "fluid/eos.h"
 #include "geometry/motion.h"

@@ -4,11 +4,6 @@
 #include "time/relax.h"
 #include "base/elementary.h"
 #include "geometry/motion.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "implicit/equilibrium.h"
 #include "time/advance.h"
 #include "time/simulation.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The search for a state of rest before a run (T-78). */
-#ifndef SPHFSI_TIME_RELAX_H
-#define SPHFSI_TIME_RELAX_H
+#pragma once
 
 #include "time/state.h"
 
@@ -21,5 +20,3 @@ enum { RELAX_TEXT = 320 };
 void relax_progress(const struct simulation *sim, char text[RELAX_TEXT]);
 /* Says what was found and by which criterion. */
 void relax_text(const struct simulation *sim, char text[RELAX_TEXT]);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: from a scene to its state at time zero, and step by step onward. Contains
  * no file names and no command lines. */
-#ifndef SPHFSI_TIME_SIMULATION_H
-#define SPHFSI_TIME_SIMULATION_H
+#pragma once
 
 #include "time/advance.h"
 #include "time/state.h"
@@ -31,5 +30,3 @@ enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKE
 /* Hash of every STATE field and state scalar but those of the energy account, which measures the
  * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
-
-#endif

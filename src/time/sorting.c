@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-
-#include <math.h>
-
 #include "particles/kernel.h"
 #include "time/guards.h"
 #include "time/timestep.h"

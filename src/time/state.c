@@ -2,9 +2,6 @@
  * Names of the bounds of the time step, and times: in messages and of the phases of a step. */
 #include "time/state.h"
 
-#include <math.h>
-#include <stdio.h>
-
 const struct bound_info bound_table[BOUND_COUNT] = {
 #define FX_NONE 0u
 #define BOUND(name, effect, source) {#name, source, FX_##effect},

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The state of a run in memory: what it carries from step to step, and `struct simulation`,
  * which all files of this folder work on. */
-#ifndef SPHFSI_TIME_STATE_H
-#define SPHFSI_TIME_STATE_H
+#pragma once
 
 #include "beam/beam.h"
 #include "coupling/coupling.h"
@@ -153,5 +152,3 @@ enum err observe(struct simulation *sim, double until, struct diag *d) SPHFSI_CH
 /* Adds the time since `since` to a phase and returns the present time. */
 double phase_add(struct simulation *sim, enum phase phase, double since);
 double phases_so_far(const struct simulation *sim);
-
-#endif

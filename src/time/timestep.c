@@ -3,8 +3,6 @@
 #include "implicit/implicit.h"
 #include "time/timestep.h"
 
-#include <math.h>
-
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven
  * lattices. */
 static double bound_decay(const struct simulation *sim, double limit, double rate)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The time step and its bounds (Sec. 2.5 of the paper; time/bounds.def). */
-#ifndef SPHFSI_TIME_TIMESTEP_H
-#define SPHFSI_TIME_TIMESTEP_H
+#pragma once
 
 #include "time/state.h"
 
@@ -47,5 +46,3 @@ void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits)
 /* Whether contact can matter in the coming `steps` from `time` on. Stores its effect on their
  * bounds, and enables its forces if it can. */
 bool timestep_watch_contact(struct simulation *sim, double time, int steps);
-
-#endif
