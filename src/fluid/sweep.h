@@ -131,6 +131,22 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
         rates_store(fluid, particles, i, count, &s, deferred, k, fx, top);
 }
 
+/* Asks for the packed fields around the n-th active cell while the one before is computed. Scenes
+ * larger than the second cache would wait for each of them; no stream in memory predicts them. Its
+ * own fields come last in the list, and cells before have read these. */
+SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
+{
+    enum { LINE = 64 }; /* bytes */
+    const struct packed_fields *const packed = &fluid->packed[KIND_FLUID];
+    const struct cells_around *const around = &fluid->around[n];
+    const size_t bytes = (size_t)(packed->n * CLUSTER) * sizeof(real);
+    for (int k = 0; k < around->n - around->half; k++) {
+        const real *const from = cluster_packed(packed, neighbour_number(around->code[k]));
+        for (size_t at = 0; at < around->count[k] * bytes; at += LINE)
+            __builtin_prefetch((const char *)from + at);
+    }
+}
+
 /* The n-th active cell. */
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
                                  const struct cells *cells, int32_t n,
@@ -142,6 +158,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell, PAIR_HAS(fx, THIN));
     bool around[KIND_COUNT] = {false};
+    if (n + 1 < list->n_active) prefetch_around(fluid, n + 1);
     neighbour_clusters_copy(&neighbour_scratch->around[KIND_FLUID],
                             &fluid->packed[KIND_FLUID].boxes, &fluid->around[n], cells, fluid->k.h);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
