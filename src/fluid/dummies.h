@@ -180,6 +180,35 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
     pack_four(d, sticks, PACKED_STICKS);
 }
 
+/* T-110c: the direction in which fluid slides along the line of dummies, times the root of the
+ * share of their place that fluid of their own side fills: all of it where the kernel sees half. */
+SPHFSI_INLINE void pack_sliding(const struct fluid *fluid, const struct dummies *d,
+                                const struct neighbours *neighbours, const struct cell_sides *sides)
+{
+    double t[CLUSTER][2] = {{0}};
+    real filled[CLUSTER] = {0};
+    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+        const struct receiver s = receiver_at(sides, d->packed + r);
+        vreal sum[PARTS] = {{0}};
+        for (int k = 0; k < neighbours->n; k++)
+            for (int part = 0; part < PARTS; part++) {
+                const uint32_t code = neighbours->code[k];
+                const real *const b = candidates(neighbours, code, part);
+                const struct separation at = separation_from(&s, code, b);
+                const vreal volume = lane(b, PACKED_VOLUME);
+                sum[part] = vfma(volume, weight_seen(&s, &at, kernel_of(at.length)), sum[part]);
+            }
+        total(sum, &filled[r]);
+    }
+    for (int r = 0; r < d->count; r++) {
+        const int32_t line = fluid_line_of(fluid, d->kind, d->at[r]);
+        const double part = sqrt(min2(1, 2 * KERNEL_NORM * (double)filled[r]));
+        if (line) line_slides(&fluid->lines.line[line - 1], d->at[r], t[r]);
+        d->packed[PACKED_ALONG_X * CLUSTER + r] = (real)(part * t[r][0]);
+        d->packed[PACKED_ALONG_Y * CLUSTER + r] = (real)(part * t[r][1]);
+    }
+}
+
 /* What the effects of a surface need. */
 SPHFSI_INLINE void dummies_surface(const struct fluid *fluid, const struct particles *particles,
                                    const struct dummies *d, const struct neighbours *neighbours,
@@ -267,6 +296,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fluid->effects & SURFACE_EFFECTS)
             dummies_surface(fluid, particles, &d, &neighbours, &sides);
+        if (thin) pack_sliding(fluid, &d, &neighbours, &sides);
         if (neighbours.n > 0) {
             dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);
             wet[n++] = m;

@@ -76,8 +76,11 @@ enum packed_field {
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
-    /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0. */
+    /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0;
+     * and the direction in which fluid slides along it, times the root of phi (T-110c). */
     PACKED_LINE = PACKED_REPULSION_FIELDS,
+    PACKED_ALONG_X,
+    PACKED_ALONG_Y,
     PACKED_THIN_FIELDS,
     /* Of the fluid, with artificial viscosity: rho0/rho over -2 alpha c0 rho0 (Eq. 7), m^2 s/kg;
      * where density diffuses by Antuono et al. 2010: the gradient of dens, times -h/2. */

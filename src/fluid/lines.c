@@ -55,6 +55,15 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2])
     t[1] = -n[0] / size;
 }
 
+void line_slides(const struct thin_line *line, int64_t i, double t[2])
+{
+    const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
+    const bool first = dummy->part == 0 && line->scene->tip[0],
+               last = dummy->part + 1 == parts_of(line) && line->scene->tip[1];
+    if ((dummy->beyond < 0 && !first) || (dummy->beyond > 0 && !last)) return;
+    line_tangent(line, i - line->first, t);
+}
+
 /* T-111a: along a beam its dummies have the motion of its carrier. */
 static void carry(const struct thin_line *line, int64_t j, double v[2], double a[2])
 {

@@ -57,6 +57,10 @@ void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, d
 /* The direction of the line at its dummy number j. */
 void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
 
+/* T-110c: the direction in which fluid slides past particle i of the walls, a dummy of the line;
+ * left as it is beyond a corner, or beyond an end that is no tip. */
+void line_slides(const struct thin_line *line, int64_t i, double t[2]);
+
 /* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
  * 0: none. (x, y) is the second place less the first, `from`. */
 int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],

@@ -98,6 +98,13 @@ SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
     return -(k->tensile * tension) * (f2 * f2);
 }
 
+/* T-110c: fluid slides along a thin line. In its rate a dummy has the velocity of the fluid in the
+ * direction t of the line; t = 0: a dummy that is no part of it. */
+SPHFSI_INLINE void fx_sliding(struct pair *q, vreal tx, vreal ty)
+{
+    q->vx = q->vx - vfma(q->v, ty, q->u * tx) * vfma(q->y, ty, q->x * tx);
+}
+
 /* As in Zhang, Rezavand and Hu 2021 a fluid particle interacts with its own pressure p in a wall or
  * structure, plus the part of gravity and acceleration in between: Eq. 19 with this particle as the
  * only fluid. (x, y) is its position relative to the dummy in units of h, `lift` rho0 h (g - a) of

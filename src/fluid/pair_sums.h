@@ -132,12 +132,13 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     if (PAIR_HAS(fx, WALL_DAMPING))
         stress = stress + fx_wall_damping(lane(b, PACKED_NEAR), inv, q->vx, k);
     e.radial = q->slope * stress;
+    *approach = vmax(*approach, fx_approach(q, inv));
+    if (PAIR_HAS(fx, THIN)) fx_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
     if (PAIR_HAS(fx, NO_SLIP)) {
         e.drag = lane(b, PACKED_STICKS) * fx_laminar(q, inv, k);
         q->u = a->u - lane(b, PACKED_MIRROR_U);
         q->v = a->v - lane(b, PACKED_MIRROR_V);
     }
-    *approach = vmax(*approach, fx_approach(q, inv));
     return e;
 }
 
