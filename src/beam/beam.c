@@ -163,7 +163,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
         if (node->body >= 0 || (body >= 0 && node->row[0] < 0))
             return fail_at(d, beams->scene, at->line,
                            "[beam %s] %s = %g, %g, %s: another `clamp` or `hinge` holds this "
-                           "point; a point has one where one of them is on a [rigid]",
+                           "point; a point can have only one if any is on a [rigid]",
                            given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
                            at->other);
         node->body = body;

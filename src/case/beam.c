@@ -126,8 +126,8 @@ enum err case_check_beam(struct reader *r, const void *section)
 {
     const struct scene_beam *const beam = section;
     if (*beam->motion && !has_own(&beam->clamp) && !has_own(&beam->hinge))
-        return bad_section(r, "has a `motion` but neither `clamp` nor `hinge` that it moves: one "
-                              "without NAME");
+        return bad_section(r, "has a `motion`, but neither `clamp` nor `hinge` for it to move; add "
+                              "one without NAME");
     if (r->scene->n_fluid && r->scene->numerics.sides == SIDES_ONE)
         return bad_section(r, "would gain energy in fluid with numerics.sides = one; use sides = "
                               "both: each side of a beam has dummies of its own");

@@ -77,10 +77,11 @@ static enum err check_hinges(struct reader *r, const struct scene_rigid *rigid)
                             rigid->common.name, hinge->other, nearest_hint(&near));
         fixed += wall < walls || !*hinge->other;
         if (fixed > 1)
-            return bad_line(r, hinge->line,
-                            "[rigid %s] has a second `hinge` in place or on a [wall], which would "
-                            "hold it still; leave it out",
-                            rigid->common.name);
+            return bad_line(
+                r, hinge->line,
+                "[rigid %s] has a second `hinge` to a fixed point or a [wall], which would "
+                "hold it still; leave it out",
+                rigid->common.name);
     }
     return ERR_OK;
 }
@@ -100,8 +101,8 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
     const int driven = scene_find(r->scene, SECTION_motion, rigid->hinge_motion);
     if (*rigid->hinge_motion && rigid->hinge.n > 1)
         return bad_section(r,
-                           "has a `hinge_motion` and %d hinges; leave one, or put the others "
-                           "on the other bodies",
+                           "has a `hinge_motion` and %d hinges; keep one, and give the others "
+                           "to the other bodies",
                            rigid->hinge.n);
     if (driven >= 0 && !scene_motion_turns(&r->scene->motion[driven]))
         return bad_section(r,

@@ -268,10 +268,11 @@ static void warn_of_level(struct check *check, const struct scene_open *o)
     }
     if (!(check->scene->top.gravity[1] < 0) || !isnan(o->level) || !(buffer > fluid + 1.5 * dp))
         return;
-    warn_at(check->diag, check->scene, o->common->line,
-            "the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
-            "before it is at y = %.4g m. Above it fluid %s; `level = %.4g m` prevents this",
-            o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
+    warn_at(
+        check->diag, check->scene, o->common->line,
+        "the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
+        "before it is at y = %.4g m. Above the surface fluid %s; `level = %.4g m` prevents this",
+        o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
 }
 
 /* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:

@@ -67,11 +67,12 @@ static enum err check_ends(const struct scene *scene, const struct shape *p, str
         const double *const end = p->pt[k ? p->n - 1 : 0];
         const struct shape *const q = line_at(scene, p, end, &last);
         if (q && (q->size == p->size) != (k != last))
-            return fail_at(d, scene, p->line > q->line ? p->line : q->line,
-                           "this line meets that of line %d at (%.4g, %.4g) m with the wall on the "
-                           "other side; list the points of the one without fluid beside it in the "
-                           "other order",
-                           p->line < q->line ? p->line : q->line, end[0], end[1]);
+            return fail_at(
+                d, scene, p->line > q->line ? p->line : q->line,
+                "this line of a wall meets the one in line %d at (%.4g, %.4g) m, but their "
+                "layers are on different sides; reverse the points of the line without fluid "
+                "beside it",
+                p->line < q->line ? p->line : q->line, end[0], end[1]);
     }
     return ERR_OK;
 }

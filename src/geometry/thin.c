@@ -201,8 +201,8 @@ static enum err refuse_contact(struct sampler *sampler, int wall, const struct s
         if (scene_contact_of(scene, k, scene->n_solid + wall))
             return geometry_refuse(
                 sampler, shape->line,
-                "this line of [%s %s] has no thickness, so [solid %s] cannot touch it; %ssay that "
-                "both stay apart: [contact] between = %s, %s and enabled = off",
+                "this line of [%s %s] has no thickness, so [solid %s] cannot touch it; %sswitch "
+                "their contact off: [contact] between = %s, %s and enabled = off",
                 beam ? "beam" : "wall", name, scene->solid[k].common.name,
                 beam ? "" : "give it a thickness, or ", scene->solid[k].common.name, name);
     return ERR_OK;

@@ -328,7 +328,7 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         const int other = p->body[at];
         warn_once(sim, &sim->guard.warned_rigid, d,
                   "[rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
-                  "contact ends a quarter of a spacing inside and is absent at a hinge; hold the "
+                  "contact acts to a quarter of a spacing inside, and not at a hinge; hold the "
                   "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
                   sim->scene->rigid[k].common.name,
                   section_table[sim->scene->wall[other].common.section].word,
@@ -346,11 +346,12 @@ static enum err check_hinges(struct simulation *sim, struct diag *d)
     const double gap = rigid_hinge_gap(&sim->rigid, &k), dp = sim->scene->top.dp;
     if (gap < HINGE_GAP * dp) return ERR_OK;
     sim->guard.case_at_fault = true;
-    return diag_fail(d, ERR_GUARD,
-                     "%s: the hinges of [rigid %s] miss each other or a driven angle by %.2g m: "
-                     "hinges of a closed chain, or contact, contradict each other; leave out a "
-                     "`hinge_motion` or a hinge",
-                     time_text(sim).text, sim->scene->rigid[k].common.name, gap);
+    return diag_fail(
+        d, ERR_GUARD,
+        "%s: the hinges of [rigid %s] miss each other or a driven angle by %.2g m, because "
+        "a closed chain or contact leaves them no solution; leave out a "
+        "`hinge_motion` or a hinge",
+        time_text(sim).text, sim->scene->rigid[k].common.name, gap);
 }
 
 static void warn_of_crowded(struct simulation *sim, struct diag *d)

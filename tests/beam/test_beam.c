@@ -239,7 +239,7 @@ static void test_bad_input_is_refused(void)
     rig_refuses(BEAM("motion = m\n[motion m]\n"), "neither `clamp` nor `hinge`");
     rig_refuses(BEAM("clamp = 0, 0, w\nmotion = m\n[motion m]\n"
                      "[wall w]\nshape = box -1, -1, 0, 1\n"),
-                "neither `clamp` nor `hinge` that it moves: one without NAME");
+                "neither `clamp` nor `hinge` for it to move; add one without NAME");
     rig_refuses(
         BEAM("clamp = 0, 0, flor\n[wall floor]\nshape = box -1, -1, 0, 1\n"),
         "[beam b] clamp: flor is no [wall], [rigid] or other [beam], which may hold a beam; "

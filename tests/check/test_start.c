@@ -95,7 +95,7 @@ static void test_an_inflow_above_the_surface(void)
                "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nvelocity = 0.1, 0\n"
     read(CHANNEL);
     expect("the line of [inflow i] passes fluid up to y = 0.1 m");
-    expect("Above it fluid falls in; `level = 0.05 m` prevents this");
+    expect("Above the surface fluid falls in; `level = 0.05 m` prevents this");
     read(CHANNEL "level = 0.05\n");
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "passes fluid up to"), warnings);
 }

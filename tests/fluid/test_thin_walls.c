@@ -291,7 +291,7 @@ static void test_what_is_refused(void)
                 "0, 0; 0, 0.2\n[solid s]\nshape = box 1, 0, 1.1, 0.1\ndensity = 1000\nyoung = 1 "
                 "MPa\npoisson = 0.3\n",
                 "this line of [wall line] has no thickness, so [solid s] cannot touch it; give it "
-                "a thickness, or say that both stay apart: [contact] between = s, line and "
+                "a thickness, or switch their contact off: [contact] between = s, line and "
                 "enabled = off");
 }
 

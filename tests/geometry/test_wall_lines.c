@@ -136,8 +136,8 @@ static void test_what_is_refused(void)
     } refused[] = {
         {TOP WATER "[wall t]\nshape = polyline: 0, 0.2; 0, 0; 0.4, 0\n"
                    "[wall end]\nshape = polyline: 0.4, 0.2; 0.4, 0\n",
-         "l.cfg:9: this line meets that of line 7 at (0.4, 0) m with the wall on the other side; "
-         "list the points of the one without fluid beside it in the other order"},
+         "l.cfg:9: this line of a wall meets the one in line 7 at (0.4, 0) m, but their layers are "
+         "on different sides; reverse the points of the line without fluid beside it"},
         {TOP "[fluid w]\nsound_speed = 20\nshape = polyline: 0, 0; 1, 0\n",
          "`thickness T` may be left out in a `shape` of a [wall]"},
         {TOP WATER "[wall t]\nshape = box 0, 0, 1, 1\nminus = polyline: 0, 0; 1, 0\n",

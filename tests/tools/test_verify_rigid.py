@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The theory of tools/report/verify_rigid.py and cases/reference/rigid.py, in limits that are known.
-Exit 77: a package is missing."""
+"""The theory of tools/report/verify_rigid.py and cases/reference/rigid.py, in limits that are
+known. Exit 77: a package is missing."""
 
 import math
 import sys

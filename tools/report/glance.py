@@ -152,7 +152,7 @@ def draw_effects():
              xlim=(0, 1.12 * max(value)))
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(top=False, right=False, left=False)
-    axes.set_title("An effect costs only a scene that names it", fontsize=9, loc="left")
+    axes.set_title("Only a scene that names an effect pays for it", fontsize=9, loc="left")
     save(figure, IMAGES / "glance_effects.png", dpi=130)
 
 
