@@ -95,6 +95,9 @@ def points_in(folder):
 
 def whole_study(folder):
     environment = prepare(folder)
+    status, text = study(folder, environment, "--only", "plate/0/wrong=key")
+    check(status == 0 and "No point has an error" in (folder / "accuracy.md").read_text(),
+          f"a study without an error has no report: {text}")
     status, text = study(folder, environment)
     check(status == 0, f"the study failed: {text}")
     for words in ("did you mean `hourglass`", "plate/0/base: elsewhere:", "has a column M2_dy_m",

@@ -67,10 +67,11 @@ def case_text(study, case):
     entry = study.cases[case]
     sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
                for e in entry["error"] if e.get("source")]
+    picture = f"![Error against cost](../img/accuracy_{case}.png)" if study.known(case) \
+        else "No point has an error yet."
     return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""),
-                case=case, error=main_error(entry), against=against(entry["error"][0]),
-                       references="\n".join(sources),
-                       table=base_table(study, case))
+                picture=picture, error=main_error(entry), against=against(entry["error"][0]),
+                references="\n".join(sources), table=base_table(study, case))
 
 
 def summary(study):
@@ -162,7 +163,7 @@ def write(data, out, evidence=None):
         write_evidence(study, evidence)
     images = IMAGES if out == OUT else out / "img"
     images.mkdir(parents=True, exist_ok=True)
-    for case in study.cases:
+    for case in filter(study.known, study.cases):
         draw_case(study, case, images / f"accuracy_{case}.png")
     rules = study.definition["study"]
     knobs = "\n\n".join(f"### {entry.get('title', case)}: "
