@@ -230,25 +230,33 @@ static void warn_of_motion(struct check *check, const struct body *b)
 
 /* --- open boundaries --- */
 
-/* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there. */
+/* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there; or
+ * a wall in front of it that does not continue beside the buffer. */
 static void warn_of_end(struct check *check, const struct scene_open *o, bool last)
 {
-    const double dp = check->scene->top.dp, along = last ? o->length + 0.5 * dp : -0.5 * dp;
-    double front[2], behind[2];
+    const double dp = check->scene->top.dp, beyond = last ? dp : -dp;
+    double end[2], front[2], behind[2], back[2], buffer[2];
     for (int axis = 0; axis < 2; axis++) {
-        const double at = o->from[axis] + along * o->along[axis];
-        front[axis] = at + 0.5 * dp * o->inward[axis];
-        behind[axis] = at - 0.5 * dp * o->inward[axis];
+        end[axis] = o->from[axis] + (last ? o->length * o->along[axis] : 0);
+        front[axis] = end[axis] + 0.5 * (beyond * o->along[axis] + dp * o->inward[axis]);
+        behind[axis] = front[axis] - dp * o->inward[axis];
+        back[axis] = front[axis] - o->depth * o->inward[axis];
+        buffer[axis] = back[axis] - beyond * o->along[axis];
     }
-    if (point_at(check, front, 0.75 * dp, POINT_FLUID) < 0 ||
-        point_at(check, behind, 0.8 * dp, POINT_ANY) >= 0)
-        return;
-    warn_section(
-        check, o->common,
-        "ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the line "
-        "and is lost; add a [wall], or let the line end at a wall or at the surface",
-        o->from[0] + (last ? o->length * o->along[0] : 0),
-        o->from[1] + (last ? o->length * o->along[1] : 0));
+    if (point_at(check, front, 0.75 * dp, POINT_FLUID) >= 0 &&
+        point_at(check, behind, 0.8 * dp, POINT_ANY) < 0)
+        warn_section(
+            check, o->common,
+            "ends inside the fluid at (%.4g, %.4g) m: fluid beyond this end flows past the line "
+            "and is lost; add a [wall], or let the line end at a wall or at the surface",
+            end[0], end[1]);
+    if (point_at(check, front, 0.8 * dp, POINT_BODY) >= 0 &&
+        point_at(check, buffer, 0.8 * dp, POINT_BUFFER) >= 0 &&
+        point_at(check, back, 1.5 * dp, POINT_BODY) < 0)
+        warn_section(check, o->common,
+                     "leaks beside its buffer at (%.4g, %.4g) m, where the wall or body beside the "
+                     "line ends; let it go on to %.3g m behind the line",
+                     end[0], end[1], o->depth);
 }
 
 /* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of

@@ -438,6 +438,18 @@ static void test_lines_that_end_in_the_fluid(void)
                                  warnings);
 }
 
+static void test_walls_that_end_at_a_line(void)
+{
+    /* To -0.2 m and 0.4 m: the inflow is at 0, the outflow at 0.4 m. */
+    read(OPEN_CHANNEL IN OUT("pressure = 0") "[wall w]\nshape = box -0.2, -0.04, 0.4, 0\n"
+                                             "shape = box -0.2, 0.2, 0.6, 0.24\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "[outflow o] leaks beside its buffer at (0.4, 0) m"),
+                                 warnings);
+    TEST_ASSERT_NULL(strstr(warnings, "[inflow i]"));
+    TEST_ASSERT_NULL(strstr(warnings, "(0.4, 0.2)"));
+}
+
 static void test_absorption_without_effect(void)
 {
     read(OPEN_CHANNEL IN OUT("pressure = 0\nabsorb = 0.2") SIDE_WALLS);
@@ -465,6 +477,7 @@ int main(void)
     RUN_TEST(test_a_clamp_that_covers_the_body);
     RUN_TEST(test_velocities_that_do_not_balance);
     RUN_TEST(test_lines_that_end_in_the_fluid);
+    RUN_TEST(test_walls_that_end_at_a_line);
     RUN_TEST(test_absorption_without_effect);
     RUN_TEST(test_a_clamp_and_a_wall_that_move_differently);
     RUN_TEST(test_a_pressure_probe_in_a_wall);
