@@ -2,6 +2,7 @@
  * From [beam] sections to nodes and elements, and what output asks of them. */
 #include "beam/contact.h"
 #include "beam/joints.h"
+#include "beam/springs.h"
 #include "base/segment.h"
 #include "base/elementary.h"
 
@@ -102,14 +103,7 @@ static void place_nodes(struct beams *beams)
     }
 }
 
-/* --- clamps, hinges, loads --- */
-
-/* -1: no rigid body. */
-static int rigid_of(const struct scene *scene, const char *name)
-{
-    const int k = *name ? scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0) : -1;
-    return k >= 0 && k < scene->n_rigid ? k : -1;
-}
+/* --- clamps, hinges, loads, springs --- */
 
 static int mover_of(const struct scene *scene, const struct scene_beam *beam, const char *other)
 {
@@ -159,7 +153,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
             TRY(join(beams, e->node[place.part > 0.5], at, turns, d));
             continue;
         }
-        const int body = rigid_of(beams->scene, at->other);
+        const int body = rigid_find(beams->scene, at->other);
         if (node->body >= 0 || (body >= 0 && node->row[0] < 0))
             return fail_at(d, beams->scene, at->line,
                            "[beam %s] %s = %g, %g, %s: another `clamp` or `hinge` holds this "
@@ -204,6 +198,35 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
                    "enlarge its `shape`",
                    from->common.name, from->body,
                    beams->element[beams->beam[beam].first_element].length);
+}
+
+static enum err create_springs(struct beams *beams, struct arena *a, struct diag *d)
+{
+    const struct scene *const scene = beams->scene;
+    beams->n_springs = scene->n_spring;
+    beams->spring = arena_alloc(a, (size_t)scene->n_spring, sizeof *beams->spring, "springs", d);
+    if (!beams->spring) return ERR_MEMORY;
+    for (int k = 0; k < scene->n_spring; k++) {
+        const struct scene_spring *const given = &scene->spring[k];
+        const int beam = scene_find(scene, SECTION_beam, given->body);
+        beams->spring[k] = (struct beam_spring){.given = given, .node = -1};
+        if (beam < 0) continue;
+        const struct beam_place place = beam_find(beams, beam, given->from);
+        const struct beam_element *const e = &beams->element[place.element];
+        const int node = e->node[place.part > 0.5];
+        const double *const X = beams->node[node].X;
+        if (place.distance > 0.5 * e->length)
+            return fail_at(d, scene, scene_line(scene, SECTION_spring, k, "from"),
+                           "[spring %s] from = %g, %g is %.3g m from [beam %s]; move it onto its "
+                           "line",
+                           given->common.name, given->from[0], given->from[1], place.distance,
+                           given->body);
+        beams->spring[k].node = node;
+        beams->spring[k].length = isnan(given->length)
+                                      ? elementary_hypot(X[0] - given->to[0], X[1] - given->to[1])
+                                      : given->length;
+    }
+    return ERR_OK;
 }
 
 /* --- unknowns --- */
@@ -280,6 +303,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     for (int k = 0; k < scene->n_load; k++) TRY(find_load(beams, k, temp, d));
     TRY(number_unknowns(beams, a, temp, d));
     set_start(beams);
+    TRY(create_springs(beams, a, d));
     TRY(beams_joints_create(beams, a, d));
     return beams_contact_create(beams, a, d);
 }
@@ -347,7 +371,7 @@ struct body_energy beam_energy(const struct beams *beams, int beam)
 {
     const struct beam *const b = &beams->beam[beam];
     const double *const g = beams->scene->top.gravity;
-    struct body_energy sum = {0};
+    struct body_energy sum = {.elastic = beam_spring_energy(beams, beam)};
     for (int k = b->first_node; k < b->end_node; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_state *const s = &beams->state[k];

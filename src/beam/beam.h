@@ -60,6 +60,13 @@ struct beam_load {
     double part, length;
 };
 
+/* A [spring] from a node to a place; node -1: it is of no beam. */
+struct beam_spring {
+    const struct scene_spring *given;
+    int node;
+    double length; /* without force, m */
+};
+
 struct beams {
     int n, n_nodes, n_elements, n_loads;
     struct beam *beam;
@@ -69,6 +76,8 @@ struct beams {
     struct beam_step *step;   /* [n_nodes] */
     struct beam_start *start; /* [n_elements] of the step */
     struct beam_load *load;
+    int n_springs; /* of the scene */
+    struct beam_spring *spring;
     const struct scene *scene;
     /* In fluid (beam/wet.h): */
     struct particles *walls;

@@ -2,6 +2,7 @@
  * From [probe] sections to columns of files, and the values in them. */
 #include "output/probes.h"
 #include "output/fluid_sample.h"
+#include "beam/springs.h"
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
@@ -399,7 +400,10 @@ static void rigid_reaction(const struct probe *probe, const struct simulation *s
         for (int c = 0; c < 2; c++) at[c] = sim->rigid.body[probe->body].centre[c] + s->x[c];
         memcpy(out, s->reaction, sizeof s->reaction);
     } else {
-        rigid_spring_force(&sim->rigid, probe->spring, out, at);
+        if (beam_spring_force(&sim->beams, probe->spring, out))
+            memcpy(at, sim->scene->spring[probe->spring].to, sizeof at);
+        else
+            rigid_spring_force(&sim->rigid, probe->spring, out, at);
         out[2] = 0;
     }
     out[2] += (at[0] - probe->point[0]) * out[1] - (at[1] - probe->point[1]) * out[0];

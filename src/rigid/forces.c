@@ -247,9 +247,10 @@ double rigid_way(const struct rigid *rigid, int k, int c, double late)
 
 /* --- springs --- */
 
-static int find_rigid(const struct scene *scene, const char *name)
+int rigid_find(const struct scene *scene, const char *name)
 {
-    return *name ? scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0) : -1;
+    const int k = *name ? scene_find(scene, SECTION_wall, name) - scene_rigid_wall(scene, 0) : -1;
+    return k >= 0 && k < scene->n_rigid ? k : -1;
 }
 
 enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag *d)
@@ -263,8 +264,8 @@ enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag 
             elementary_hypot(given->to[0] - given->from[0], given->to[1] - given->from[1]);
         rigid->spring[k] =
             (struct rigid_spring){.given = given,
-                                  .body = {find_rigid(scene, given->body),
-                                           find_rigid(scene, given->other)},
+                                  .body = {rigid_find(scene, given->body),
+                                           rigid_find(scene, given->other)},
                                   .length = isnan(given->length) ? start : given->length};
     }
     return ERR_OK;
@@ -319,7 +320,7 @@ void rigid_add_springs(struct rigid *rigid)
     for (int k = 0; k < rigid->n_springs; k++) {
         const struct rigid_spring *const spring = &rigid->spring[k];
         const struct spring_now now = spring_now(rigid, spring);
-        if (spring->given->slack && now.longer <= 0) continue;
+        if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
         row->stiffness = spring->given->stiffness;
         row->damping = spring->given->damping;

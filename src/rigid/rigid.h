@@ -32,7 +32,7 @@ struct rigid_body {
     double work, driven, passed;
 };
 
-/* A [spring]: the bodies of its ends, -1: in place. */
+/* A [spring]: the bodies of its ends, -1: in place; of a beam both. */
 struct rigid_spring {
     const struct scene_spring *given;
     int body[2];
@@ -62,6 +62,9 @@ struct rigid {
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
                       const struct wall_motion *motion, struct particles *walls, bool centred,
                       struct diag *d) SPHFSI_CHECKED;
+
+/* The [rigid] of a name; -1: none. */
+int rigid_find(const struct scene *scene, const char *name);
 
 /* Without fluid and solids, s: a thousandth of the time in which gravity or its velocity moves a
  * body by its radius of gyration. */

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#include "beam/springs.h"
+#include "base/elementary.h"
+
+/* The vector from the end in place to a displaced node; returns its length. */
+static double reach_of(const struct beams *beams, const struct beam_spring *s, const double x[2],
+                       double reach[2])
+{
+    for (int c = 0; c < 2; c++) reach[c] = beams->node[s->node].X[c] + x[c] - s->given->to[c];
+    return max2(elementary_hypot(reach[0], reach[1]), 1e-300);
+}
+
+/* A line that only pulls has no energy while it is slack. */
+static double elongation(const struct beam_spring *s, double length)
+{
+    const double longer = length - s->length;
+    return s->given->slack ? max2(longer, 0) : longer;
+}
+
+/* T-108 */
+static void add_spring(struct beams *beams, const struct beam_spring *s, double dt)
+{
+    const struct beam_node *const node = &beams->node[s->node];
+    struct beam_step *const step = &beams->step[s->node];
+    const double after[2] = {step->x[0] + step->d[0], step->x[1] + step->d[1]};
+    double reach[2][2], along[2];
+    const double l0 = reach_of(beams, s, step->x, reach[0]),
+                 l1 = reach_of(beams, s, after, reach[1]);
+    const double e0 = elongation(s, l0), e1 = elongation(s, l1);
+    const double taut = l0 == l1 ? e1 != 0 || !s->given->slack : (e1 - e0) / (l1 - l0),
+                 stiff = 0.5 * taut * s->given->stiffness, damp = s->given->damping / dt,
+                 tension = stiff * (e0 + e1) + damp * (l1 - l0);
+    if (s->given->slack && (taut == 0 || tension <= 0)) return;
+    for (int c = 0; c < 2; c++) {
+        along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);
+        step->touch[c] -= tension * along[c];
+    }
+    for (int c = 0; c < 2; c++)
+        for (int e = 0; e <= c; e++) {
+            const double own = along[c] * along[e], across = (c == e) - own;
+            if (node->row[c] >= 0 && node->row[e] >= 0)
+                envelope_add(&beams->matrix, node->row[c], node->row[e],
+                             (stiff + damp) * own + max2(tension, 0) / (l0 + l1) * across);
+        }
+}
+
+void beams_add_springs(struct beams *beams, double dt)
+{
+    for (int k = 0; k < beams->n_springs; k++)
+        if (beams->spring[k].node >= 0) add_spring(beams, &beams->spring[k], dt);
+}
+
+double beam_spring_energy(const struct beams *beams, int beam)
+{
+    double sum = 0, reach[2];
+    for (int k = 0; k < beams->n_springs; k++) {
+        const struct beam_spring *const s = &beams->spring[k];
+        if (s->node < 0 || beams->node[s->node].beam != beam) continue;
+        const double length = reach_of(beams, s, beams->state[s->node].x, reach);
+        sum += 0.5 * s->given->stiffness * square(elongation(s, length));
+    }
+    return sum;
+}
+
+bool beam_spring_force(const struct beams *beams, int spring, double force[2])
+{
+    double reach[2], rate = 0;
+    if (spring >= beams->n_springs || beams->spring[spring].node < 0) return false;
+    const struct beam_spring *const s = &beams->spring[spring];
+    const struct beam_state *const now = &beams->state[s->node];
+    const double length = reach_of(beams, s, now->x, reach), longer = elongation(s, length);
+    for (int c = 0; c < 2; c++) rate += reach[c] / length * now->v[c];
+    const double tension = s->given->stiffness * longer + s->given->damping * rate;
+    const bool loose = s->given->slack && (longer == 0 || tension <= 0);
+    for (int c = 0; c < 2; c++) force[c] = loose ? 0 : tension * reach[c] / length;
+    return true;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT
+ * Springs and mooring lines from a beam to a place, in the step by Newton's method (T-108). */
+#pragma once
+
+#include "beam/beam.h"
+
+/* Adds their forces for the present displacements to `touch` of struct beam_step, and the
+ * derivative to the matrix. */
+void beams_add_springs(struct beams *beams, double dt);
+
+/* --- for output --- */
+
+/* Energy of the springs of a beam, J/m. */
+double beam_spring_energy(const struct beams *beams, int beam);
+
+/* The force of a [spring] at its end `to`; false: it is not of a beam. */
+bool beam_spring_force(const struct beams *beams, int spring, double force[2]);

@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ * Springs and mooring lines of beams: frequency, energy through large motions and through slack,
+ * damping, the force that a probe has, and input that is refused. */
+#include "rig.h"
+#include "beam/springs.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+/* A bar of one metre, 1 kg and no bending, 0.1 m of it an element. */
+#define BAR(rest)                                                                    \
+    "dp = 10 cm\nend_time = 1e6\n[numerics]\nfixed_step = 0.005\n[beam b]\n"         \
+    "shape = polyline: 0, 0; 1, 0\naxial_stiffness = 1e6\nbending_stiffness = 1e6\n" \
+    "mass = 1\n" rest
+#define SPRING(name, rest) "[spring " name "]\nbody = b\nstiffness = 40\n" rest
+
+static double total(void)
+{
+    const struct ledger row = simulation_ledger(&rig.sim);
+    return row.kinetic + row.elastic + row.potential;
+}
+
+/* Along the bar, which moves as a whole. */
+static void test_a_bar_on_a_spring_has_its_period(void)
+{
+    rig_open(&rig, BAR("velocity = 1e-3, 0\n") SPRING("s", "from = 0, 0\nto = -1, 0\n"), NULL);
+    const double period = 2 * PI / sqrt(40.0);
+    rig_run(&rig, 10 * period);
+    const struct beam_state *const s = &rig.sim.beams.state[0];
+    assert_near(3e-4 * 1e-3, 1e-3, s->v[0], "velocity after ten periods");
+    assert_near(2e-3 * 1e-3 / sqrt(40.0) * 10, 0, s->x[0], "place after ten periods");
+}
+
+/* Two lines that only pull: the bar swings and turns between them, and both become slack. */
+static void test_slack_lines_keep_the_energy(void)
+{
+    rig_open(&rig,
+             BAR("velocity = 0.5 - 3*y, 3*x\n")
+                 SPRING("s", "from = 0, 0\nto = -1, 0.2\nslack = on\n")
+                     SPRING("t", "from = 1, 0\nto = 1.8, 0.3\nlength = 0.7\nslack = on\n"),
+             NULL);
+    const double start = total();
+    double force[2];
+    int slack = 0;
+    for (int k = 0; k < 4000; k++) {
+        rig_steps(&rig, 1, 1e6);
+        assert_near(1e-8 * start, start, total(), "energy");
+        TEST_ASSERT_TRUE(beam_spring_force(&rig.sim.beams, 0, force));
+        slack += force[0] == 0 && force[1] == 0;
+    }
+    char found[40];
+    snprintf(found, sizeof found, "%d slack", slack);
+    TEST_ASSERT_TRUE_MESSAGE(slack > 100 && slack < 3900, found);
+}
+
+static void test_a_damper_takes_what_theory_says(void)
+{
+    rig_open(&rig,
+             BAR("velocity = 1e-3, 0\n") SPRING("s", "from = 0, 0\nto = -1, 0\ndamping = 0.8\n"),
+             NULL);
+    const double rate = 0.4, omega = sqrt(40 - rate * rate), time = 6 * 2 * PI / omega;
+    rig_run(&rig, time);
+    const double left = exp(-rate * time);
+    assert_near(3e-3 * left, left, rig.sim.beams.state[0].v[0] / 1e-3, "velocity");
+}
+
+/* Of its own weight: what the end in place carries. */
+static void test_a_hanging_bar_pulls_with_its_weight(void)
+{
+    rig_open(&rig,
+             BAR("mass_damping = 5\n") SPRING("s", "from = 0.5, 0\nto = 0.5, 1\ndamping = 5\n"),
+             "gravity=0, -2", NULL);
+    double force[2];
+    rig_run(&rig, 10);
+    TEST_ASSERT_TRUE(beam_spring_force(&rig.sim.beams, 0, force));
+    assert_near(1e-6, 0, force[0], "force across");
+    assert_near(1e-6, -2, force[1], "weight");
+    assert_near(1e-6, -2.0 / 40, rig.sim.beams.state[5].x[1], "displacement");
+}
+
+static void test_bad_input_is_refused(void)
+{
+    rig_refuses(BAR("") SPRING("s", "from = 0, 0.2\nto = 0, 1\n"),
+                "[spring s] from = 0, 0.2 is 0.2 m from [beam b]; move it onto its line");
+    rig_refuses(
+        BAR("") SPRING(
+            "s",
+            "from = 0, 0\nto = 0, 1\nother = r\n") "[rigid r]\nshape = box 0, 1, 1, 2\nmass = 1\n",
+        "leave `other` out");
+    rig_refuses(BAR("") "[spring s]\nbody = c\nstiffness = 1\nto = 0, 1\n",
+                "there is no [rigid] or [beam] of that name");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_bar_on_a_spring_has_its_period);
+    RUN_TEST(test_slack_lines_keep_the_energy);
+    RUN_TEST(test_a_damper_takes_what_theory_says);
+    RUN_TEST(test_a_hanging_bar_pulls_with_its_weight);
+    RUN_TEST(test_bad_input_is_refused);
+    return UNITY_END();
+}
