@@ -8,6 +8,16 @@
 
 enum { CSV_MAX_LINES = 1000000 };
 
+int number_text(char text[NUMBER_TEXT], double value)
+{
+    int length = 0;
+    for (int digits = 15; digits <= 17; digits++) {
+        length = snprintf(text, NUMBER_TEXT, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    return length;
+}
+
 const char *csv_next_line(const char *at)
 {
     at += strcspn(at, "\n");

@@ -7,6 +7,10 @@
 /* The line after the one at `at`, or the end of the text. */
 const char *csv_next_line(const char *at);
 
+/* Writes a number with as many digits as give back the same bits; "nan" and "inf" as in C. */
+enum { NUMBER_TEXT = 32 };
+int number_text(char text[NUMBER_TEXT], double value);
+
 /* Field k of the line, without the quotes around it; NULL: there are fewer. A comma in quotes does
  * not end a field. */
 const char *csv_field(const char *line, int k, size_t *length);

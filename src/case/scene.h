@@ -180,6 +180,7 @@ struct scene_line {
     int wall, n;
     double (*pt)[2];
     double extend[2];         /* how far it continues into a wall beyond its ends, m */
+    double (*seen)[2];        /* its points, the first and the last one moved by that */
     bool tip[2];              /* whether fluid can flow round its ends */
     int64_t first, n_dummies; /* among the particles of walls */
     struct line_dummy *dummy; /* [n_dummies] */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The effective case: all values in SI units, constants evaluated. */
 #include "case/case.h"
+#include "base/csv.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -10,14 +11,10 @@
 #define SPHFSI_VERSION "(unversioned build)"
 #endif
 
-/* The shortest decimal that is read back as the same double; seventeen digits always suffice. */
 static void write_real(FILE *out, const char *before, double value)
 {
-    char text[40];
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) break;
-    }
+    char text[NUMBER_TEXT];
+    number_text(text, value);
     fprintf(out, "%s%s", before, text);
 }
 

@@ -4,36 +4,21 @@
 #include "check/check.h"
 
 #include "base/elementary.h"
+#include "geometry/thin.h"
 
-/* Of dp: lengths along a line and beside it that count as nothing. */
-static const double ahead = 1e-3, beside = 1e-5;
+/* Of dp: lengths along a line and beside it that count as nothing, and between places that are
+ * looked at. */
+static const double ahead = 1e-3, beside = 1e-5, between = 0.02;
 
 /* A segment of a beam, or of a wall that is a thin line (beam: NULL). */
 struct part {
     const struct scene_beam *beam;
-    const double *from, *to;
-    double length, t[2]; /* direction */
+    struct line_part line;
 };
 
 static struct part part_of(const struct scene_beam *beam, const struct shape *line, int k)
 {
-    const double *const from = line->pt[k], *const to = line->pt[k + 1];
-    const double x = to[0] - from[0], y = to[1] - from[1], length = elementary_hypot(x, y);
-    return (struct part){beam, from, to, length, {x / length, y / length}};
-}
-
-/* A place relative to a part: along it, and to its left. */
-static void relative(const struct part *p, const double at[2], double to[2])
-{
-    const double x = at[0] - p->from[0], y = at[1] - p->from[1];
-    to[0] = x * p->t[0] + y * p->t[1];
-    to[1] = p->t[0] * y - p->t[1] * x;
-}
-
-static void place_on(const struct part *p, double along, double left, double at[2])
-{
-    at[0] = p->from[0] + along * p->t[0] - left * p->t[1];
-    at[1] = p->from[1] + along * p->t[1] + left * p->t[0];
+    return (struct part){beam, line_part(line->pt[k], line->pt[k + 1])};
 }
 
 static bool is_near(const double a[2], const double b[2], double within)
@@ -66,8 +51,8 @@ static bool may_meet(const struct check *check, const struct part *p, const stru
     if (p->beam != q->beam && q->beam)
         return is_held(check, p->beam, at, q->beam) || is_held(check, q->beam, at, p->beam);
     if (!q->beam) return is_held(check, p->beam, at, NULL);
-    return (is_near(at, p->to, nothing) && is_near(at, q->from, nothing)) ||
-           (is_near(at, p->from, nothing) && is_near(at, q->to, nothing));
+    return (is_near(at, p->line.to, nothing) && is_near(at, q->line.from, nothing)) ||
+           (is_near(at, p->line.from, nothing) && is_near(at, q->line.to, nothing));
 }
 
 /* Whether two parts meet where they may not, and where. */
@@ -77,16 +62,18 @@ static bool meet(const struct check *check, const struct part *p, const struct p
     const double nothing = beside * check->scene->top.dp;
     double end[4][2]; /* of q relative to p, of p relative to q */
     for (int k = 0; k < 4; k++) {
-        const struct part *const on = k < 2 ? p : q, *const of = k < 2 ? q : p;
+        const struct line_part *const on = k < 2 ? &p->line : &q->line, *const of = k < 2
+                                                                                        ? &q->line
+                                                                                        : &p->line;
         memcpy(at, k % 2 ? of->to : of->from, 2 * sizeof *at);
-        relative(on, at, end[k]);
+        relative_to_part(on, at, end[k]);
         const double beyond = max2(-end[k][0], end[k][0] - on->length);
         if (fabs(end[k][1]) < nothing && beyond < nothing && !may_meet(check, p, q, at))
             return true;
     }
     if (!(end[0][1] * end[1][1] < 0 && end[2][1] * end[3][1] < 0)) return false;
     const double part = end[0][1] / (end[0][1] - end[1][1]);
-    place_on(p, end[0][0] + part * (end[1][0] - end[0][0]), 0, at);
+    place_on_part(&p->line, end[0][0] + part * (end[1][0] - end[0][0]), 0, at);
     return !may_meet(check, p, q, at);
 }
 
@@ -121,48 +108,16 @@ static enum err refuse_meeting(const struct check *check, const struct scene_bea
 
 /* --- bodies --- */
 
-/* Whether a part lies in a region, or along its face, at a distance from its start. */
-static bool lies_at(const struct part *p, const struct region *region, double along, double dp,
-                    double at[2])
+/* Whether a place of a part, other than its ends, lies in a region or on its face. */
+static bool lies_in(const struct line_part *p, const struct region *region, double dp, double at[2])
 {
-    if (along < 0.5 * ahead * dp || along > p->length - 0.5 * ahead * dp) return false;
-    for (int side = -1; side < 2; side += 2) {
-        place_on(p, along, side * beside * dp, at);
-        if (geometry_covers(region, at[0], at[1])) return true;
-    }
-    return false;
-}
-
-/* Just before and behind a place where a part meets an outline. */
-static bool lies_near(const struct part *p, const struct region *region, double along, double dp,
-                      double at[2])
-{
-    return lies_at(p, region, along - ahead * dp, dp, at) ||
-           lies_at(p, region, along + ahead * dp, dp, at);
-}
-
-static bool lies_in(const struct part *p, const struct region *region, double dp, double at[2])
-{
-    if (lies_near(p, region, 0, dp, at) || lies_near(p, region, p->length, dp, at)) return true;
-    for (int k = 0; k < region->add.n + region->minus.n; k++) {
-        const struct outline *const o =
-            k < region->add.n ? &region->add.item[k] : &region->minus.item[k - region->add.n];
-        for (int j = 0; j < (o->n ? o->n : 1); j++) {
-            double place[2][2], end[2][2];
-            for (int e = 0; e < 2; e++) {
-                const double *const corner = o->n ? o->pt[(j + e) % o->n] : o->centre;
-                place_of_lattice(&region->lattice, corner[0], corner[1], place[e]);
-                relative(p, place[e], end[e]);
-            }
-            const double chord = sqrt(max2(0, square(o->radius) - square(end[0][1])));
-            const double part = end[0][1] / (end[0][1] - end[1][1]);
-            const double along = end[0][0] + part * (end[1][0] - end[0][0]);
-            if (o->n ? lies_near(p, region, along, dp, at)
-                     : lies_near(p, region, end[0][0] - chord, dp, at) ||
-                           lies_near(p, region, end[0][0] + chord, dp, at))
-                return true;
+    const double inner = p->length - 2 * ahead * dp;
+    const int n = 1 + (int)max2(0, inner / (between * dp));
+    for (int k = 0; k <= n; k++)
+        for (int side = -1; side < 2; side += 2) {
+            place_on_part(p, ahead * dp + inner * k / n, side * beside * dp, at);
+            if (geometry_covers(region, at[0], at[1])) return true;
         }
-    }
     return false;
 }
 
@@ -185,7 +140,7 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
     for (int k = 0; k < line->n; k++) {
         const struct part p = part_of(beam, line, k + 1 < line->n ? k : k - 1);
         double at[2];
-        if (lies_in(&p, region, dp, at))
+        if (lies_in(&p.line, region, dp, at))
             return fail_at(check->diag, check->scene, line->line,
                            "[beam %s] lies in [%s %s] or on its face, at (%.6g, %.6g) m; end its "
                            "line at the face of the body",

@@ -9,34 +9,24 @@
 #include "base/elementary.h"
 #include "particles/kernel.h"
 
-/* A part of a line: its length and its direction. */
-struct part {
-    const double *from;
-    double length, t[2];
-};
-
-static struct part line_part(const struct scene_line *line, int k)
+static struct line_part line_part_at(const struct scene_line *line, int k)
 {
-    const double *const a = line->pt[k], *const b = line->pt[k + 1];
-    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
-    return (struct part){a, length, {(b[0] - a[0]) / length, (b[1] - a[1]) / length}};
+    return line_part(line->pt[k], line->pt[k + 1]);
 }
 
 /* Distance of a place from a part; `left` of the part's line by so much, m. */
-static double distance_from(const struct part *part, const double at[2], double *left)
+static double distance_from(const struct line_part *part, const double at[2], double *left)
 {
-    const double x = at[0] - part->from[0], y = at[1] - part->from[1],
-                 along = x * part->t[0] + y * part->t[1];
-    *left = part->t[0] * y - part->t[1] * x;
-    return elementary_hypot(*left, along - min2(max2(along, 0), part->length));
+    double place[2];
+    relative_to_part(part, at, place);
+    *left = place[1];
+    return elementary_hypot(*left, place[0] - min2(max2(place[0], 0), part->length));
 }
 
 static void place_of(const struct scene_line *line, const struct line_dummy *dummy, double at[2])
 {
-    const struct part part = line_part(line, dummy->part);
-    const double along = dummy->along * part.length + dummy->beyond;
-    at[0] = part.from[0] + along * part.t[0] - dummy->off * part.t[1];
-    at[1] = part.from[1] + along * part.t[1] + dummy->off * part.t[0];
+    const struct line_part part = line_part_at(line, dummy->part);
+    place_on_part(&part, dummy->along * part.length + dummy->beyond, dummy->off, at);
 }
 
 /* Whether a place beside a part is nearer to another one. A place as far from both belongs to the
@@ -44,12 +34,12 @@ static void place_of(const struct scene_line *line, const struct line_dummy *dum
 static bool belongs_elsewhere(const struct scene_line *line, const struct line_dummy *dummy,
                               double dp)
 {
-    const struct part own = line_part(line, dummy->part);
+    const struct line_part own = line_part_at(line, dummy->part);
     double at[2], left;
     place_of(line, dummy, at);
     const double distance = distance_from(&own, at, &left), tie = 1e-6 * dp;
     for (int k = 0; k + 1 < line->n; k++) {
-        const struct part other = line_part(line, k);
+        const struct line_part other = line_part_at(line, k);
         const double its = distance_from(&other, at, &left);
         if (k != dummy->part &&
             (its < distance - tie || (its < distance + tie && k < dummy->part &&
@@ -65,7 +55,7 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
                          double step, double side)
 {
     const struct scene *const scene = sampler->scene;
-    const double dp = scene->top.dp, length = line_part(line, k).length;
+    const double dp = scene->top.dp, length = line_part_at(line, k).length;
     const int rows = (int)ceil(KERNEL_REACH * scene->h / dp - 1e-9);
     const int64_t first = (int64_t)ceil((start - rows * dp) / step - 0.5),
                   end = (int64_t)ceil((start + length + rows * dp) / step - 0.5);
@@ -87,16 +77,14 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
  * wall's particles below the other side. The wall may end there, too. */
 static double extension(const struct sampler *sampler, const struct scene_line *line, bool last)
 {
-    const struct part part = line_part(line, last ? line->n - 2 : 0);
-    const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp,
-                 along = last ? part.length + 0.5 * dp : -0.5 * dp,
-                 x = part.from[0] + along * part.t[0], y = part.from[1] + along * part.t[1];
+    const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
+    const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp;
     for (int k = 0; k < 3 * sampler->n_regions; k++) {
-        const double aside = (k % 3 - 1) * 1e-3 * dp;
+        double at[2];
+        place_on_part(&part, last ? part.length + 0.5 * dp : -0.5 * dp, (k % 3 - 1) * 1e-3 * dp,
+                      at);
         const struct region *const region = &sampler->regions[k / 3];
-        if (region->kind == KIND_WALL &&
-            geometry_piece_at(region, x - aside * part.t[1], y + aside * part.t[0]) >= 0)
-            return reach;
+        if (region->kind == KIND_WALL && geometry_piece_at(region, at[0], at[1]) >= 0) return reach;
     }
     return 0;
 }
@@ -108,7 +96,7 @@ static bool is_joined(const struct scene *scene, const struct scene_line *line, 
     const double *const end = line->pt[last ? line->n - 1 : 0];
     for (int j = 0; j < scene->n_line; j++)
         for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct part part = line_part(&scene->line[j], k);
+            const struct line_part part = line_part_at(&scene->line[j], k);
             for (int image = 0; image < 9; image++) {
                 const int times[2] = {image % 3 - 1, image / 3 - 1};
                 double at[2], left;
@@ -132,13 +120,21 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
     const bool closed = a[0] == b[0] && a[1] == b[1];
     double length = 0, start = 0;
-    for (int k = 0; k + 1 < line->n; k++) length += line_part(line, k).length;
+    for (int k = 0; k + 1 < line->n; k++) length += line_part_at(line, k).length;
     const double step = length / max2(1, round(length / scene->top.dp));
     for (int last = 0; last < 2 && !closed; last++) {
         line->extend[last] = extension(sampler, line, last);
         line->tip[last] = !closed && line->extend[last] == 0;
     }
-    for (int k = 0; k + 1 < line->n && scene->n_fluid; start += line_part(line, k++).length)
+    TRY(arena_array(&scene->arena, &line->seen, line->n, "thin walls", sampler->diag));
+    memcpy(line->seen, line->pt, (size_t)line->n * sizeof *line->pt);
+    for (int last = 0; last < 2; last++) {
+        const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
+        const double along = last ? part.length + line->extend[1] : -line->extend[0];
+        if (line->extend[last] > 0)
+            place_on_part(&part, along, 0, line->seen[last ? line->n - 1 : 0]);
+    }
+    for (int k = 0; k + 1 < line->n && scene->n_fluid; start += line_part_at(line, k++).length)
         for (int side = -1; side < 2; side += 2) TRY(lay_part(sampler, line, k, start, step, side));
     return ERR_OK;
 }
@@ -148,22 +144,10 @@ double geometry_line_distance(const struct scene *scene, const double at[2])
     double nearest = (double)INFINITY, left;
     for (int j = 0; j < scene->n_line; j++)
         for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct part part = line_part(&scene->line[j], k);
+            const struct line_part part = line_part_at(&scene->line[j], k);
             nearest = min2(nearest, distance_from(&part, at, &left));
         }
     return nearest;
-}
-
-/* Whether the boxes of a part, with its extensions, and of a connection are apart: no crossing. */
-static bool is_apart(const struct scene_line *line, int k, const double from[2], const double to[2])
-{
-    const double more = max2(k == 0 ? line->extend[0] : 0, k + 2 == line->n ? line->extend[1] : 0);
-    for (int c = 0; c < 2; c++) {
-        const double a = line->pt[k][c], b = line->pt[k + 1][c];
-        if (max2(from[c], to[c]) < min2(a, b) - more || min2(from[c], to[c]) > max2(a, b) + more)
-            return true;
-    }
-    return false;
 }
 
 int geometry_between(const struct scene *scene, const double from[2], const double to[2])
@@ -173,18 +157,9 @@ int geometry_between(const struct scene *scene, const double from[2], const doub
         const struct scene_line *const line = &scene->line[j];
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
-            if (is_apart(line, k, from, to)) continue;
-            const struct part part = line_part(line, k);
-            const double before = k == 0 ? line->extend[0] : 0,
-                         after = part.length + (k + 2 == line->n ? line->extend[1] : 0);
-            double a[2], b[2];
-            for (int c = 0; c < 2; c++) {
-                a[c] = before > 0 ? part.from[c] - before * part.t[c] : part.from[c];
-                b[c] = after > part.length ? part.from[c] + after * part.t[c] : line->pt[k + 1][c];
-                a[c] -= from[c];
-                b[c] -= from[c];
-            }
-            odd ^= crosses_piece(way, a, b);
+            const double *const a = line->seen[k], *const b = line->seen[k + 1];
+            odd ^= crosses_piece(way, (const double[]){a[0] - from[0], a[1] - from[1]},
+                                 (const double[]){b[0] - from[0], b[1] - from[1]});
         }
         if (odd) return j + 1;
     }

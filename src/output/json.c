@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/json.h"
 
-#include "output/series.h"
+#include "base/csv.h"
 
 static void quote(struct json *j, const char *text)
 {
@@ -48,8 +48,8 @@ void json_close(struct json *j, char bracket)
 
 static void number(struct json *j, double value)
 {
-    char text[SERIES_NUMBER];
-    if (isfinite(value)) series_number(text, value);
+    char text[NUMBER_TEXT];
+    if (isfinite(value)) number_text(text, value);
     fputs(isfinite(value) ? text : "null", j->file);
 }
 

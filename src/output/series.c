@@ -1,20 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/series.h"
+#include "base/csv.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-int series_number(char text[SERIES_NUMBER], double value)
-{
-    int length = 0;
-    for (int digits = 15; digits <= 17; digits++) {
-        length = snprintf(text, SERIES_NUMBER, "%.*g", digits, value);
-        if (strtod(text, NULL) == value) break;
-    }
-    return length;
-}
 
 static int count_columns(const char *header)
 {
@@ -117,10 +108,10 @@ enum err series_resume(struct series *s, const char *folder, const char *name, c
 
 enum err series_row(struct series *s, const double *values, struct diag *d)
 {
-    char row[SERIES_MAX_COLUMNS * SERIES_NUMBER];
+    char row[SERIES_MAX_COLUMNS * NUMBER_TEXT];
     size_t length = 0;
     for (int k = 0; k < s->columns; k++) {
-        length += (size_t)series_number(row + length, values[k]);
+        length += (size_t)number_text(row + length, values[k]);
         row[length++] = k + 1 < s->columns ? ',' : '\n';
     }
     return append(s, row, length, d);

@@ -10,7 +10,7 @@ struct series {
     int columns;
 };
 
-enum { SERIES_NUMBER = 32, SERIES_MAX_COLUMNS = 256 };
+enum { SERIES_MAX_COLUMNS = 256 };
 
 /* Starts the file with its header, column names joined by commas. */
 enum err series_create(struct series *s, const char *folder, const char *name, const char *header,
@@ -29,6 +29,3 @@ enum err series_row(struct series *s, const double *values, struct diag *d) SPHF
 enum err series_sync(const struct series *s, struct diag *d) SPHFSI_CHECKED;
 
 void series_close(struct series *s);
-
-/* Writes the number with as many digits as give back the same bits; "nan" and "inf" as in C. */
-int series_number(char text[SERIES_NUMBER], double value);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * CSV series: numbers that lose nothing, rows that a restart keeps or drops. */
 #include "output/series.h"
+#include "base/csv.h"
 #include "tiny.h"
 #include "unity.h"
 
@@ -19,13 +20,13 @@ static void numbers_read_back_exactly(void)
 {
     static const double values[] = {0, 0.1, 1.0 / 3, 6.62607015e-34, -1e300, 5e-324, 123456789.123};
     for (size_t k = 0; k < COUNT_OF(values); k++) {
-        char text[SERIES_NUMBER];
-        const int length = series_number(text, values[k]);
+        char text[NUMBER_TEXT];
+        const int length = number_text(text, values[k]);
         TEST_ASSERT_EQUAL_INT((int)strlen(text), length);
         TEST_ASSERT_TRUE(strtod(text, NULL) == values[k]);
     }
-    char text[SERIES_NUMBER];
-    series_number(text, 0.1);
+    char text[NUMBER_TEXT];
+    number_text(text, 0.1);
     TEST_ASSERT_EQUAL_STRING("0.1", text);
 }
 
