@@ -180,7 +180,8 @@ $(EXAMPLES): $(B)/example_%: $(B)/examples/%.o $(LIB)
 examples: $(EXAMPLES)
 	@echo "programs:"; printf '  %s\n' $(EXAMPLES)
 
-gate: $(PROGRAM)
+# The tools that the README names next need the shared library.
+gate: $(PROGRAM) $(SHARED)
 	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \
 	   echo "$(OUT) holds a finished run, which is only drawn again (remove it to run it anew)"; \
 	 else ./$(PROGRAM) cases/gate.cfg --out $(OUT) $(if $(wildcard $(OUT)/*.ckpt),--restart) \

@@ -1,5 +1,7 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Makes pictures for the repository small, without changing the colours that their legends name."""
+import sys
 
 from PIL import Image  # comes with matplotlib
 
@@ -58,3 +60,8 @@ def shrink(path, width=1500):
         if image.width > width:
             image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
         indexed(image).save(path, optimize=True)
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        shrink(name)

@@ -66,6 +66,8 @@ gallery: $(PROGRAM)
 	  set -- $$row; name=$$1; case=$$2; time=$$3; run=$(GALLERY)/$$name; \
 	  [ -e $$run/summary.json ] || ./$(PROGRAM) cases/$$case.cfg --quiet --out $$run \
 	    $(if $(QUICK),--set 'dp=4 mm' --until 0.05); \
+	  picture=$(if $(QUICK),build/quick,docs/img)/$$name.png; \
 	  $(PROJECT_PYTHON) tools/plot_fields.py $$run --time $(if $(QUICK),0.05,$$time) \
-	    --field velocity --out $(if $(QUICK),build/quick,docs/img)/$$name.png; \
+	    --field velocity --out $$picture; \
+	  $(PROJECT_PYTHON) tools/report/palette.py $$picture; \
 	done
