@@ -36,6 +36,8 @@ def parse_look(parser):
 def arguments():
     parser = runfiles.options(__doc__, EXAMPLE)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
+    parser.add_argument("--name", action="append", default=[], metavar="TEXT",
+                        help="title of the RUN at the same place (default: its folder)")
     parser.add_argument("--time", nargs="+", type=float, metavar="T",
                         help="instants in s; the nearest snapshots are drawn (default: four over "
                         "the run; of several runs the last)")
@@ -56,6 +58,8 @@ def chosen_ranges(args):
 def main():
     args = arguments()
     runs = runfiles.make_runs(args.run)
+    for run, name in zip(runs, args.name):
+        run.name = name
     files = [Snapshots(run.folder / "fields.vtkhdf") for run in runs]
     entries, panels = chosen_fields(args), []
     for time in draw_fields.instants(files, args.time):

@@ -238,7 +238,7 @@ def test_fields(tmp, good, halted):
                 "--out", tmp / "f.pdf")
     assert "t = 0.1 s (asked for 0.11 s)" in out, out
     draws(tmp / "f.png", "plot_fields", halted, "--field", "density", "--solid", "pressure",
-          "--range", 900, 1100, "--out", tmp / "f.png")
+          "--name", "stopped run", "--range", 900, 1100, "--out", tmp / "f.png")
     broken = tmp / "broken"
     write_run(broken)
     with h5py.File(broken / "fields.vtkhdf", "a") as file:

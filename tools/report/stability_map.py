@@ -142,9 +142,14 @@ def run_all(jobs, most):
     save(rows)
 
 
+def load_kept():
+    """In the quick form, before any plate has run, what is committed."""
+    return common.load(RESULTS) or common.load(ROOT / "docs" / "results" / RESULTS.name)
+
+
 def load():
     """The rows as dictionaries."""
-    kept = common.load(RESULTS)
+    kept = load_kept()
     return [dict(zip(kept["columns"], row)) for row in kept["rows"]]
 
 
@@ -175,7 +180,7 @@ def report(rows):
                 stopped=verdicts.count("stopped"), gains=len(gains),
                 percent=100 * LIMIT, gained="\n" + table(head, gained) + "\n" if gains else "",
                 left_out=verdicts.count("left out"), end=END, height=HEIGHT, right=RIGHT[2],
-                versions=", ".join(common.load(RESULTS)["versions"]),
+                versions=", ".join(load_kept()["versions"]),
                 **{name: sum(row["result"] == words for row in rows) for name, words in
                    (("bend", "bends"), ("buckle", "buckles"), ("crushed", "is crushed"))})
 

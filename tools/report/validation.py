@@ -226,7 +226,7 @@ def picture(tool, names, image, caption, *options):
     folders = [FOLDER / name for name in names
                if (FOLDER / name / "fields.vtkhdf").is_file()]
     if len(folders) == len(names):
-        words = [f"--name={WORDS[name]}" for name in names if tool == "plot_m1"]
+        words = [f"--name={WORDS[name]}" for name in names if tool != "plot_ledger"]
         done = subprocess.run([sys.executable, str(ROOT / "tools" / f"{tool}.py"),
                                *map(str, folders), "--out", str(path), *words,
                                *map(str, options)],
