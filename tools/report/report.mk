@@ -19,7 +19,7 @@
 #   make turek-hron      docs/results/turek_hron.md from the kept runs (ARGS='run fsi2 --across 10' runs a case)
 #   make performance     the bench, longest steps and the gate: docs/performance.md
 #   make glance          the charts of the README from the results of the reports
-#   make gallery         run the elastic valve and the flap, draw their pictures in the README
+#   make gallery         run valve, flap and floating plate, draw their pictures in the README
 #   make reliability     run the fault tests and write docs/results/reliability.md
 
 # goal: the tool and its options. Each is run on the built program by the project's Python.
@@ -62,7 +62,8 @@ help-reports:
 GALLERY := $(if $(QUICK),build/quick,runs)
 gallery: $(PROGRAM)
 	@mkdir -p $(GALLERY)
-	@set -e; for row in 'elastic_valve elastic_valve 0.75' 'flap templates/flap 6'; do \
+	@set -e; for row in 'elastic_valve elastic_valve 0.75' 'flap templates/flap 6' \
+	  'floating_plate templates/floating_plate 6.3'; do \
 	  set -- $$row; name=$$1; case=$$2; time=$$3; run=$(GALLERY)/$$name; \
 	  [ -e $$run/summary.json ] || ./$(PROGRAM) cases/$$case.cfg --quiet --out $$run \
 	    $(if $(QUICK),--set 'dp=4 mm' --until 0.05); \
