@@ -49,6 +49,7 @@ struct packing {
     double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
     double slope;          /* factor of the gradient of dens, m */
     double per_viscosity;  /* 1/(-2 alpha c0 rho0) of Eq. 7, m^2 s/kg */
+    double ahead;          /* s */
     effect_set effects;
     bool keeps_slopes;
 };
@@ -63,6 +64,7 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             k->rho0 * square(k->c0),
                             -0.5 * k->h,
                             -0.5 / (k->model->artificial_viscosity * k->c0 * k->rho0),
+                            fluid->ahead,
                             fluid->effects,
                             fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
@@ -71,9 +73,10 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
  * acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with
  * delay. */
 SPHFSI_INLINE four_double acting_pressure(const struct packing *by,
-                                          const struct particles *particles, int32_t i)
+                                          const struct particles *particles, int32_t i,
+                                          four_double dens)
 {
-    const four_double dens = FOUR(particles->dens, i), pressure = by->tait * EOS_POWER(dens);
+    const four_double pressure = by->tait * EOS_POWER(dens);
     if (!(by->effects & FX_DAMPER)) return pressure;
     return pressure + by->acoustic * (dens - FOUR(particles->dens_slow, i));
 }
@@ -86,20 +89,29 @@ SPHFSI_INLINE void pack_slopes(const struct packing *by, const struct particles 
     put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * by->slope);
 }
 
-/* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
- * next cell. */
+/* Packed fields of the `count` particles from i on; if there are fewer than four, the rest belong
+ * to the next cell. */
 SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles *particles,
-                                int32_t i, const double centre[2], real *out)
+                                int32_t i, int count, const double centre[2], real *out)
 {
-    const four_double dens = FOUR(particles->dens, i);
-    put_four(out, PACKED_X, (FOUR(particles->x, i) - centre[0]) * by->inv_h);
-    put_four(out, PACKED_Y, (FOUR(particles->y, i) - centre[1]) * by->inv_h);
-    put_four(out, PACKED_U, FOUR(particles->vx, i));
-    put_four(out, PACKED_V, FOUR(particles->vy, i));
+    four_double dens = FOUR(particles->dens, i), x = FOUR(particles->x, i),
+                y = FOUR(particles->y, i), u = FOUR(particles->vx, i), v = FOUR(particles->vy, i);
+    if (by->ahead > 0) {
+        x = x + by->ahead * u; /* Eq. 22a */
+        y = y + by->ahead * v;
+        u = u + by->ahead * FOUR(particles->ax, i); /* Eq. 22b */
+        v = v + by->ahead * FOUR(particles->ay, i);
+        dens = dens + by->ahead * FOUR(particles->ddens, i); /* Eq. 24a */
+        store_four(particles->dens0 + i, dens, count);
+    }
+    put_four(out, PACKED_X, (x - centre[0]) * by->inv_h);
+    put_four(out, PACKED_Y, (y - centre[1]) * by->inv_h);
+    put_four(out, PACKED_U, u);
+    put_four(out, PACKED_V, v);
     const four_double specific = 1 / (1 + dens), own = by->volume * specific;
     put_four(out, PACKED_VOLUME, by->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
     if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific * by->per_viscosity);
-    put_four(out, PACKED_P, acting_pressure(by, particles, i));
+    put_four(out, PACKED_P, acting_pressure(by, particles, i, dens));
     put_four(out, PACKED_DENS, dens);
     if (by->keeps_slopes) pack_slopes(by, particles, i, out);
 }
@@ -116,7 +128,7 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(by, particles, list->start[cell] + first, centre, out);
+        pack_cluster(by, particles, list->start[cell] + first, own, centre, out);
         if (own == CLUSTER) { /* a compile-time constant */
             cluster_box(&packed->boxes, cluster, out, CLUSTER);
             continue;

@@ -59,8 +59,8 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                                const struct vector_constants *k, struct pair_set fx,
                                struct chunk_totals *top)
 {
-    const four_double dens = FOUR(particles->dens, i);
-    four_double full = 1 + dens, factor = k->acceleration + 0 * full;
+    four_double full = 1 + FOUR(fluid->ahead > 0 ? particles->dens0 : particles->dens, i);
+    four_double factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
         const four_double inverse_mass = 1 / FOUR(particles->m, i);
@@ -131,9 +131,9 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
         rates_store(fluid, particles, i, count, &s, deferred, k, fx, top);
 }
 
-/* Asks for the packed fields around the n-th active cell while the one before is computed. Scenes
- * larger than the second cache would wait for each of them; no stream in memory predicts them. Its
- * own fields come last in the list, and cells before have read these. */
+/* Asks for the packed fields and boxes around the n-th active cell while the one before is
+ * computed. Scenes larger than the second cache would wait for each of them; no stream in memory
+ * predicts them. Its own fields come last in the list, and cells before have read these. */
 SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
 {
     enum { LINE = 64 }; /* bytes */
@@ -141,7 +141,10 @@ SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
     const struct cells_around *const around = &fluid->around[n];
     const size_t bytes = (size_t)(packed->n * CLUSTER) * sizeof(real);
     for (int k = 0; k < around->n - around->half; k++) {
-        const real *const from = cluster_packed(packed, neighbour_number(around->code[k]));
+        const size_t first = neighbour_number(around->code[k]);
+        const real *const from = cluster_packed(packed, first);
+        for (int side = 0; side < BOX_SIDES; side++)
+            __builtin_prefetch(&packed->boxes.side[side][first]);
         for (size_t at = 0; at < around->count[k] * bytes; at += LINE)
             __builtin_prefetch((const char *)from + at);
     }

@@ -84,22 +84,28 @@ void use_skin_left(struct simulation *sim, double speed2_before)
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
                          sim->sorting.shifted;
     const double other = max2(sim->sorting.solid_move, sim->wall_motion.way);
+    for (int side = 0; side < 4; side++) sim->cells.kind[KIND_FLUID].overhang[side] += moved;
     sim->sorting.skin_left -= moved + max2(moved, other);
     sim->wall_motion.way = 0;
 }
 
-/* Where displacements are bounded, cells need not be measured at every step. Rounding errors
- * of the displacements are below the tolerance. */
-bool sorting_due(struct simulation *sim)
+static void measure_overhangs(struct simulation *sim, enum kind first)
 {
-    if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
-    const bool bounded = sim->integrator->ahead == 0;
-    const double tolerance = 1e-6 * sim->fluid.k.h;
-    if (bounded && sim->sorting.skin_left > tolerance) return false;
-    for (int kind = 0; kind < KIND_COUNT; kind++)
+    for (int kind = (int)first; kind < KIND_COUNT; kind++)
         if (sim->cells.kind[kind].n_active && (kind != KIND_WALL || sim->wall_motion.moved))
             cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
     find_skin_left(sim);
+}
+
+/* Where displacements are bounded, cells need not be measured at every step. The predictor moves
+ * structures further than a step does, so these are measured. Rounding errors of the displacements
+ * are below the tolerance. */
+bool sorting_due(struct simulation *sim)
+{
+    if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
+    if (sim->integrator->ahead > 0) measure_overhangs(sim, KIND_WALL);
+    if (sim->sorting.skin_left > 1e-6 * sim->fluid.k.h) return false;
+    measure_overhangs(sim, KIND_FLUID);
     return !(sim->sorting.skin_left > 0);
 }
 

@@ -24,7 +24,8 @@ static void swap_states(struct particles *particles)
     swap_fields(&particles->dens, &particles->dens0);
 }
 
-static void predict_fluid(struct particles *particles, double half)
+/* In fields of its own, for effects that read them; the others have it packed alone. */
+static void predict_fields(struct particles *particles, double half)
 {
     swap_states(particles);
 #pragma omp parallel for simd schedule(static)
@@ -122,12 +123,17 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits);
     energy_test_due(sim);
-    predict_fluid(&sim->kind[KIND_FLUID], 0.5 * dt);
+    const bool read = sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].at;
+    if (read)
+        predict_fields(&sim->kind[KIND_FLUID], 0.5 * dt);
+    else
+        sim->fluid.ahead = 0.5 * dt;
     if (multirate) coupling_predict(&sim->coupling, dt);
     if (single_rate) predict_at_single_rate(sim, dt);
     phase_add(sim, PHASE_update, clock);
 
     evaluate_fluid(sim, time + 0.5 * dt);
+    sim->fluid.ahead = 0;
     energy_of_evaluation(sim, dt);
     clock = wall_clock();
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, dt);
@@ -135,7 +141,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
-    swap_states(&sim->kind[KIND_FLUID]);
+    if (read) swap_states(&sim->kind[KIND_FLUID]);
     advance_fluid(sim, correct_rows, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
