@@ -27,7 +27,8 @@ struct beam_start {
 };
 
 /* T-104: the mean force on each node over a step of dt in which the nodes move by d, such that its
- * work is the change of the elastic energy, plus what is dissipated. With `matrix`, its derivative
- * by d. */
+ * work is the change of the elastic energy, plus what is dissipated; and its derivative by d. w:
+ * the mean velocities in the step before, in fluid (T-104d); NULL: none. */
 void beam_force(const struct beam_element *e, const struct beam_start *start,
-                const double *const d[2], double dt, double force[2][3], double matrix[6][6]);
+                const double *const d[2], const double *const w[2], double dt, double force[2][3],
+                double matrix[6][6]);

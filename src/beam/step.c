@@ -118,8 +118,10 @@ static void add_elements(struct beams *beams, double dt, struct largest *top)
     for (int m = 0; m < beams->n_elements; m++) {
         const struct beam_element *const e = &beams->element[m];
         struct beam_step *const at[2] = {&beams->step[e->node[0]], &beams->step[e->node[1]]};
+        const double *const w[2] = {at[0]->w, at[1]->w};
         double force[2][3], matrix[6][6];
-        beam_force(e, &beams->start[m], (const double *[2]){at[0]->d, at[1]->d}, dt, force, matrix);
+        beam_force(e, &beams->start[m], (const double *[2]){at[0]->d, at[1]->d},
+                   beams->line ? w : NULL, dt, force, matrix);
         for (int r = 0; r < 6; r++) at[r / 3]->force[r % 3] += force[r / 3][r % 3];
         for (int c = 0; c < 2; c++) top->force = max2(top->force, fabs(force[1][c]));
         top->force = max2(top->force, fabs(force[1][2]) / e->length);
