@@ -59,9 +59,18 @@ end_time = 1
 [beam plate]
 shape = polyline: 0, 0; 0.3, 0; 0.4, 0.3
 clamp = 0, 0
+hinge = 0.4, 0.3, bob
 density = 2000
 young = 1 GPa
 thickness = 4 mm
+[rigid bob]
+shape = box 0.35, 0.3, 0.45, 0.4
+density = 500
+[spring line]
+body = plate
+from = 0.3, 0
+to = 0.2, -0.1
+stiffness = 100
 """
 COLOURS = {"fluid": "#56B4E9", "wall": "#999999", "moving": "#CC79A7", "solid": "#E69F00",
            "clamp": "#D55E00"}
@@ -175,7 +184,7 @@ def check(picture):
 
 
 def check_beam(picture):
-    """A beam without fluid has its line, and no particles."""
+    """A beam without fluid has its line, circles at its joints and springs, and no particles."""
     pixel = 1 / picture.scale
     lines = [p.get("d") for p in picture.root.iter(NAME + "path")
              if p.get("class") == "body" and "L" in p.get("d")]
@@ -183,6 +192,11 @@ def check_beam(picture):
     places = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
     near(sum(places, ()), (0, 0, 0.3, 0, 0.4, 0.3), pixel)
     assert picture.listed("beam plate") == "beam plate: 0.4 x 0.3 m, 0 particles"
+    assert picture.listed("spring line") == "spring line: at (0.3, 0) m to (0.2, -0.1) m"
+    circles = [picture.metres(c.get("cx"), c.get("cy")) for c in picture.root.iter(NAME + "circle")]
+    assert len(circles) == 4, circles
+    for place in ((0, 0), (0.4, 0.3), (0.3, 0), (0.2, -0.1)):
+        assert any(math.dist(place, c) < pixel for c in circles), place
     assert not any(word in text.text for text in picture.texts() for word in ("inf", "nan"))
 
 

@@ -57,6 +57,26 @@ lower = -0.2, -0.1
 upper = 0.4, 0.3
 """
 
+JOINT = """dp = 5 cm
+end_time = 0.5
+gravity = 0, -9.81
+[beam flap]
+shape = polyline: 0, 0; 0.5, 0
+axial_stiffness = 1e6
+bending_stiffness = 100
+mass = 1
+[rigid bob]
+shape = box 0.5, -0.1, 0.7, 0.1
+mass = 1
+[probe end]
+quantity = displacement
+body = flap
+point = 0.5, 0
+[probe bob]
+quantity = pose
+body = bob
+"""
+
 
 def raises(kind, words, function, *args, **options):
     try:
@@ -153,6 +173,22 @@ def test_motions():
     raises(sphfsi.InputError, "did you mean `push`", simulation.set_motion, "pusch", None)
     simulation.set_motion("push", lambda t: ((float("nan"), 0), (0, 0), (0, 0)))
     raises(sphfsi.Guard, "[motion push]", simulation.step)
+
+
+def test_joints():
+    """A joint of a beam is a tuple, with the name of a body: the flap swings with the body that is
+    clamped to it; hinged to each other, but to nothing else, both fall."""
+    for keys in ({"hinge": (0, 0), "clamp": (0.5, 0, "bob")}, {"hinge": (0.5, 0, "bob")}):
+        p = sphfsi.Case(text=JOINT, flap=keys).run(f"runs/{len(keys)}", threads=1,
+                                                   progress=False).probes()
+        angle = p["bob_angle_rad"]
+        for axis, at, arm in (("x", 0.5, -0.1 * np.cos(angle)), ("y", 0, -0.1 * np.sin(angle))):
+            assert abs(p[f"bob_c{axis}_m"] + arm - at - p[f"end_d{axis}_m"]).max() < 1e-9
+        assert angle[-1] < -1 if "clamp" in keys else abs(angle).max() < 1e-9
+        fallen = -p["end_dy_m"][-1]
+        assert "clamp" in keys or abs(fallen - 0.5 * 9.81 * 0.5**2) < 1e-6, fallen
+    raises(sphfsi.InputError, "bib is no [wall], [rigid] or other [beam]",
+           sphfsi.Case(text=JOINT, flap={"hinge": (0.5, 0, "bib")}).simulation)
 
 
 def test_runs():

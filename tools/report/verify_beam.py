@@ -2,16 +2,23 @@
 # SPDX-License-Identifier: MIT
 """Beams against theory, solids and the benchmark of Turek and Hron (make verify-beam, half an hour
 on one core): large deflection, frequencies, energy; frequencies in water of a plate with water on
-one side or both; the elastic gate, the baffle and the bar in a channel as beams.
+one side or both; a plate that floats on waves; the elastic gate, the baffle and the bar in a
+channel as beams.
 
-The scenes are texts in this tool, and cases/gate.cfg, wet_baffle.cfg and turek_hron with a beam for
-their solid. The figures are kept in docs/results/beam_verification.json."""
+The scenes are texts in this tool, cases/verify/floating_plate.cfg, and cases/gate.cfg,
+wet_baffle.cfg and turek_hron with a beam for their solid. The figures are kept in
+docs/results/beam_verification.json."""
 import math
 import re
+import sys
 
 from common import COLOURS, IMAGES, OUT, ROOT, load, np, plt, run_figures, run_tool
 from palette import save
+from sphfsi.waves import separate
 from turek_hron import REFERENCE, columns, period, summary
+
+sys.path.insert(0, str(ROOT / "cases" / "reference"))
+from floating_plate import Plate  # noqa: E402
 
 REPORT = OUT / "beam_verification.md"
 RHO, G = 1000.0, 9.81
@@ -285,6 +292,34 @@ def solid_wet():
 SIDES = {1: "one side wet", 2: "both sides wet"}
 
 
+# --- on waves ---
+def floating(runs):
+    """In the last two periods of cases/verify/floating_plate.cfg, whose numbers these are."""
+    depth, k = 0.4, 5.0
+    omega, wave, dp = math.sqrt(G * k * math.tanh(k * depth)), 2 * math.pi / k, runs[0].dp
+    start, length, draft = round(2.5 * wave / dp) * dp, round(wave / dp) * dp, 3 / 32 * depth
+    theory = Plate(omega, depth, length, 3 * RHO * G / k**4, RHO * draft, draft, 2 * draft, 24.0)
+    p, turn = runs[0].table(), 2 * math.pi / omega
+    late = p["time_s"] > p["time_s"][-1] - 2 * turn
+    t = p["time_s"][late]
+
+    def waves(ending, first):
+        return separate(t, [p[f"{name}{ending}_level_m"][late] for name in ("near", "far")],
+                        [first, first + 0.25 * wave], depth, turn)
+    before, after = waves("", start - 0.8 * wave), waves("_last", start + length + 0.55 * wave)
+    rows = [("height that returns", before.reflection, abs(theory.reflected)),
+            ("height that passes", after.incident / before.incident, abs(theory.transmitted))]
+    base = np.stack([np.ones_like(t), *(f(n * omega * t) for n in (1, 2, 3)
+                                        for f in (np.cos, np.sin))], axis=1)
+    for n in range(5):
+        fit = np.linalg.lstsq(base, p[f"w{n}_dy_m"][late], rcond=None)[0]
+        rows.append((f"elevation at {n / 4:g} of its length",
+                     math.hypot(fit[1], fit[2]) / (before.incident / 2),
+                     abs(theory.elevation(n / 4 * length))))
+    return [(f"{what}, {wanted:.3f} of the incident by theory, % too large",
+             float(100 * (found / wanted - 1)), 5) for what, found, wanted in rows]
+
+
 # --- cases of solids, with a beam for them ---
 def as_beam(case, solid, beam, *dropped):
     text = (ROOT / "cases" / f"{case}.cfg").read_text(encoding="utf-8")
@@ -351,6 +386,7 @@ SCENES = {
     "beam alone, large swings": energy(),
     **{f"plate in a basin, {SIDES[sides]}": wet(sides) for sides in SIDES},
     "solid in a basin, 4 spacings thick": solid_wet(),
+    "plate on waves, 32 spacings in the depth": ("floating_plate", [["across=32"]], floating),
     "gate, dp = 5 mm": (GATE, [["dp=5 mm", "wall=20 mm"]], peak(43.6, 1494)),
     "gate, dp = 5 mm, h_over_dp = 1.5":
     (GATE, [["dp=5 mm", "wall=20 mm", "numerics.h_over_dp=1.5"]], peak(43.6, 1494)),
