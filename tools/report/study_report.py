@@ -49,7 +49,7 @@ def draw_case(study, case, path):
                 lw=6, solid_capstyle="round", zorder=0)
     draw_line(axes, study, study.of(case, "scheme", "paper"), COLOURS[0], "scheme = paper")
     draw_line(axes, study, study.of(case, "base"), "black", "defaults", zorder=4)
-    label = textwrap.fill(f"{main_error(study.cases[case])} (%)", 30)
+    label = textwrap.fill(f"error (%): {main_error(study.cases[case])}", 30)
     axes.set(xlabel="CPU time (s)", ylabel=label,
              xlim=(None, 4 * max(cost(p) for p in known)))
     axes.set_title(f"{study.cases[case].get('title', case)}. Grey: other settings; band: "
