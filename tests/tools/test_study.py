@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import PROGRAM, ROOT, packages
 with packages():
     import tomllib
-    from study import points_of
+    from accuracy import points_of
     from study_metrics import measure
     from runfiles import BadFile, np
 

@@ -20,9 +20,9 @@ import tempfile
 from pathlib import Path
 
 import study_report
+from accuracy import machine
 from common import OUT, PROGRAM, QUICK, ROOT, BadFile, ask, load, options, run_tool, store_rows
 from runs import effective, timed
-from study import machine
 from study_results import forecast_cells
 
 UNITS = {"s": 1, "min": 60, "h": 3600}
