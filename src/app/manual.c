@@ -228,7 +228,7 @@ static enum err write_keys(struct json *j, void *unused, struct diag *d)
     json_open(j, "quantities", '{');
     for (int k = 0; k < PROBE_QUANTITIES; k++) {
         json_open(j, quantity_table[k].name, '{');
-        json_integer(j, "target", probe_targets[k]);
+        json_integer(j, "target", quantity_table[k].target);
         json_text(j, "columns", quantity_table[k].columns);
         json_text(j, "meaning", quantity_table[k].meaning);
         json_close(j, '}');

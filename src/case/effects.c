@@ -147,18 +147,9 @@ unsigned effects_groups(effect_set effects, enum kind kind)
 /* --- phases --- */
 
 const struct phase_info phase_table[PHASE_COUNT] = {
-    [PHASE_sort] = {"sort", "sorting particles into cells", FX_FLUID},
-    [PHASE_open] = {"open", "buffers of open boundaries", FX_OPEN},
-    [PHASE_packed] = {"packed", "equation of state and packed copies of the fields", FX_FLUID},
-    [PHASE_slope] = {"slope", "gradients of the density", FX_ANTUONO},
-    [PHASE_wall] = {"wall", "pressure and velocity of walls and structures for the fluid",
-                    FX_WALL | FX_COUPLING},
-    [PHASE_fluid] = {"fluid", "forces on fluid particles", FX_FLUID},
-    [PHASE_shift] = {"shift", "particle shifting", FX_SHIFTING},
-    [PHASE_solid] = {"solid", "deformation, stress and forces of the solid", FX_SOLID},
-    [PHASE_contact] = {"contact", "search for contact and contact forces", FX_CONTACT},
-    [PHASE_update] = {"update", "time integration, bounds, guards", FX_ALWAYS},
-    [PHASE_output] = {"output", "probes, ledger, snapshots, checkpoints", FX_ALWAYS},
+#define PHASE(name, when, meaning) {#name, meaning, when},
+    PHASES(PHASE)
+#undef PHASE
 };
 
 /* --- checks --- */

@@ -91,20 +91,27 @@ effect_set effects_of_scene(const struct scene *scene);
 
 #define FX_ALWAYS (~(effect_set)0)
 
-/* The timed parts of a step, in order. */
+/* The timed parts of a step, in order: PHASE(name, when, meaning). */
+/* clang-format off */
+#define PHASES(PHASE)                                                            \
+    PHASE(sort, FX_FLUID, "sorting particles into cells")                        \
+    PHASE(open, FX_OPEN, "buffers of open boundaries")                           \
+    PHASE(packed, FX_FLUID, "equation of state and packed copies of the fields") \
+    PHASE(slope, FX_ANTUONO, "gradients of the density")                         \
+    PHASE(wall, FX_WALL | FX_COUPLING,                                           \
+          "pressure and velocity of walls and structures for the fluid")         \
+    PHASE(fluid, FX_FLUID, "forces on fluid particles")                          \
+    PHASE(shift, FX_SHIFTING, "particle shifting")                               \
+    PHASE(solid, FX_SOLID, "deformation, stress and forces of the solid")        \
+    PHASE(contact, FX_CONTACT, "search for contact and contact forces")          \
+    PHASE(update, FX_ALWAYS, "time integration, bounds, guards")                 \
+    PHASE(output, FX_ALWAYS, "probes, ledger, snapshots, checkpoints")
+/* clang-format on */
 enum phase {
-    PHASE_sort,
-    PHASE_open,
-    PHASE_packed,
-    PHASE_slope,
-    PHASE_wall,
-    PHASE_fluid,
-    PHASE_shift,
-    PHASE_solid,
-    PHASE_contact,
-    PHASE_update,
-    PHASE_output,
-    PHASE_COUNT
+#define PHASE(name, ...) PHASE_##name,
+    PHASES(PHASE)
+#undef PHASE
+        PHASE_COUNT
 };
 struct phase_info {
     const char *name, *meaning;

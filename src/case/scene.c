@@ -125,27 +125,15 @@ bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 
 /* --- probes and snapshots --- */
 
-const enum probe_target probe_targets[PROBE_QUANTITIES] = {
-    [PROBE_DISPLACEMENT] = TARGET_SOLID_POINT,
-    [PROBE_VELOCITY] = TARGET_ANY_POINT,
-    [PROBE_PRESSURE] = TARGET_FLUID_POINT,
-    [PROBE_STRESS] = TARGET_SOLID_POINT,
-    [PROBE_LEVEL] = TARGET_FLUID_POINT,
-    [PROBE_FORCE] = TARGET_BODY,
-    [PROBE_FRONT] = TARGET_FLUID,
-    [PROBE_ENERGY] = TARGET_SOLID,
-    [PROBE_FLUX] = TARGET_FLUID_LINE,
-    [PROBE_STRAIN] = TARGET_SOLID_POINT,
-    [PROBE_ACCELERATION] = TARGET_SOLID_POINT,
-    [PROBE_SECTION_FORCE] = TARGET_SOLID_POINT,
-    [PROBE_POSE] = TARGET_SOLID,
-    [PROBE_REACTION] = TARGET_SOLID,
-    [PROBE_SURFACE_PRESSURE] = TARGET_FLUID_LINE,
+const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
+#define QUANTITY(NAME, name, target, needs, columns, meaning) \
+    {#name, columns, meaning, TARGET_##target},
+#include "case/quantities.def"
 };
 
 enum probe_target scene_probe_target(const struct scene_probe *probe)
 {
-    const enum probe_target target = probe_targets[probe->quantity];
+    const enum probe_target target = quantity_table[probe->quantity].target;
     if (target != TARGET_ANY_POINT) return target;
     return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
 }

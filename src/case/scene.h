@@ -113,21 +113,8 @@ enum motion_kind {
     MOTION_EXPRESSION
 };
 enum probe_quantity {
-    PROBE_DISPLACEMENT,
-    PROBE_VELOCITY,
-    PROBE_PRESSURE,
-    PROBE_STRESS,
-    PROBE_LEVEL,
-    PROBE_FORCE,
-    PROBE_FRONT,
-    PROBE_ENERGY,
-    PROBE_FLUX,
-    PROBE_STRAIN,
-    PROBE_ACCELERATION,
-    PROBE_POSE,
-    PROBE_REACTION,
-    PROBE_SURFACE_PRESSURE,
-    PROBE_SECTION_FORCE,
+#define QUANTITY(NAME, ...) PROBE_##NAME,
+#include "case/quantities.def"
     PROBE_QUANTITIES
 };
 /* What a quantity is measured of. */
@@ -140,7 +127,11 @@ enum probe_target {
     TARGET_FLUID, /* all of it */
     TARGET_FLUID_LINE
 };
-extern const enum probe_target probe_targets[PROBE_QUANTITIES];
+/* The rows of case/quantities.def. */
+extern const struct quantity_info {
+    const char *name, *columns, *meaning;
+    enum probe_target target;
+} quantity_table[PROBE_QUANTITIES];
 
 enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
 

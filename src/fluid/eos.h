@@ -84,6 +84,3 @@ SPHFSI_INLINE double eos_energy(double d, double c0)
     const double sixth = d * d * (5.0 / 2 + d * (10.0 / 3 + d * (5.0 / 2 + d * (1 + d / 6))));
     return c0 * c0 / EOS_GAMMA * (sixth + d * d / (1 + d));
 }
-
-/* P rho0/rho^2, m^2/s^2: the rate at which that energy changes with dens. */
-#define EOS_ENERGY_RATE(d, c0) ((c0) * (c0) / EOS_GAMMA * EOS_POWER(d) / ((1 + (d)) * (1 + (d))))

@@ -6,59 +6,6 @@
 #include "base/elementary.h"
 #include "geometry/motion.h"
 
-const struct quantity_info quantity_table[PROBE_QUANTITIES] = {
-    [PROBE_DISPLACEMENT] = {"displacement", "dx_m,dy_m",
-                            "displacement of a material point of a solid or beam"},
-    [PROBE_VELOCITY] =
-        {"velocity", "vx_m_per_s,vy_m_per_s",
-         "velocity of a material point of `body`. Without `body`: velocity of the fluid at a fixed "
-         "point, or at a point that moves with the body of `on` (Shepard mean; 0 if dry)"},
-    [PROBE_PRESSURE] = {"pressure", "p_Pa",
-                        "pressure of the fluid at a fixed point, or at a point that moves with the "
-                        "body of `on`. It is the mean over the fluid within 2 h, brought to the "
-                        "point by the slope due to gravity and acceleration (T-10a), and 0 if dry"},
-    [PROBE_STRESS] = {"stress", "sxx_Pa,syy_Pa,szz_Pa,sxy_Pa,mises_Pa",
-                      "Cauchy stress at a material point of a solid, and von Mises stress"},
-    [PROBE_LEVEL] = {"level", "level_m",
-                     "height y of the first free surface above `point`; y of `point` if it is dry"},
-    [PROBE_FORCE] = {"force", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-                     "force of the fluid on the solid and wall sections that `body` names, and its "
-                     "counter-clockwise moment about `point`"},
-    [PROBE_FRONT] = {"front", "front_m",
-                     "coordinate of the foremost fluid in `direction`; drops of one or two "
-                     "particles do not count"},
-    [PROBE_ENERGY] = {"energy", "kinetic_J_per_m,elastic_J_per_m,hourglass_J_per_m",
-                      "kinetic energy, strain energy and energy of the hourglass force of a solid; "
-                      "of a beam the first two"},
-    [PROBE_FLUX] = {"flux", "q_m2_per_s",
-                    "volume flow rate per metre of depth through the line from `point` to `to`; "
-                    "positive from left to right, seen from `point` towards `to`"},
-    [PROBE_STRAIN] = {"strain", "Exx_1,Eyy_1,Exy_1",
-                      "Green-Lagrange strain at a material point of a solid"},
-    [PROBE_ACCELERATION] = {"acceleration", "ax_m_per_s2,ay_m_per_s2",
-                            "acceleration of a material point of a solid; of a beam its mean over "
-                            "the last step"},
-    [PROBE_POSE] = {"pose", "cx_m,cy_m,angle_rad",
-                    "position of the centre of mass of a solid or rigid body, and its "
-                    "counter-clockwise rotation: of a solid by least squares over its particles, "
-                    "between -pi and pi"},
-    [PROBE_REACTION] =
-        {"reaction", "fx_N_per_m,fy_N_per_m,mz_Nm_per_m",
-         "reaction force and its counter-clockwise moment about `point`: of clamps and "
-         "hinges on a solid or beam, of a hinge or guide on a rigid body, or of a spring at "
-         "its end `to`"},
-    [PROBE_SURFACE_PRESSURE] =
-        {"surface_pressure", "p_Pa,fx_N_per_m,fy_N_per_m",
-         "mean pressure of the fluid along the line from `point` to `to`, such as the face of a "
-         "wall. The force is that of this pressure on a surface with the fluid to the left of the "
-         "line. Where it is dry, the pressure is 0"},
-    [PROBE_SECTION_FORCE] =
-        {"section_force", "n_N_per_m,q_N_per_m,m_N,curvature_1_per_m",
-         "axial force (tension is positive), shear force and moment in the cross-section of a beam "
-         "at `point`, per depth, and its change of curvature; counter-clockwise along its line is "
-         "positive"},
-};
-
 /* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;
  * this one is smooth and vanishes at the reach. */
 static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
@@ -139,14 +86,13 @@ enum need { NEED_NOTHING, NEED_REFRESH, NEED_WALL_FORCES };
 
 static enum need need_of(const struct probe *probe)
 {
-    const int of = probe->quantity;
+    static const enum need needs[] = {
+#define QUANTITY(NAME, name, target, need, ...) NEED_##need,
+#include "case/quantities.def"
+    };
     for (int k = 0; k < probe->n_bodies; k++)
         if (probe->bodies[k].kind == KIND_WALL) return NEED_WALL_FORCES;
-    return of == PROBE_STRESS || of == PROBE_FORCE || of == PROBE_ENERGY || of == PROBE_STRAIN ||
-                   of == PROBE_ACCELERATION || of == PROBE_REACTION || of == PROBE_PRESSURE ||
-                   of == PROBE_SURFACE_PRESSURE
-               ? NEED_REFRESH
-               : NEED_NOTHING;
+    return needs[probe->quantity];
 }
 
 static void refresh(struct simulation *sim, enum need need)

@@ -1,16 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Probes: the quantities of quantity_table, at a point, of a body, or of the fluid. */
+ * Probes: the quantities of case/quantities.def, at a point, of a body, or of the fluid. */
 #pragma once
 
 #include "time/simulation.h"
-
-/* What a probe measures; in the order of enum probe_quantity. */
-struct quantity_info {
-    const char *name;
-    const char *columns; /* their endings, each QUANTITY_UNIT, with commas between them */
-    const char *meaning;
-};
-extern const struct quantity_info quantity_table[PROBE_QUANTITIES];
 
 struct probe_body {
     enum kind kind;
