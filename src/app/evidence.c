@@ -85,13 +85,11 @@ void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
 {
     /* The study runs the paper's scheme at accuracy = standard only. */
     const bool paper = scene->n_fluid && scene->top.scheme == SCHEME_PAPER;
-    char accuracy[SCENE_NAME] = "paper";
-    if (paper) {
-        session_say(o, "expected error with scheme = paper, at accuracy = standard");
-    } else {
-        param_choice_name(param_find(SECTION_top, "accuracy"), scene->top.accuracy, accuracy);
-        session_say(o, "expected error at accuracy = %s", accuracy);
-    }
+    const struct choice_name chosen =
+        param_choice(param_find(SECTION_top, "accuracy"), scene->top.accuracy);
+    const char *const accuracy = paper ? "paper" : chosen.text;
+    session_say(o, "expected error %sat accuracy = %s", paper ? "with scheme = paper, " : "",
+                paper ? "standard" : accuracy);
     for (int k = 0; k < scene->n_solid; k++) say_error(scene, KIND_SOLID, k, accuracy, o);
     for (int k = 0; k < scene->n_fluid && scene->n_solid == 0; k++)
         say_error(scene, KIND_FLUID, k, accuracy, o);

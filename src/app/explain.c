@@ -47,12 +47,11 @@ static void say_effects(const struct simulation *sim, const struct sphfsi_option
     for (int k = 0; k < EFFECT_COUNT; k++) {
         if (!(sim->effects & EFFECT_BIT(k))) continue;
         struct effect_caller by;
-        char text[EFFECT_CALLER_TEXT];
-        snprintf(text, sizeof text, "%s", effect_table[k].key);
-        if (effect_called(sim->scene, (enum effect)k, &by))
-            effect_caller_text(sim->scene, &by, text);
-        session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, text, effect_table[k].meaning,
-                    effect_table[k].equation[0] ? "; " : "", effect_table[k].equation);
+        const bool called = effect_called(sim->scene, (enum effect)k, &by);
+        session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name,
+                    called ? effect_caller_text(sim->scene, &by).text : effect_table[k].key,
+                    effect_table[k].meaning, effect_table[k].equation[0] ? "; " : "",
+                    effect_table[k].equation);
     }
     session_say(o, "disabled effects, and the setting that would enable each");
     for (int k = 0; k < EFFECT_COUNT; k++)
@@ -81,12 +80,17 @@ static bool is_known(const struct simulation *sim, enum bound bound)
     return isfinite(sim->dt_bound[bound]) && sim->dt_bound[bound] > 0;
 }
 
-static void text_of_bytes(double bytes, char text[32])
+struct amount {
+    char text[32];
+};
+
+static struct amount text_of_bytes(double bytes)
 {
-    if (bytes < 1e9)
-        snprintf(text, 32, "%.3g MB", 1e-6 * bytes);
-    else
-        snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
+    struct amount to;
+    const bool large = bytes >= 1e9;
+    snprintf(to.text, sizeof to.text, "%.3g %s", (large ? 1e-9 : 1e-6) * bytes,
+             large ? "GB" : "MB");
+    return to;
 }
 
 static void say_bounds(const struct simulation *sim, const struct sphfsi_options *o)
@@ -121,14 +125,15 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                        "contact are not in the matrix");
 }
 
-static void text_of_seconds(double seconds, char text[32])
+static struct amount text_of_seconds(double seconds)
 {
-    if (seconds < 120)
-        snprintf(text, 32, "%.3g s", seconds);
-    else if (seconds < 7200)
-        snprintf(text, 32, "%.3g min", seconds / 60);
-    else
-        snprintf(text, 32, "%.3g h", seconds / 3600);
+    struct amount to;
+    const double unit = seconds < 120 ? 1 : seconds < 7200 ? 60 : 3600;
+    snprintf(to.text, sizeof to.text, "%.3g %s", seconds / unit,
+             unit == 1    ? "s"
+             : unit == 60 ? "min"
+                          : "h");
+    return to;
 }
 
 /* Time over forecast: 90 % of 94 runs of `make forecast` on an idle machine with two cores, on one
@@ -148,17 +153,14 @@ static void say_cost(const struct simulation *sim, const struct unit_costs *c,
                         100 * c->phase_fraction[k], phase_table[k].meaning);
     if (c->fluid > 0) session_say(o, "  %.3g ns per fluid particle and evaluation", 1e9 * c->fluid);
     if (c->solid > 0) session_say(o, "  %.3g ns per solid particle and step", 1e9 * c->solid);
-    char time[32], memory[32], disk[32], least[32], most[32];
-    text_of_seconds(f.seconds, time);
-    text_of_bytes(f.memory, memory);
-    text_of_bytes(f.disk, disk);
     session_say(o, "  about %.3g steps of %.3g s", f.steps, f.dt);
     if (f.substeps > f.steps) session_say(o, "  about %.3g solid sub-steps", f.substeps);
-    session_say(o, "  %s on this machine when idle, memory %s, disk at most %s", time, memory,
-                disk);
-    text_of_seconds(least_of_forecast * f.seconds, least);
-    text_of_seconds(most_of_forecast * f.seconds, most);
-    session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer", least, most);
+    session_say(o, "  %s on this machine when idle, memory %s, disk at most %s",
+                text_of_seconds(f.seconds).text, text_of_bytes(f.memory).text,
+                text_of_bytes(f.disk).text);
+    session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer",
+                text_of_seconds(least_of_forecast * f.seconds).text,
+                text_of_seconds(most_of_forecast * f.seconds).text);
     if (sim->effects & FX_RELAX)
         session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
@@ -190,15 +192,13 @@ static enum err explain_text(struct session *session, const struct sphfsi_option
     say_lattices(&session->scene, o);
     say_effects(sim, o);
     say_fields(sim, o);
-    char precision[SCENE_NAME], integrator[SCENE_NAME], scheme[SCENE_NAME];
-    param_choice_name(param_find(SECTION_top, "scheme"), sim->scene->top.scheme, scheme);
-    param_choice_name(param_find(SECTION_top, "precision"), sim->scene->top.precision, precision);
-    param_choice_name(param_find(SECTION_top, "integrator"), sim->scene->top.integrator,
-                      integrator);
+    const struct scene_top *const top = &session->scene.top;
     session_say(o,
                 "scheme %s, integrator %s, precision %s; compiled loops of the fluid: %s, of the "
                 "solid: %s",
-                scheme, integrator, precision,
+                param_choice(param_find(SECTION_top, "scheme"), top->scheme).text,
+                param_choice(param_find(SECTION_top, "integrator"), top->integrator).text,
+                param_choice(param_find(SECTION_top, "precision"), top->precision).text,
                 sim->kind[KIND_FLUID].n > 0 ? sim->fluid.kernel->name : "none",
                 sim->solid.sweeps ? sim->solid.sweeps->name : "none");
     return say_trial(session, o, d);

@@ -18,13 +18,10 @@ static bool pure(const struct param *param)
 /* A number or the name of a choice. */
 static void value_of(const struct param *param, double value, char *text, size_t size)
 {
-    char name[SCENE_NAME];
-    if (param->type == PARAM_CHOICE) {
-        param_choice_name(param, (int)value, name);
-        snprintf(text, size, "%s", name);
-    } else {
+    if (param->type == PARAM_CHOICE)
+        snprintf(text, size, "%s", param_choice(param, (int)value).text);
+    else
         snprintf(text, size, "%g", value);
-    }
 }
 
 /* The default as in a case file; "" if there is none. */
@@ -165,9 +162,9 @@ enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)
 static void write_range(struct json *j, const struct param *param)
 {
     if (param->type == PARAM_CHOICE) {
-        char name[SCENE_NAME];
         json_open(j, "choices", '[');
-        for (int k = 0; param_choice_name(param, k, name); k++) json_text(j, NULL, name);
+        for (int k = 0; *param_choice(param, k).text; k++)
+            json_text(j, NULL, param_choice(param, k).text);
         json_close(j, ']');
     } else if (param->type == PARAM_REAL || param->type == PARAM_INTEGER) {
         json_number(j, param->low.open ? "exclusiveMinimum" : "minimum", param->low.value);

@@ -163,7 +163,7 @@ static void put_mark(struct drawing *g, const struct scene_section_common *commo
     double end[2][2];
     char text[SCENE_NAME + 100] = "";
     int n = 0;
-    if (probe) param_choice_name(param_find(id, "quantity"), quantity, text);
+    if (probe) snprintf(text, sizeof text, "%s", quantity_table[quantity].name);
     for (int k = 0; k < 2; k++)
         if (scene_given(g->scene, id, common->index, keys[k])) {
             memcpy(end[n], (const char *)common + param_find(id, keys[k])->offset, sizeof end[0]);

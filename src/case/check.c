@@ -98,7 +98,8 @@ static enum err same_value(struct reader *r, const void *its, const char *key, c
         value[k] = param_number(param, section[k]);
         if (strcmp(key, "sound_speed") == 0) value[k] = sound_speed(r->scene, section[k]);
         snprintf(text[k], SCENE_NAME, "%g", value[k]);
-        if (param->type == PARAM_CHOICE) param_choice_name(param, (int)value[k], text[k]);
+        if (param->type == PARAM_CHOICE)
+            snprintf(text[k], SCENE_NAME, "%s", param_choice(param, (int)value[k]).text);
     }
     if (!(fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))) return ERR_OK;
     return bad_section(r, "and %s differ in `%s`: %s and %s; all %s must have the same value",
@@ -225,13 +226,12 @@ enum { TIMES = 1000 };
 
 static enum err check_kind(struct reader *r, const struct scene_motion *m)
 {
-    char kind[SCENE_NAME];
-    param_choice_name(param_find(SECTION_motion, "kind"), m->kind, kind);
+    const struct choice_name kind = param_choice(param_find(SECTION_motion, "kind"), m->kind);
     for (const struct param *p = param_table; p < param_table + PARAM_COUNT; p++)
-        if (p->motion_kinds && !strstr(p->motion_kinds, kind) && !param_is_default(p, m))
+        if (p->motion_kinds && !strstr(p->motion_kinds, kind.text) && !param_is_default(p, m))
             return bad_key(r, p->key, NULL,
                            "`%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
-                           p->key, p->motion_kinds, kind);
+                           p->key, p->motion_kinds, kind.text);
     return ERR_OK;
 }
 
@@ -414,8 +414,7 @@ static enum err check_point(struct reader *r, const struct scene_probe *p, const
 static enum err check_probe(struct reader *r, const void *section)
 {
     const struct scene_probe *const p = section;
-    char quantity[SCENE_NAME];
-    param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
+    const char *const quantity = quantity_table[p->quantity].name;
     TRY(case_go_on(r, check_point(r, p, "point", quantity)));
     TRY(case_go_on(r, check_point(r, p, "to", quantity)));
     TRY(check_on(r, p));

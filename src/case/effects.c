@@ -120,19 +120,19 @@ static struct section_title caller_name(const struct scene *scene, const struct 
     return name;
 }
 
-char *effect_caller_text(const struct scene *scene, const struct effect_caller *by,
-                         char text[EFFECT_CALLER_TEXT])
+struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *by)
 {
     const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
     const struct scene_section_common *const section = section_at(scene, by->section, by->index);
+    struct caller_text to;
     char line[32];
     snprintf(line, sizeof line, "line %d", given ? given->line : section->line);
-    snprintf(text, EFFECT_CALLER_TEXT, "%s: %s",
+    snprintf(to.text, sizeof to.text, "%s: %s",
              given && given->line == 0                   ? "--set"
              : given || section_table[by->section].named ? line
                                                          : "default",
              caller_name(scene, by).text);
-    return text;
+    return to;
 }
 
 unsigned effects_groups(effect_set effects, enum kind kind)

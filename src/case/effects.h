@@ -81,10 +81,11 @@ struct effect_caller {
 /* Whether the scene activates an effect, and where it does first. */
 bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *by);
 
-/* Writes "line 12: [wall bed] slip", or "--set: ..."; returns the text. */
-enum { EFFECT_CALLER_TEXT = 300 };
-char *effect_caller_text(const struct scene *scene, const struct effect_caller *by,
-                         char text[EFFECT_CALLER_TEXT]);
+/* "line 12: [wall bed] slip", or "--set: ...". */
+struct caller_text {
+    char text[300];
+};
+struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *by);
 
 /* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
 effect_set effects_of_scene(const struct scene *scene);

@@ -140,11 +140,8 @@ enum err case_all_constants(struct reader *r)
 enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit)
 {
     const struct dim expected = unit_dim(unit);
-    char have[DIM_TEXT], want[DIM_TEXT];
     if (dim_fits(dim, unit)) return ERR_OK;
-    dim_text(dim, have);
-    dim_text(&expected, want);
-    return bad_value(r, "%s where %s is expected", have, want);
+    return bad_value(r, "%s where %s is expected", dim_text(dim).text, dim_text(&expected).text);
 }
 
 enum err case_number(struct reader *r, struct slice text, const char *unit, double *value)

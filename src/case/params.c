@@ -87,14 +87,14 @@ const struct param *param_find(enum section_id section, const char *key)
     return NULL;
 }
 
-bool param_choice_name(const struct param *param, int value, char name[SCENE_NAME])
+struct choice_name param_choice(const struct param *param, int value)
 {
+    struct choice_name name = {""};
     const char *start = param->choices;
     for (int k = 0; start && k < value; k++) start = strchr(start + (k > 0), '|');
-    if (!start) return false;
-    start += value > 0;
-    snprintf(name, SCENE_NAME, "%.*s", (int)strcspn(start, "|"), start);
-    return true;
+    if (start) start += value > 0;
+    if (start) snprintf(name.text, SCENE_NAME, "%.*s", (int)strcspn(start, "|"), start);
+    return name;
 }
 
 double param_number(const struct param *param, const void *section)

@@ -117,8 +117,11 @@ bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id secti
 bool scene_scheme_sets(const struct scene *scene, enum section_id section, const char *key,
                        double *value);
 
-/* The name of a CHOICE's value, copied into `name`; false: it has fewer values. */
-bool param_choice_name(const struct param *param, int value, char name[SCENE_NAME]);
+/* The name of a CHOICE's value; "": it has fewer values. */
+struct choice_name {
+    char text[SCENE_NAME];
+};
+struct choice_name param_choice(const struct param *param, int value);
 
 /* The candidate nearest to a misspelt word, or NULL if none is near. To be called for each
  * candidate with the same `best`, which starts as {0}. */

@@ -92,12 +92,11 @@ static int top_choice(const struct reader *r, const char *key)
 {
     const struct param *const param = param_find(SECTION_top, key);
     int found = (int)param->number.value;
-    char name[SCENE_NAME];
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = &r->entries[k];
         const bool its = r->sections[e->section].id == SECTION_top && strcmp(e->key, key) == 0;
-        for (int c = 0; its && param_choice_name(param, c, name); c++)
-            if (strcmp(e->value, name) == 0) found = c;
+        for (int c = 0; its && *param_choice(param, c).text; c++)
+            if (strcmp(e->value, param_choice(param, c).text) == 0) found = c;
     }
     return found;
 }

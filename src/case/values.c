@@ -28,11 +28,13 @@ static enum err read_integer(struct reader *r, const struct param *param, int *v
 static enum err read_choice(struct reader *r, const struct param *param, int *value)
 {
     enum { MAX_CHOICES = 32 };
-    char names[MAX_CHOICES][SCENE_NAME];
+    struct choice_name name[MAX_CHOICES];
     struct nearest near = {0};
-    for (int k = 0; k < MAX_CHOICES && param_choice_name(param, k, names[k]); k++) {
-        nearest_offer(&near, r->entry->value, names[k]);
-        if (strcmp(names[k], r->entry->value) != 0) continue;
+    for (int k = 0; k < MAX_CHOICES; k++) {
+        name[k] = param_choice(param, k);
+        if (!*name[k].text) break;
+        nearest_offer(&near, r->entry->value, name[k].text);
+        if (strcmp(name[k].text, r->entry->value) != 0) continue;
         *value = k;
         return ERR_OK;
     }

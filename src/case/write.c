@@ -112,10 +112,7 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     switch (param->type) {
     case PARAM_REAL: write_number(out, *number, param->unit); break;
     case PARAM_INTEGER: fprintf(out, "%d", *(const int *)value); break;
-    case PARAM_CHOICE:
-        param_choice_name(param, *(const int *)value, text);
-        fputs(text, out);
-        break;
+    case PARAM_CHOICE: fputs(param_choice(param, *(const int *)value).text, out); break;
     case PARAM_TEXT:
         snprintf(text, sizeof text, "%s", (const char *)value);
         if (strcmp(param->key, "file") == 0 || strcmp(param->key, "gravity_file") == 0)

@@ -346,11 +346,10 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
     const double *const at = probe->point;
     if (scene_probe_target(probe) != TARGET_FLUID_POINT) return;
     if (is_buried(check, at)) {
-        char quantity[SCENE_NAME], value[SCENE_NAME + 80] = "its level is that of the point";
-        param_choice_name(param_find(SECTION_probe, "quantity"), probe->quantity, quantity);
+        char value[SCENE_NAME + 80] = "its level is that of the point";
         if (probe->quantity != PROBE_LEVEL)
             snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
-                     quantity, 2 * scene->h);
+                     quantity_table[probe->quantity].name, 2 * scene->h);
         warn_section(
             check, &probe->common,
             "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "

@@ -97,10 +97,7 @@ static bool join_dims(struct compiler *c, struct dim *a, const struct dim *b)
         return true;
     }
     if (dim_same(a, b)) return true;
-    char left[DIM_TEXT], right[DIM_TEXT];
-    dim_text(a, left);
-    dim_text(b, right);
-    return fail(c, "%s and %s cannot be added or compared", left, right);
+    return fail(c, "%s and %s cannot be added or compared", dim_text(a).text, dim_text(b).text);
 }
 
 /* a times b^sign. */
@@ -127,10 +124,8 @@ static void scale_dim(struct dim *a, double power)
 
 static bool pure_argument(struct compiler *c, const char *what, const struct dim *d)
 {
-    char text[DIM_TEXT];
     if (d->kind != DIM_KNOWN || dim_same(d, &pure)) return true;
-    dim_text(d, text);
-    return fail(c, "%s of %s; it needs a number without a unit", what, text);
+    return fail(c, "%s of %s; it needs a number without a unit", what, dim_text(d).text);
 }
 
 /* Of base^exponent; the exponent, if it is a number, is the last operation. */

@@ -116,9 +116,11 @@ struct dim unit_dim(const char *unit);
 bool dim_same(const struct dim *a, const struct dim *b);
 /* Whether a dimension fits a unit of case/params.def ("SI": any). */
 bool dim_fits(const struct dim *dim, const char *unit);
-/* Names a dimension: "a pressure (Pa)". */
-enum { DIM_TEXT = 96 };
-void dim_text(const struct dim *dim, char text[DIM_TEXT]);
+/* "a pressure (Pa)". */
+struct dim_text {
+    char text[96];
+};
+struct dim_text dim_text(const struct dim *dim);
 
 /* --- expr/text.c --- */
 

@@ -138,10 +138,11 @@ bool dim_fits(const struct dim *dim, const char *unit)
     return dim->kind != DIM_KNOWN || strcmp(unit, "SI") == 0 || dim_same(dim, &want);
 }
 
-void dim_text(const struct dim *dim, char text[DIM_TEXT])
+struct dim_text dim_text(const struct dim *dim)
 {
+    struct dim_text to;
     static const char *const symbol[] = {"kg", "m", "s"};
-    char above[DIM_TEXT] = "", below[DIM_TEXT] = "";
+    char above[sizeof to] = "", below[sizeof to] = "";
     int divisors = 0;
     const char *name = dim->kind == DIM_KNOWN ? NULL : "a plain number";
     for (size_t k = 0; !name && k < COUNT_OF(dimension_names); k++) {
@@ -155,12 +156,13 @@ void dim_text(const struct dim *dim, char text[DIM_TEXT])
         const size_t used = strlen(side);
         if (fabs(power) < 1e-9) continue;
         if (fabs(power) != 1) snprintf(exponent, sizeof exponent, "^%.3g", fabs(power));
-        snprintf(side + used, DIM_TEXT - used, "%s%s%s", used ? " " : "", symbol[k], exponent);
+        snprintf(side + used, sizeof to - used, "%s%s%s", used ? " " : "", symbol[k], exponent);
         divisors += power < 0;
     }
     if (name)
-        snprintf(text, DIM_TEXT, "%s", name);
+        snprintf(to.text, sizeof to, "%s", name);
     else
-        snprintf(text, DIM_TEXT, "a quantity in %.30s%s%s%.30s%s", *above ? above : "1",
+        snprintf(to.text, sizeof to, "a quantity in %.30s%s%s%.30s%s", *above ? above : "1",
                  divisors ? "/" : "", divisors > 1 ? "(" : "", below, divisors > 1 ? ")" : "");
+    return to;
 }

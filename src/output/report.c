@@ -48,13 +48,11 @@ static void write_hinges(struct json *j, const char *key, const struct hinge_lis
 
 static void write_value(struct json *j, const struct param *param, const void *value)
 {
-    char name[SCENE_NAME];
     switch (param->type) {
     case PARAM_REAL: json_number(j, param->key, *(const double *)value); break;
     case PARAM_INTEGER: json_integer(j, param->key, *(const int *)value); break;
     case PARAM_CHOICE:
-        param_choice_name(param, *(const int *)value, name);
-        json_text(j, param->key, name);
+        json_text(j, param->key, param_choice(param, *(const int *)value).text);
         break;
     case PARAM_TEXT: json_text(j, param->key, value); break;
     case PARAM_VECTOR: json_numbers(j, param->key, value, 2); break;
@@ -117,11 +115,10 @@ void report_effects(struct json *j, const struct simulation *sim)
     json_open(j, "effects_called_by", '{');
     for (int k = 0; k < EFFECT_COUNT; k++) {
         struct effect_caller by;
-        char text[EFFECT_CALLER_TEXT] = "decided at the start";
         if (!(sim->effects & EFFECT_BIT(k))) continue;
-        if (effect_called(sim->scene, (enum effect)k, &by))
-            effect_caller_text(sim->scene, &by, text);
-        json_text(j, effect_table[k].name, text);
+        const bool called = effect_called(sim->scene, (enum effect)k, &by);
+        json_text(j, effect_table[k].name,
+                  called ? effect_caller_text(sim->scene, &by).text : "decided at the start");
     }
     json_close(j, '}');
 }

@@ -151,10 +151,8 @@ static void test_the_set_follows_from_the_case(void)
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,
                                         scenes[k].text);
         struct effect_caller by;
-        char text[EFFECT_CALLER_TEXT];
         TEST_ASSERT_TRUE(effect_called(&rig.scene, scenes[k].effect, &by));
-        effect_caller_text(&rig.scene, &by, text);
-        TEST_ASSERT_EQUAL_STRING(scenes[k].caller, text);
+        TEST_ASSERT_EQUAL_STRING(scenes[k].caller, effect_caller_text(&rig.scene, &by).text);
     }
     for (int k = 0; k < EFFECT_COUNT; k++)
         TEST_ASSERT_TRUE_MESSAGE(tested & EFFECT_BIT(k), effect_table[k].name);
@@ -163,11 +161,10 @@ static void test_the_set_follows_from_the_case(void)
 static void test_a_set_is_named_as_the_caller(void)
 {
     struct effect_caller by;
-    char text[EFFECT_CALLER_TEXT];
     rig_open(&rig, TOP FLUID, "w.artificial_viscosity=0.1", NULL);
     TEST_ASSERT_TRUE(effect_called(&rig.scene, EFFECT_VISCOSITY, &by));
-    effect_caller_text(&rig.scene, &by, text);
-    TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity", text);
+    TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity",
+                             effect_caller_text(&rig.scene, &by).text);
 }
 
 /* Fluid only: no field of a solid; solid only: no cells, no packed fields, no field of a fluid; a

@@ -514,12 +514,10 @@ static void an_interval_of_its_own_makes_a_file(void)
 static void every_quantity_has_its_name(void)
 {
     const struct param *param = param_find(SECTION_probe, "quantity");
-    char name[SCENE_NAME];
     size_t length = 0;
     for (int k = 0; k < PROBE_QUANTITIES; k++) {
-        param_choice_name(param, k, name);
-        TEST_ASSERT_EQUAL_STRING(quantity_table[k].name, name);
-        length += strlen(name) + 1;
+        TEST_ASSERT_EQUAL_STRING(quantity_table[k].name, param_choice(param, k).text);
+        length += strlen(quantity_table[k].name) + 1;
     }
     TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(param->choices));
 }
