@@ -5,7 +5,6 @@
 #include "time/relax.h"
 #include "check/check.h"
 #include "output/point_data.h"
-#include "time/guards.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -4,7 +4,6 @@
 #include "app/session.h"
 #include "app/embedded.h"
 #include "base/csv.h"
-#include "case/params.h"
 #include "geometry/sampling.h"
 
 #include <stdlib.h>

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * --explain: what would be simulated and what it would cost, as text and as JSON. */
 #include "app/session.h"
-
 #include "app/forecast.h"
-#include "case/params.h"
 #include "check/check.h"
-#include "implicit/implicit.h"
 #include "output/report.h"
 #include "time/timestep.h"
 

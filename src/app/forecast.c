@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
-
-#include "base/box2.h"
-#include "implicit/implicit.h"
 #include "output/probes.h"
 #include "output/series.h"
 #include "output/snapshot.h"
-#include "particles/kernel.h"
-#include "time/advance.h"
 #include "time/energy.h"
 #include "time/timestep.h"
 

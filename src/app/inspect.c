@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * --inspect: the time, the particles and the case of a checkpoint. */
 #include "app/session.h"
-
 #include "base/csv.h"
 #include "output/checkpoint.h"
 

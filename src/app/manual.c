@@ -2,12 +2,8 @@
  * The reference of keys, from the same tables as the reader of cases; publications; templates of
  * cases. */
 #include "app/session.h"
-
 #include "app/embedded.h"
 #include "base/csv.h"
-#include "case/effects.h"
-#include "case/params.h"
-#include "output/json.h"
 #include "output/probes.h"
 
 static bool pure(const struct param *param)

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * --preview: an SVG of the scene before it runs. */
 #include "app/session.h"
-
 #include "base/files.h"
-#include "case/params.h"
 
 #include <errno.h>
 #include <stdlib.h>

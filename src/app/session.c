@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/session.h"
-#include "case/params.h"
 #include "check/check.h"
 #include "geometry/load.h"
 #include "output/rows.h"

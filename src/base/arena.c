@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/arena.h"
-
 #include "base/threads.h"
 
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/csv.h"
-
 #include "base/files.h"
 
 #include <ctype.h>

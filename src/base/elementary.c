@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
-
 #include "base/base.h"
 
 /* A double-double: the number hi + lo, hi being its nearest double (Dekker 1971). Operations on

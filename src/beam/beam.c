@@ -5,7 +5,6 @@
 #include "beam/springs.h"
 #include "base/segment.h"
 #include "base/elementary.h"
-
 #include "case/params.h"
 #include "geometry/outline.h"
 

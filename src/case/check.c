@@ -2,7 +2,6 @@
  * Conditions on a scene beyond the range of each value: names that must exist, values that must
  * agree. */
 #include "case/case.h"
-#include "expr/expr.h"
 
 /* --- names of other sections --- */
 

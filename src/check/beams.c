@@ -3,9 +3,6 @@
  * themselves, in a body, or with a free point on its face. */
 #include "check/check.h"
 
-#include "base/elementary.h"
-#include "geometry/thin.h"
-
 /* Of dp: lengths along a line and beside it that count as nothing, and between places that are
  * looked at. */
 static const double ahead = 1e-3, beside = 1e-5, between = 0.02;

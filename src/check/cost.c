@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Steps that are unstable, and settings that make a run slow. */
 #include "check/check.h"
-
-#include "case/params.h"
 #include "coupling/bounds.h"
 #include "time/timestep.h"
 

@@ -2,9 +2,6 @@
  * What warnings share: their beginning, all points of a scene by place, extents and speeds. */
 #include "check/check.h"
 
-#include "base/elementary.h"
-#include "case/params.h"
-
 int drawn_at(const struct check *check, double x, double y)
 {
     for (int r = 0; r < check->scene->n_solid + check->scene->n_wall; r++)

@@ -3,9 +3,6 @@
  * sampling has closed or left one particle wide. */
 #include "check/check.h"
 
-#include "base/elementary.h"
-#include "case/effects.h"
-
 /* --- off the lattice --- */
 
 static double cells_to(const struct region *region, int c, double x)

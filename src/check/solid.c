@@ -3,10 +3,6 @@
  * fast. */
 #include "check/check.h"
 
-#include "base/elementary.h"
-#include "case/effects.h"
-#include "case/params.h"
-
 /* --- what holds a body --- */
 
 enum support { LOOSE, STANDS, HELD };

@@ -2,8 +2,6 @@
  * Values of a case that are probably a mistake, whatever its shapes. */
 #include "check/check.h"
 
-#include "case/params.h"
-
 #include <stdarg.h>
 
 static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fluid)

@@ -4,7 +4,6 @@
 
 #include "coupling/coupling.h"
 #include "particles/kernel.h"
-
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */
 #include "fluid/pair_laws.h"

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid/damping.h"
 
-#include "fluid/eos.h"
-
 enum { BLOCK = 1024 }; /* particles whose power is one sum */
 
 enum err damping_create(struct damping *damping, struct arena *a, const struct scene *scene,

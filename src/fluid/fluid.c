@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid/fluid.h"
 
-#include "fluid/eos.h"
-
 static struct fluid_constants constants_of(const struct scene *scene)
 {
     const struct scene_fluid *fluid = &scene->fluid[0];

@@ -3,8 +3,6 @@
  * and the sums of what has come in. */
 #include "fluid/open.h"
 
-#include "base/hash.h"
-
 /* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this
  * far in front of it is relabelled without delay. Fluid that oscillates about the line by less
  * creates no copies. */

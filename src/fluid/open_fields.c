@@ -3,10 +3,6 @@
  * velocities, and the forces that hold them (T-50 to T-53). */
 #include "fluid/open.h"
 
-#include "base/simd.h"
-#include "expr/expr.h"
-#include "particles/kernel.h"
-
 /* --- the fluid across a line --- */
 
 /* Sums of the kernel, without its norm, over the fluid around a point: of the pressure and of

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The energy that dummies store by repelling fluid (L-7b). */
 #include "fluid/fluid.h"
-#include "particles/kernel.h"
 
 /* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope
  * from r to r0, by four points of Gauss. */

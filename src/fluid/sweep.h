@@ -9,7 +9,6 @@
 #include "fluid/eos.h"
 #include "fluid/fluid.h"
 #include "particles/kernel.h"
-
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */
 #include "fluid/pair_laws.h"

@@ -2,9 +2,7 @@
  * Bodies: their thickness, the area that their particles cover, those that clamps hold, those
  * beside a body that is bonded to theirs; the mass of rigid bodies, from their shapes. */
 #include "geometry/sampling.h"
-
 #include "base/point_grid.h"
-#include "case/case.h"
 
 /* --- thickness and area --- */
 

@@ -2,8 +2,6 @@
  * Data that depend on all points: the effective domain, probes, initial values. */
 #include "geometry/sampling.h"
 #include "base/elementary.h"
-
-#include "case/case.h"
 #include "geometry/motion.h"
 
 static struct box2 box_of(const struct scene *scene, int kind, int body)

@@ -4,8 +4,6 @@
 #include "geometry/sampling.h"
 #include "base/elementary.h"
 
-#include "case/case.h"
-
 #include <stdlib.h>
 
 /* Tolerances: directions closer than this are equal, rad; edges closer than this to the lattice are

@@ -4,7 +4,6 @@
  * corners. Along a layer the points are evenly spaced, as near to dp as a whole number of them
  * allows. */
 #include "geometry/sampling.h"
-
 #include "base/elementary.h"
 #include "base/point_grid.h"
 

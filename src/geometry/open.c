@@ -4,8 +4,6 @@
 #include "geometry/sampling.h"
 #include "base/point_grid.h"
 
-#include "case/case.h"
-
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 

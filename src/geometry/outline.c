@@ -3,8 +3,6 @@
 #include "base/segment.h"
 #include "base/elementary.h"
 
-#include "case/case.h"
-
 #include <stdlib.h>
 
 /* A joint longer than this many thicknesses is too sharp and refused. */

@@ -5,8 +5,6 @@
  * case. */
 #include "geometry/sampling.h"
 #include "base/point_grid.h"
-
-#include "case/case.h"
 #include "particles/kernel.h"
 
 /* Beside a common edge of shapes that are sampled on different lattices, or in layers, particles

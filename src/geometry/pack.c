@@ -5,12 +5,8 @@
  * particles there are moved until a uniform pressure pushes none of them (T-80; particle packing,
  * Colagrossi et al. 2012). */
 #include "geometry/thin.h"
-
 #include "geometry/sampling.h"
-
-#include "base/elementary.h"
 #include "base/point_grid.h"
-#include "case/case.h"
 #include "particles/kernel.h"
 
 /* Lines through a cell, for its area in the shape. */

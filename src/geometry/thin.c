@@ -3,10 +3,7 @@
  * rows as deep as the kernel. They continue beyond the ends, where only fluid sees them whose view
  * the line blocks. */
 #include "geometry/thin.h"
-
 #include "geometry/sampling.h"
-
-#include "base/elementary.h"
 #include "particles/kernel.h"
 
 static struct line_part line_part_at(const struct scene_line *line, int k)

@@ -3,9 +3,7 @@
  * many layers of particles thick as the kernel reaches. With fluid on both sides it is a thin
  * line. */
 #include "geometry/sampling.h"
-
 #include "base/elementary.h"
-#include "case/case.h"
 #include "particles/kernel.h"
 
 static bool is_fluid(const struct sampler *sampler, const double at[2])

@@ -2,7 +2,6 @@
  * Static equilibrium of solids by Newton's method (T-78a). Where it does not converge at once, a
  * part of the forces of the start is left out at first: load steps. */
 #include "implicit/equilibrium.h"
-
 #include "implicit/constraint.h"
 #include "solid/contact.h"
 #include "solid/hinges.h"

@@ -5,7 +5,6 @@
 #include "base/box2.h"
 #include "implicit/constraint.h"
 #include "solid/loads.h"
-#include "solid/solid.h"
 
 static const char what[] = "matrix of the solid";
 

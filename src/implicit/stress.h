@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/real_double.h"
-
 #include "solid/material.h"
 
 /* T-91: second Piola-Kirchhoff stress of a strain, S = F^-1 P with the upper triangular F of

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/json.h"
-
 #include "base/csv.h"
 
 static void quote(struct json *j, const char *text)

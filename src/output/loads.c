@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Loads of the summary: the largest means of forces over time, and their impulse (T-76b). */
-#include "base/csv.h"
 #include "base/files.h"
 #include "output/report.h"
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/point_data.h"
 
-#include "fluid/eos.h"
-
 /* Cauchy stress, in the order of the file: xx yy zz xy yz xz. */
 static double stress_value(const double sigma[4], int column)
 {

@@ -3,7 +3,6 @@
 #include "output/probes.h"
 #include "output/fluid_sample.h"
 #include "beam/springs.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 
 /* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/reference.h"
-
 #include "base/csv.h"
 #include "base/files.h"
 #include "case/case.h"

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * summary.json, and the parts of it that --explain prints as JSON, too. */
 #include "output/report.h"
-
-#include "expr/expr.h"
 #include "base/files.h"
-#include "output/json.h"
-#include "case/params.h"
 
 static void write_shapes(struct json *j, const char *key, const struct shape_list *list)
 {

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/snapshot.h"
 
-#include "base/threads.h"
-#include "output/snapshot_file.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>

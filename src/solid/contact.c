@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/contact.h"
 #include "case/params.h"
-
 #include "base/elementary.h"
 #include "solid/contact_pair.h"
 

@@ -2,7 +2,6 @@
  * The distance and the law of a point and an edge, and the list of near ones. */
 #include "solid/contact_pair.h"
 #include "case/params.h"
-
 #include "base/box2.h"
 #include "base/segment.h"
 #include "geometry/motion.h"

@@ -4,7 +4,6 @@
 #include "base/cholesky.h"
 #include "geometry/motion.h"
 #include "particles/kernel.h"
-#include "solid/solid.h"
 
 /* --- start --- */
 

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/loads.h"
-
-#include "expr/expr.h"
 #include "geometry/outline.h"
 #include "geometry/sampling.h"
 

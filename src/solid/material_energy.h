@@ -5,7 +5,6 @@
 
 #include "base/real_double.h"
 #include "base/elementary.h"
-
 #include "solid/material.h"
 
 /* The right stretch of F = R S, less the identity: (F^T F)^(1/2) - I in closed form, without

@@ -4,7 +4,6 @@
  * the step. */
 
 #include "solid/material.h"
-#include "solid/solid.h"
 
 /* Numbers without a pattern that the operator could have too; the same on every machine. */
 static void scramble(double *v, int64_t n, uint64_t seed, const double *moves)

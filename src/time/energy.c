@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/energy.h"
-#include "base/box2.h"
-#include "fluid/eos.h"
 #include "geometry/motion.h"
-#include "particles/kernel.h"
-#include "implicit/implicit.h"
 #include "time/advance.h"
 
 /* --- energies --- */

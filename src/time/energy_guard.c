@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What is said of energy that a region has gained, and when the run stops (T-46). */
 #include "time/energy.h"
-#include "case/params.h"
 #include "time/timestep.h"
 
 /* Fraction of its available energy that a region may gain without a warning; the time for which a

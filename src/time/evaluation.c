@@ -6,7 +6,6 @@
 
 #include "beam/wet.h"
 #include "geometry/motion.h"
-#include "particles/kernel.h"
 
 void move_walls(struct simulation *sim, double time)
 {

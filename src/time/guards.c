@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
 #include "beam/contact.h"
-#include "base/box2.h"
-#include "base/elementary.h"
 
 #include <stdarg.h>
 
-#include "implicit/implicit.h"
-#include "particles/kernel.h"
 #include "time/timestep.h"
 #include "time/energy.h"
 

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
 #include "beam/wet.h"
-#include "fluid/eos.h"
 #include "geometry/motion.h"
-#include "particles/kernel.h"
-#include "implicit/implicit.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
 #include "time/timestep.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: its creation, the order of a step, and its continuation from a checkpoint. */
 #include "time/simulation.h"
-#include "implicit/implicit.h"
 #include "time/guards.h"
 #include "time/timestep.h"
 #include "time/energy.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Steps of solids and rigid bodies without fluid. */
 #include "time/advance.h"
-#include "implicit/implicit.h"
 #include "time/guards.h"
 #include "time/timestep.h"
 #include "time/energy.h"

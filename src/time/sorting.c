@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-#include "particles/kernel.h"
 #include "time/guards.h"
 #include "time/timestep.h"
 #include "time/energy.h"
