@@ -56,8 +56,10 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2])
 void line_slides(const struct thin_line *line, int64_t i, double t[2])
 {
     const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
-    const bool first = dummy->part == 0 && line->scene->tip[0],
-               last = dummy->part + 1 == parts_of(line) && line->scene->tip[1];
+    const bool *const tip = line->scene->tip;
+    const bool first = dummy->part == 0 && tip[0],
+               last = dummy->part + 1 == parts_of(line) && tip[1];
+    if (!tip[0] && !tip[1]) return;
     if ((dummy->beyond < 0 && !first) || (dummy->beyond > 0 && !last)) return;
     line_tangent(line, i - line->first, t);
 }
