@@ -231,23 +231,60 @@ static enum err create_springs(struct beams *beams, struct arena *a, struct diag
 /* --- unknowns --- */
 
 /* Joined nodes have the unknowns of the last node of their chain. */
+static struct beam_node *owner_of(const struct beams *beams, int k, int c)
+{
+    int to = k, turn = 0;
+    while (beams->node[to].joined >= 0 && c < (beams->node[to].turns ? 2 : 3) && turn++ < beams->n)
+        to = beams->node[to].joined;
+    return &beams->node[to];
+}
+
+/* What holds one of them holds all. */
+static void share_holds(struct beams *beams)
+{
+    for (int k = 0; k < beams->n_nodes; k++)
+        for (int c = 0; c < 3; c++) {
+            struct beam_node *const to = owner_of(beams, k, c);
+            if (beams->node[k].row[c] >= 0 || to == &beams->node[k]) continue;
+            to->row[c] = -1;
+            to->mover = beams->node[k].mover;
+        }
+}
+
 static void share_rows(struct beams *beams)
 {
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
-            int to = k, turn = 0;
-            while (beams->node[to].joined >= 0 && c < (beams->node[to].turns ? 2 : 3) &&
-                   turn++ < beams->n)
-                to = beams->node[to].joined;
-            beams->node[k].row[c] = beams->node[to].row[c];
-            beams->node[k].mover = to != k && c == 0 ? beams->node[to].mover : beams->node[k].mover;
+            const struct beam_node *const to = owner_of(beams, k, c);
+            beams->node[k].row[c] = to->row[c];
+            beams->node[k].mover = c == 0 ? to->mover : beams->node[k].mover;
         }
+}
+
+/* A joint on a rigid body is all that holds its unknown. */
+static enum err refuse_held_twice(const struct beams *beams, struct diag *d)
+{
+    for (int k = 0; k < beams->n_nodes; k++) {
+        const struct beam_node *const node = &beams->node[k];
+        bool twice = node->body >= 0 && node->row[0] < 0;
+        for (int j = 0; j < k; j++)
+            twice |= node->body >= 0 && beams->node[j].body >= 0 &&
+                     node->row[0] == beams->node[j].row[0];
+        const struct scene_beam *const given = beams->beam[node->beam].given;
+        if (twice)
+            return fail_at(d, beams->scene, given->common.line,
+                           "[beam %s]: more than one `clamp` or `hinge` holds the beams that are "
+                           "joined at %g, %g; they can have only one if any is on a [rigid]",
+                           given->common.name, node->X[0], node->X[1]);
+    }
+    return ERR_OK;
 }
 
 static enum err number_unknowns(struct beams *beams, struct arena *a, struct arena *temp,
                                 struct diag *d)
 {
     int64_t n = 0;
+    share_holds(beams);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const struct beam_node *const node = &beams->node[k];
@@ -255,6 +292,7 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
             if (node->row[c] >= 0 && !shared) beams->node[k].row[c] = n++;
         }
     share_rows(beams);
+    TRY(refuse_held_twice(beams, d));
     int64_t *const first = arena_alloc(temp, (size_t)n, sizeof *first, what, d);
     beams->unknown = arena_alloc(a, (size_t)n + ENVELOPE_ALIGN, sizeof *beams->unknown, what, d);
     if (!first || !beams->unknown) return ERR_MEMORY;

@@ -216,6 +216,14 @@ static void test_beams_are_joined(void)
     assert_near(2e-7, 5e-4 * 0.125 / 3, -state(middle)->x[1], "deflection at the hinge");
     assert_near(1e-12, state(middle)->x[1], state(middle + 1)->x[1], "both ends");
     assert_near(2e-7, -state(middle)->x[2], state(middle + 1)->x[2], "angles");
+    /* A clamp in place holds both. */
+    rig_open(&rig,
+             HALVES
+             "clamp = 0.5, 0, a\nclamp = 0.5, 0\n[load f]\nbody = b\nforce = 0, -0.001\n" AT_END,
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 40);
+    assert_near(0, 0, state(middle)->x[1], "the clamp");
+    assert_near(2e-7, 1e-3 * 0.125 / 3, -end()->x[1], "deflection beyond the clamp");
 }
 
 static void test_bad_input_is_refused(void)

@@ -231,6 +231,10 @@ static void test_bad_input_is_refused(void)
     rig_refuses(BEAM("clamp = 1, 0, r\nhinge = 1, 0\n[rigid r]\nshape = box 1, -1, 2, 1\n"
                      "mass = 1\n"),
                 "another `clamp` or `hinge` holds this point");
+    rig_refuses(BEAM("clamp = 1, 0, r\n[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"
+                     "thickness = 1 cm\ndensity = 1\nclamp = 1, 0, b\nclamp = 1, 0\n"
+                     "[rigid r]\nshape = box 1, -1, 2, 1\nmass = 1\n"),
+                "more than one `clamp` or `hinge` holds the beams that are joined at 1, 0");
     rig_refuses(BEAM("clamp = 1, 0, r\n[rigid r]\nshape = box 2, -1, 3, 1\nmass = 1\n"),
                 "[rigid r] is more than a spacing from it");
 }
