@@ -44,9 +44,10 @@ endif
 PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
 # --- flags (CMakeLists.txt lists the same ones; tools/dev/check_style.py compares them) ---
-# No contraction, no reassociation: the same bits from every compiler and instruction set.
+# No contraction, no reassociation: the same bits from every compiler and instruction set. gcc 12
+# contracts v - a*b beside w + c*d in spite of -ffp-contract=off if it makes a vector of them.
 COMMON := -std=gnu11 -pthread -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math
-COMMON += -fvisibility=hidden
+COMMON += -fvisibility=hidden -fno-tree-slp-vectorize
 WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
 OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG

@@ -243,6 +243,26 @@ static void test_some_of_the_lanes(void)
     }
 }
 
+static __attribute__((noinline)) void turn(const double x[2], double cosine, double sine,
+                                           double to[2])
+{
+    const double X = x[0], Y = x[1];
+    to[0] = cosine * X - sine * Y;
+    to[1] = sine * X + cosine * Y;
+}
+
+/* gcc would make a vector of the difference and the sum, and contract it. */
+static void test_products_are_rounded(void)
+{
+    for (int k = 1; k < 100; k++) {
+        const double x[2] = {0.1 * k, 0.3 / k}, a = 0.7 / k, b = 1.1 / k;
+        const volatile double ax = a * x[0], ay = a * x[1], bx = b * x[0], by = b * x[1];
+        double found[2];
+        turn(x, a, b, found);
+        TEST_ASSERT_TRUE(same_double(found[0], ax - by) && same_double(found[1], bx + ay));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -251,6 +271,7 @@ int main(void)
     RUN_TEST(test_double_verbs);
     RUN_TEST(test_min_and_max_of_nan_and_zeros);
     RUN_TEST(test_fma_rounds_once);
+    RUN_TEST(test_products_are_rounded);
     RUN_TEST(test_sum_follows_the_tree);
     RUN_TEST(test_groups);
     RUN_TEST(test_kept_below);
