@@ -333,8 +333,11 @@ static enum err settle(struct packing *packing)
             for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);
             const double length = elementary_hypot(move[k][0], move[k][1]);
             const double part = min2(1, longest * dp / max2(length, 1e-300));
-            packing->x[k] += part * move[k][0];
-            packing->y[k] += part * move[k][1];
+            const double from[2] = {packing->x[k], packing->y[k]},
+                         to[2] = {from[0] + part * move[k][0], from[1] + part * move[k][1]};
+            if (geometry_between(sampler->scene, from, to)) continue; /* a thin line stops it */
+            packing->x[k] = to[0];
+            packing->y[k] = to[1];
             largest = max2(largest, part * length);
         }
     }

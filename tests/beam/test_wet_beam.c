@@ -158,6 +158,33 @@ static void test_one_side_is_refused(void)
     rig_refuses(COLUMN "[numerics]\nsides = one\n", "would gain energy in fluid with");
 }
 
+/* A hull with round edges floats: packing leaves its inside dry. Ten particles had passed the line,
+ * which stood up to 0.16 m above the water. */
+static void test_packing_does_not_pass_a_line(void)
+{
+#define EDGE(x, sign)                                                        \
+#x sign "d, 0.4 + d; " #x sign "d, 0.4; " #x sign "c, 0.4 - a; " #x sign \
+            "b, 0.4 - b; " #x sign "a, 0.4 - c; "
+#define HULL                                                                                     \
+    EDGE(0.6, "-")                                                                               \
+    "0.6, 0.4 - d; 1, 0.4 - d; 1 + a, 0.4 - c; 1 + b, 0.4 - b; 1 + c, 0.4 - a; 1 + d, 0.4; 1 + " \
+    "d, 0.4 + d\n"
+    rig_open(&rig,
+             "dp = 12.5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nh_over_dp = 2.5\n"
+             "[constants]\nd = 37.5 mm\na = 14.3505 mm\nb = 26.516625 mm\nc = 34.6455 mm\n"
+             "[fluid w]\nshape = box 0, 0, 1.6, 0.4\nminus = polygon " HULL
+             "surface = 0.4\nsound_speed = 20\n"
+             "[wall tank]\nshape = polyline: 0, 0.8; 0, 0; 1.6, 0; 1.6, 0.8\n"
+             "[beam b]\nshape = polyline: " HULL
+             "bending_stiffness = 50\naxial_stiffness = 1e6\nmass = 37.5\n",
+             NULL);
+    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < fluid->n; i++) {
+        TEST_ASSERT_TRUE(fluid->y[i] < 0.4);
+        TEST_ASSERT_FALSE(fluid->x[i] > 0.6 && fluid->x[i] < 1 && fluid->y[i] > 0.3625);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -168,5 +195,6 @@ int main(void)
     RUN_TEST(test_light_plates_in_still_water);
     RUN_TEST(test_waves_that_no_step_resolves);
     RUN_TEST(test_one_side_is_refused);
+    RUN_TEST(test_packing_does_not_pass_a_line);
     return UNITY_END();
 }
