@@ -83,8 +83,7 @@ def prepare(folder):
 def study(folder, environment, *more):
     done = subprocess.run(
         [sys.executable, ROOT / "tools" / "report" / "accuracy.py", "--study",
-         folder / "study.toml",
-         "--runs", folder / "runs", "--out", folder, "--data", folder / "results.json", *more],
+         folder / "study.toml", *more],
         capture_output=True, text=True, check=False, env=environment)
     return done.returncode, done.stdout + done.stderr
 

@@ -174,16 +174,14 @@ def record_of(p, job, before):
 # --- the study ---
 def arguments():
     parser = options(__doc__)
-    parser.add_argument("--study", type=Path, default=STUDY, help="the definition")
-    parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "study", help="the runs")
+    parser.add_argument("--study", type=Path, default=STUDY, help="another definition; its "
+                        "runs, results and report go beside it")
     parser.add_argument("--only", default="", help="run only points whose names begin with this")
     parser.add_argument("--list", action="store_true", help="list the points and their cost, as "
                         "the last results tell")
     parser.add_argument("--cached", action="store_true",
                         help="run nothing; report what has been run or was collected before")
     parser.add_argument("--report", action="store_true", help="only write the report")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of the report")
-    parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
     return parser.parse_args()
 
 
@@ -249,13 +247,12 @@ def collect(records, holes, study, data):
 
 def main():
     args = arguments()
-    own = OUT / "accuracy.json"
-    args.data = args.data or (own if args.study.resolve() == STUDY
-                              else args.study.with_name("results.json"))
-    ours = args.data.resolve() == own and not QUICK
-    evidence = ROOT / "src" / "app" / "data" / "evidence.csv" if ours else None
+    ours, beside = args.study.resolve() == STUDY, args.study.parent
+    out, data = (OUT, OUT / "accuracy.json") if ours else (beside, beside / "results.json")
+    runs = ROOT / "runs" / "study" if ours else beside / "runs"
+    evidence = ROOT / "src" / "app" / "data" / "evidence.csv" if ours and not QUICK else None
     if args.report:
-        return study_report.write(args.data, args.out, evidence)
+        return study_report.write(data, out, evidence)
     study = read_study(args.study)
     points = points_of(study)
     if QUICK:  # the coarsest of each case with the defaults
@@ -263,8 +260,8 @@ def main():
     chosen = [p for p in points if p["name"].startswith(args.only)]
     if not chosen:
         raise BadFile(f"no point {args.only} in {args.study}; --list shows them")
-    jobs = give_jobs(chosen if args.list else points, study, args.runs)
-    before = {p["name"]: p for p in load(args.data, {"points": []})["points"]
+    jobs = give_jobs(chosen if args.list else points, study, runs)
+    before = {p["name"]: p for p in load(data, {"points": []})["points"]
               if p["outcome"] != "not run"}
     cost = {name: cpu * repeats_of(cpu, study["study"]) for name, p in before.items()
             if p["timing"] for cpu in [min(t["cpu"] for t in p["timing"])]}
@@ -282,8 +279,8 @@ def main():
     if missing and not args.cached:
         run_all(missing, study, cost)
     records = [record_of(p, jobs[p["name"]], before) for p in points]
-    collect(records, add_errors(records, jobs, study), study, args.data)
-    return study_report.write(args.data, args.out, evidence)
+    collect(records, add_errors(records, jobs, study), study, data)
+    return study_report.write(data, out, evidence)
 
 
 if __name__ == "__main__":

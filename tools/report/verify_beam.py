@@ -411,7 +411,7 @@ def draw(known):
                       mfc="none", color=colour, label=SIDES[sides] if k == 0 else None)
     axes.set(xscale="log", yscale="log", xlabel="mass of the water over that of the plate",
              ylabel="frequency in water over that in vacuum")
-    axes.legend(fontsize=10)
+    axes.legend(fontsize=10, loc="upper right")
     save(figure, IMAGES / "beam_wet.png", dpi=130, bbox_inches="tight")
 
 
