@@ -137,35 +137,37 @@ static struct amount text_of_seconds(double seconds)
  * and two threads, of half a second and more. */
 static const double least_of_forecast = 0.85, most_of_forecast = 1.5;
 
-static void say_cost(const struct simulation *sim, const struct unit_costs *c,
+static void say_cost(const struct simulation *sim, const struct forecast *f,
                      const struct sphfsi_options *o)
 {
-    const struct forecast f = forecast_run(c, sim);
     const int threads = sim->team.most;
-    session_say(o, "cost with %s%d thread%s, measured in 0.3 s of trial steps",
-                threads > 1 ? "up to " : "", threads, threads == 1 ? "" : "s");
+    char coarse[64] = "";
+    if (f->coarse_dp > 0)
+        snprintf(coarse, sizeof coarse, " and a run at dp = %.3g m", f->coarse_dp);
+    session_say(o, "cost with %s%d thread%s, measured in 0.3 s of trial steps%s",
+                threads > 1 ? "up to " : "", threads, threads == 1 ? "" : "s", coarse);
     for (int k = 0; k < PHASE_COUNT; k++)
-        if (k != PHASE_output && c->phase_fraction[k] > 0)
+        if (k != PHASE_output && f->phase_fraction[k] > 0)
             session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
-                        100 * c->phase_fraction[k], phase_table[k].meaning);
-    if (c->fluid > 0) session_say(o, "  %.3g ns per fluid particle and evaluation", 1e9 * c->fluid);
-    if (c->solid > 0) session_say(o, "  %.3g ns per solid particle and step", 1e9 * c->solid);
-    session_say(o, "  about %.3g steps of %.3g s", f.steps, f.dt);
-    if (f.substeps > f.steps) session_say(o, "  about %.3g solid sub-steps", f.substeps);
+                        100 * f->phase_fraction[k], phase_table[k].meaning);
+    if (f->fluid > 0) session_say(o, "  %.3g ns per fluid particle and evaluation", 1e9 * f->fluid);
+    if (f->solid > 0) session_say(o, "  %.3g ns per solid particle and step", 1e9 * f->solid);
+    session_say(o, "  about %.3g steps of %.3g s", f->steps, f->dt);
+    if (f->substeps > f->steps) session_say(o, "  about %.3g solid sub-steps", f->substeps);
     session_say(o, "  %s on this machine when idle, memory %s, disk at most %s",
-                text_of_seconds(f.seconds).text, text_of_bytes(f.memory).text,
-                text_of_bytes(f.disk).text);
+                text_of_seconds(f->seconds).text, text_of_bytes(f->memory).text,
+                text_of_bytes(f->disk).text);
     session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer",
-                text_of_seconds(least_of_forecast * f.seconds).text,
-                text_of_seconds(most_of_forecast * f.seconds).text);
+                text_of_seconds(least_of_forecast * f->seconds).text,
+                text_of_seconds(most_of_forecast * f->seconds).text);
     if (sim->effects & FX_RELAX)
         session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
 
-static enum err measure(struct session *session, struct unit_costs *c, struct diag *d)
+static enum err foresee(struct forecast *f, struct session *session, const struct sphfsi_options *o,
+                        struct diag *d)
 {
-    const enum err e = forecast_measure(c, &session->simulation, d);
-    c->opening = session->opening;
+    const enum err e = forecast_run(f, session, o, d);
     check_simulation(&session->simulation, d); /* bounds of the step are known now */
     return e;
 }
@@ -173,10 +175,10 @@ static enum err measure(struct session *session, struct unit_costs *c, struct di
 static enum err say_trial(struct session *session, const struct sphfsi_options *o, struct diag *d)
 {
     struct simulation *const sim = &session->simulation;
-    struct unit_costs c;
-    TRY(measure(session, &c, d));
+    struct forecast f;
+    TRY(foresee(&f, session, o, d));
     say_bounds(sim, o);
-    say_cost(sim, &c, o);
+    say_cost(sim, &f, o);
     evidence_say(sim->scene, o);
     return ERR_OK;
 }
@@ -227,22 +229,21 @@ static void write_bounds(struct json *j, const struct simulation *sim)
     if (sim->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);
 }
 
-static void write_cost(struct json *j, const struct simulation *sim, const struct unit_costs *c)
+static void write_cost(struct json *j, const struct simulation *sim, const struct forecast *f)
 {
-    const struct forecast f = forecast_run(c, sim);
     json_open(j, "cost", '{');
     json_integer(j, "threads", sim->team.most);
-    json_number(j, "time_step", f.dt);
-    json_number(j, "steps", f.steps);
-    json_number(j, "solid_substeps", f.substeps);
-    json_number(j, "wall_seconds", f.seconds);
-    json_number(j, "row_seconds", c->rows);
-    json_number(j, "memory_bytes", f.memory);
-    json_number(j, "disk_bytes", f.disk);
+    json_number(j, "time_step", f->dt);
+    json_number(j, "steps", f->steps);
+    json_number(j, "solid_substeps", f->substeps);
+    json_number(j, "wall_seconds", f->seconds);
+    json_number(j, "row_seconds", f->rows);
+    json_number(j, "memory_bytes", f->memory);
+    json_number(j, "disk_bytes", f->disk);
     json_open(j, "phase_shares", '{');
     for (int k = 0; k < PHASE_COUNT; k++)
-        if (k != PHASE_output && c->phase_fraction[k] > 0)
-            json_number(j, phase_table[k].name, c->phase_fraction[k]);
+        if (k != PHASE_output && f->phase_fraction[k] > 0)
+            json_number(j, phase_table[k].name, f->phase_fraction[k]);
     json_close(j, '}');
     json_close(j, '}');
 }
@@ -268,13 +269,13 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
     const struct explained *const of = context;
     struct session *const session = of->session;
     struct simulation *const sim = &session->simulation;
-    struct unit_costs c;
+    struct forecast f;
     json_open(j, NULL, '{');
     write_scene(j, session);
     report_effects(j, sim);
-    TRY(measure(session, &c, d));
+    TRY(foresee(&f, session, &of->call->options, d));
     write_bounds(j, sim);
-    write_cost(j, sim, &c);
+    write_cost(j, sim, &f);
     report_derived(j, &session->scene);
     report_parameters(j, &session->scene);
     write_warnings(j, of->call->warned.more);

@@ -1,26 +1,64 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
+#include "base/csv.h"
 #include "output/probes.h"
 #include "output/series.h"
 #include "output/snapshot.h"
 #include "time/energy.h"
-#include "time/timestep.h"
 
 #include <stdlib.h>
 
-enum { FIRST_STEPS = 20, EVALUATIONS_MEASURED = 5 };
-/* CPU time of this thread, s: of the first steps, which are not measured, at most; of all measured
- * steps; of steps with rows of a file. */
-static const double first_seconds = 0.1, measured_seconds = 0.2, row_seconds = 0.05;
+enum { FIRST_STEPS = 20 };
+/* CPU time of this thread, s: of the first steps, which are not measured, at most; of the trial; of
+ * steps with rows of a file; of the coarse run, which takes a fiftieth of the run between these. */
+static const double first_seconds = 0.1, trial_seconds = 0.2, row_seconds = 0.05,
+                    coarse_seconds[] = {0.5, 2};
 
 /* --- measurement --- */
 
-/* Whether trial steps go on: not for long, nor beyond the end, nor where less than half of the
- * fluid of the start is left, since what falls out of the domain costs nothing. */
-static bool goes_on(const struct simulation *sim, double begin, double seconds)
+/* What a stretch of a run takes: CPU time of each phase, simulated time, s, and numbers of these;
+ * time and sub-steps while surfaces of solids are near. */
+enum { TIME = PHASE_COUNT, STEPS, SUBSTEPS, EVALUATIONS, NEAR_TIME, NEAR_SUBSTEPS, AMOUNTS };
+struct stretch {
+    double amount[AMOUNTS];
+};
+
+/* By the wall clock, since the start. */
+static struct stretch so_far(const struct simulation *sim)
+{
+    struct stretch s = {.amount = {0}};
+    for (int k = 0; k < PHASE_COUNT; k++) s.amount[k] = sim->phase_seconds[k];
+    s.amount[TIME] = sim->state.time;
+    s.amount[STEPS] = (double)sim->state.steps;
+    s.amount[SUBSTEPS] = (double)sim->state.solid_substeps;
+    s.amount[EVALUATIONS] = (double)sim->state.evaluations;
+    return s;
+}
+
+static void add(struct stretch *to, const struct stretch *s, double sign)
+{
+    for (int k = 0; k < AMOUNTS; k++) to->amount[k] += sign * s->amount[k];
+}
+
+static double seconds_of(const struct stretch *s)
+{
+    double seconds = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) seconds += s->amount[k];
+    return seconds;
+}
+
+/* An amount per one of another. */
+static double each(const struct stretch *s, int k, int per)
+{
+    return s->amount[k] / s->amount[per];
+}
+
+/* Whether steps go on: not beyond a time, nor where less than half of the fluid of the start is
+ * left, since what falls out of the domain costs nothing. */
+static bool goes_on(const struct simulation *sim, double until)
 {
     const int64_t n_start = sim->scene->points[KIND_FLUID].n;
-    return sim->state.time < sim->scene->top.end_time && thread_clock() - begin < seconds &&
+    return sim->state.time < min2(until, sim->scene->top.end_time) &&
            2 * sim->kind[KIND_FLUID].n >= n_start;
 }
 
@@ -32,217 +70,184 @@ static enum err try_step(struct simulation *sim, struct diag *d)
     return e && e != ERR_GUARD ? diag_fail(d, e, "%s", ignored.text) : e;
 }
 
-/* Means over the steps, because some of what they do comes back after some of them only: sorting,
- * gradients of the density, tests. Steps on trial with another number of threads, of which a run
- * has fewer, are left out. Shares of phases are by the wall clock. Beside other programs a team of
- * threads waits for each other, so that only an idle machine gives its time. */
-static enum err measure_steps(struct unit_costs *c, struct simulation *sim, struct diag *d)
+/* The first steps include the first touch of memory and the first sort, and find the bounds of the
+ * time step. A guard that stops the run in them is reported. */
+static enum err take_first_steps(struct simulation *sim, struct diag *d)
 {
-    const double n_fluid = (double)sim->kind[KIND_FLUID].n;
-    const double n_solid = (double)sim->kind[KIND_SOLID].n;
-    /* The first steps include the first touch of memory and the first sort, and find the bounds of
-     * the time step. A guard that stops the run in them is reported. */
-    double begin = thread_clock(), seconds = 0, counted = 0, phase[PHASE_COUNT], all = 0;
+    const double start = thread_clock();
     int first = 0;
     do {
         TRY(simulation_step(sim, (double)INFINITY, d));
-    } while (++first <= FIRST_STEPS && goes_on(sim, begin, first_seconds));
-    const struct state before = sim->state;
-    memcpy(phase, sim->phase_seconds, sizeof phase);
-    enum err e = ERR_OK;
-    begin = thread_clock();
-    while (!e && goes_on(sim, begin, measured_seconds)) {
-        const bool usual = sim->team.now == sim->team.chosen;
-        const double start = thread_clock(), from = (double)sim->state.steps;
-        e = try_step(sim, d);
-        if (!usual) continue;
-        seconds += thread_clock() - start;
-        counted += (double)sim->state.steps - from;
-    }
-    if ((e && e != ERR_GUARD) || counted == 0) return e == ERR_GUARD ? ERR_OK : e;
-    for (int k = 0; k < PHASE_COUNT; k++) all += sim->phase_seconds[k] - phase[k];
-    for (int k = 0; k < PHASE_COUNT && all > 0; k++)
-        c->phase_fraction[k] = (sim->phase_seconds[k] - phase[k]) / all;
-    const double of_solid = c->phase_fraction[PHASE_solid] + c->phase_fraction[PHASE_contact],
-                 each = seconds / counted, solid = n_fluid > 0 ? each * of_solid : each,
-                 steps = (double)(sim->state.steps - before.steps),
-                 substeps = (double)(sim->state.solid_substeps - before.solid_substeps);
-    c->evaluations = (double)(sim->state.evaluations - before.evaluations) / steps;
-    if (n_solid > 0 && substeps > 0) c->solid = solid * steps / substeps / n_solid;
-    if (n_fluid > 0) c->fluid = (each - solid) / c->evaluations / n_fluid;
+    } while (++first <= FIRST_STEPS && thread_clock() - start < first_seconds &&
+             goes_on(sim, (double)INFINITY));
     return ERR_OK;
 }
 
-/* Of pairs that approach, and of the fastest particle. In the five shipped flows its mean was 0.6
- * to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
-static double expected_speed(const struct simulation *sim, double so_far)
+/* Steps until a time, for some seconds at most. Steps on trial with another number of threads, of
+ * which a run has fewer, are left out of the time. Shares of phases are by the wall clock. Beside
+ * other programs a team of threads waits for each other, so that only an idle machine gives its
+ * time. */
+static enum err measure(struct stretch *s, struct simulation *sim, double until, double seconds,
+                        struct diag *d)
 {
-    double speed = 0;
-    for (int k = 0; k < sim->scene->n_fluid; k++)
-        speed = max2(speed, sim->scene->fluid[k].max_speed);
-    return max2(0.75 * speed, so_far);
-}
-
-/* The step of Eq. 28b. */
-static double expected_step(const struct simulation *sim)
-{
-    const double limit = timestep_longest(sim);
-    if (!(sim->effects & FX_FLUID) || sim->scene->numerics.fixed_step > 0) return limit;
-    const double approach = expected_speed(sim, sim->fluid.extremes.approach);
-    const double dt = limit * sim->fluid.k.c0 / (sim->fluid.k.c0 + approach);
-    const bool single_rate = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
-    return single_rate ? min2(dt, sim->dt_solid) : dt;
+    const double start = thread_clock();
+    double clock = start, usual = 0, steps = 0;
+    enum err e = ERR_OK;
+    *s = (struct stretch){.amount = {0}};
+    while (!e && clock - start < seconds && goes_on(sim, until)) {
+        const bool counts = sim->team.now == sim->team.chosen;
+        const double last = clock;
+        const struct stretch before = so_far(sim);
+        e = try_step(sim, d);
+        clock = thread_clock();
+        struct stretch step = so_far(sim);
+        add(&step, &before, -1);
+        if (sim->solid.contact) {
+            step.amount[NEAR_TIME] = step.amount[TIME];
+            step.amount[NEAR_SUBSTEPS] = step.amount[SUBSTEPS];
+        }
+        add(s, &step, 1);
+        if (!counts) continue;
+        usual += clock - last;
+        steps += step.amount[STEPS];
+    }
+    const double all = seconds_of(s), each = steps > 0 ? usual / steps : 0;
+    for (int k = 0; k < PHASE_COUNT && all > 0; k++) s->amount[k] *= each * s->amount[STEPS] / all;
+    return e == ERR_GUARD ? ERR_OK : e;
 }
 
 /* The time of all rows of the run. A row lies between two states, and a state serves all rows
  * beside it. The evaluation that a reading needs is that of the next step. */
-static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struct diag *d)
+static enum err measure_rows(struct forecast *f, struct simulation *sim, struct diag *d)
 {
-    const double end = sim->scene->top.end_time, dt = expected_step(sim);
+    const double end = sim->scene->top.end_time;
     double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
+    char text[NUMBER_TEXT];
     struct probes probes;
     TRY(probes_create(&probes, sim, &sim->arena, d));
-    for (int file = -1; file < probes.n_files; file++) {
+    enum err e = ERR_OK;
+    for (int file = -1; file < probes.n_files && !e; file++) {
         const double interval =
             file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
-        const double readings = min2(2 * end / interval, end / dt), begin = thread_clock();
-        double seconds = 0;
+        const double rows = end / interval, readings = min2(2 * rows, end / f->dt),
+                     begun = thread_clock();
+        const int columns =
+            file < 0 ? (int)(sizeof(struct ledger) / sizeof *row) : probes.file[file].columns;
+        double reading = 0, writing = 0;
         int n = 0;
-        enum err e;
         do {
             simulation_refresh(sim);
             const double start = thread_clock();
             if (file < 0)
-                simulation_ledger(sim);
+                *(struct ledger *)(void *)row = simulation_ledger(sim);
             else
                 probes_sample(&probes, sim, file, false, row, rate);
-            seconds += thread_clock() - start;
+            const double read = thread_clock();
+            for (int c = 0; c < columns; c++) number_text(text, row[c]);
+            reading += read - start;
+            writing += thread_clock() - read;
             n++;
             e = try_step(sim, d);
-        } while (!e && goes_on(sim, begin, row_seconds));
-        if (e && e != ERR_GUARD) return e;
-        c->rows += seconds / n * readings;
+        } while (!e && thread_clock() - begun < row_seconds && goes_on(sim, end));
+        f->rows += (reading * readings + writing * rows) / n;
+        if (e == ERR_GUARD) e = ERR_OK;
     }
-    return ERR_OK;
+    return e;
 }
 
-/* Each particle somewhere in its own square of dp: the R2 sequence (Roberts 2018) has no order that
- * a lattice has. */
-static void disorder(struct simulation *sim)
-{
-    struct particles *const particles = &sim->kind[KIND_FLUID];
-    for (int64_t i = 0; i < particles->n; i++) {
-        const double u = 0.7548776662466927 * (double)i, v = 0.5698402909980532 * (double)i;
-        particles->x[i] += sim->fluid.k.dp * (u - floor(u) - 0.5);
-        particles->y[i] += sim->fluid.k.dp * (v - floor(v) - 0.5);
-    }
-}
+/* --- a run of the same scene at a coarser spacing --- */
 
-static struct box2 box_of(int64_t n, const double *x, const double *y)
+static enum err open_coarse(struct session *coarse, const struct sphfsi_options *o, double dp)
 {
-    struct box2 box = box2_empty();
-    for (int64_t i = 0; i < n; i++) box2_include(&box, x[i], y[i]);
-    return box;
-}
-
-/* By how much the water has become wider or higher since the start. */
-static double widened(const struct simulation *sim)
-{
-    const struct scene_points *const start = &sim->scene->points[KIND_FLUID];
-    const struct particles *const fluid = &sim->kind[KIND_FLUID];
-    const struct box2 then = box_of(start->n, start->x, start->y),
-                      now = box_of(fluid->n, fluid->x, fluid->y);
-    return max2(now.high[0] - now.low[0] - (then.high[0] - then.low[0]),
-                now.high[1] - now.low[1] - (then.high[1] - then.low[1]));
-}
-
-/* A body of water with a free surface fills the breadth between the outermost walls, less deep by
- * as much. Returns by how much it becomes wider. */
-static double spread(struct simulation *sim)
-{
-    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const wall =
-                                                                      &sim->kind[KIND_WALL];
-    const double *const g = sim->scene->top.gravity, reach = KERNEL_REACH * sim->fluid.k.h;
-    const int up = fabs(g[0]) < fabs(g[1]), across = !up;
-    const struct box2 water = box_of(fluid->n, fluid->x, fluid->y),
-                      walls = box_of(wall->n, wall->x, wall->y);
-    const double now = water.high[across] - water.low[across],
-                 then = walls.high[across] - walls.low[across] - 2 * reach;
-    if (!(then > now) || g[up] == 0 || sim->effects & (FX_OPEN | FX_PERIODIC)) return 0;
-    const double bottom = (g[up] < 0 ? water.low : water.high)[up];
-    double *const x[2] = {fluid->x, fluid->y};
-    for (int64_t i = 0; i < fluid->n; i++) {
-        const double share = (x[across][i] - water.low[across]) / now;
-        x[across][i] = walls.low[across] + reach + share * then;
-        x[up][i] = bottom + (x[up][i] - bottom) * now / then;
-    }
-    return then - now;
-}
-
-/* The part of the run after a way that grows as the square of time and is `moved` now. */
-static double part_after(const struct simulation *sim, double moved, double way)
-{
-    if (!(moved > 0)) return 0;
-    return max2(0, 1 - sim->state.time * sqrt(way / moved) / sim->scene->top.end_time);
-}
-
-static double evaluation_seconds(struct simulation *sim)
-{
-    double least = HUGE_VAL, phases[PHASE_COUNT] = {0};
-    for (int m = 0; m < EVALUATIONS_MEASURED; m++) {
-        const double begin = thread_clock();
-        fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, phases);
-        coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
-        least = min2(least, thread_clock() - begin);
-    }
-    return least;
-}
-
-/* Water that flows loses the order of its lattice: its clusters become wider and have more clusters
- * within reach, once it has moved by the kernel's reach. It is sorted as soon as its fastest
- * particle has crossed the skin, more often than at the start. And it wets more walls, in
- * proportion to time, as if it wetted all from half of that time on: a quarter of its way. Adds
- * what a step takes longer then. Leaves the particles so. */
-static void measure_flow(struct unit_costs *c, struct simulation *sim)
-{
-    const struct particles *const fluid = &sim->kind[KIND_FLUID];
-    const double n_fluid = (double)fluid->n, wider = widened(sim), dt = expected_step(sim);
-    const double sorts = (double)(sim->state.sorts - 1) / (double)sim->state.steps;
     struct diag ignored = {.code = ERR_OK};
-    double speed2 = 0;
-    for (int64_t i = 0; i < fluid->n; i++)
-        speed2 += (square(fluid->vx[i]) + square(fluid->vy[i])) / n_fluid;
-    const double moved = 0.5 * sqrt(speed2) * (double)sim->state.time;
-    thread_use(sim->team.chosen);
-    sim->fluid.threads = sim->team.chosen;
-    const double ordered = evaluation_seconds(sim);
-    disorder(sim);
-    const double begin = thread_clock(), fastest = sqrt(sim->extremes.speed2);
-    if (sort_particles(sim, &ignored)) return;
-    const double sort = thread_clock() - begin, skin = sim->sorting.skin_left,
-                 way_of_step = expected_speed(sim, fastest) * dt,
-                 rate = way_of_step < skin ? way_of_step / skin : 1;
-    c->fluid += sort * max2(0, rate - sorts) / c->evaluations / n_fluid;
-    const double disordered = evaluation_seconds(sim);
-    const double part = part_after(sim, moved, KERNEL_REACH * sim->fluid.k.h);
-    c->fluid += part * max2(0, disordered - ordered) / n_fluid;
-    const double way = spread(sim);
-    if (way == 0 || sort_particles(sim, &ignored)) return;
-    const double wet = max2(0, evaluation_seconds(sim) - disordered);
-    c->fluid += part_after(sim, wider, 0.25 * way) * wet / n_fluid;
+    struct sphfsi_options with = *o;
+    char set[40];
+    const char **const sets = calloc((size_t)o->n_sets + 1, sizeof *sets);
+    if (!sets) return ERR_MEMORY;
+    for (int k = 0; k < o->n_sets; k++) sets[k] = o->sets[k];
+    snprintf(set, sizeof set, "dp=%.17g", dp);
+    sets[with.n_sets++] = set;
+    with.sets = sets;
+    with.message = NULL;
+    with.threads = 1;
+    const enum err e = session_open(coarse, &with, &ignored);
+    free(sets);
+    return e;
 }
 
-enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
+/* Its first stretch, until the time of the trial and some more, and all of it. */
+static void run_coarse(struct stretch *first, struct stretch *whole, struct simulation *sim,
+                       double trial_end, double seconds)
 {
-    *c = (struct unit_costs){0};
-    TRY(measure_steps(c, sim, d));
-    const struct fluid_extremes extremes = sim->fluid.extremes; /* for the step that is expected */
-    TRY(measure_rows(c, sim, d));
-    c->snapshots = snapshots_seconds(sim) *
-                   (1 + floor(sim->scene->top.end_time / sim->scene->output.snapshot_interval));
-    if (sim->kind[KIND_FLUID].n) measure_flow(c, sim);
-    sim->fluid.extremes = extremes;
-    return ERR_OK;
+    struct diag ignored = {.code = ERR_OK};
+    struct stretch more;
+    if (take_first_steps(sim, &ignored)) return;
+    if (measure(first, sim, trial_end, seconds, &ignored)) return;
+    if (measure(&more, sim, (double)INFINITY, 0.1 * seconds - seconds_of(first), &ignored)) return;
+    add(first, &more, 1);
+    if (measure(whole, sim, (double)INFINITY, coarse_seconds[1], &ignored)) return;
+    add(whole, first, 1);
+}
+
+/* Opens the scene at r times its spacing, or half of that until it can be sampled, and runs it. */
+static double rehearse(struct stretch *first, struct stretch *whole, double r, double dp,
+                       double trial_end, double seconds, const struct sphfsi_options *o)
+{
+    struct session *const coarse = calloc(1, sizeof *coarse);
+    enum err e = coarse ? open_coarse(coarse, o, r * dp) : ERR_MEMORY;
+    while (e == ERR_INPUT && r > 3) {
+        r = floor(0.5 * r);
+        e = open_coarse(coarse, o, r * dp);
+    }
+    if (!e) {
+        phase_clock_use(true);
+        run_coarse(first, whole, &coarse->simulation, trial_end, seconds);
+        phase_clock_use(false);
+        session_close(coarse);
+    }
+    free(coarse);
+    return r;
+}
+
+/* The amounts of the run by those of the trial. A step takes longer by the factor by which it does
+ * in a run of the same scene at a coarser spacing, which sees the whole of it: water that spreads,
+ * bodies that touch. With r times the spacing there are 1/r^2 of the particles and 1/r of the
+ * steps, so that r is the cube root of the time of the run over that of the coarse one.
+ * Sorts are too rare for a factor: their part of the time is that of the coarse run. The step of a
+ * solid alone is known from the trial. Springs of contact, which may come later, are as stiff per
+ * depth at any spacing, so that 1/r of the steps are taken while surfaces are near. */
+static void extend(struct forecast *f, struct stretch *run, const struct stretch *trial,
+                   const struct session *session, const struct sphfsi_options *o)
+{
+    const double end = session->scene.top.end_time, dp = session->scene.top.dp,
+                 longer = end / trial->amount[TIME], rough = seconds_of(trial) * longer,
+                 seconds = min2(max2(coarse_seconds[0], 0.02 * rough), coarse_seconds[1]);
+    struct stretch first = {0}, whole = {0};
+    const double r = rehearse(&first, &whole, ceil(cbrt(rough / seconds)), dp,
+                              session->simulation.state.time, seconds, o);
+    *run = *trial;
+    add(run, trial, longer - 1);
+    if (!(whole.amount[TIME] > 0)) return;
+    f->coarse_dp = r * dp;
+    const bool fluid = session->simulation.effects & FX_FLUID;
+    const double steps = each(&whole, STEPS, TIME) / each(&first, STEPS, TIME);
+    double near = 1;
+    if (whole.amount[NEAR_TIME] > 0)
+        near +=
+            each(&whole, NEAR_TIME, TIME) *
+            max2(0, r * each(&whole, NEAR_SUBSTEPS, NEAR_TIME) / each(trial, SUBSTEPS, TIME) - 1);
+    run->amount[STEPS] *= fluid ? steps : near;
+    run->amount[SUBSTEPS] = run->amount[STEPS] * each(trial, SUBSTEPS, STEPS) * (fluid ? near : 1);
+    run->amount[EVALUATIONS] = run->amount[STEPS] * each(trial, EVALUATIONS, STEPS);
+    for (int k = 0; k < PHASE_COUNT; k++) {
+        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS : STEPS;
+        if (first.amount[k] > 0)
+            run->amount[k] = run->amount[per] * each(trial, k, per) * each(&whole, k, per) /
+                             each(&first, k, per);
+    }
+    const double sorts = whole.amount[PHASE_sort], others = seconds_of(&whole) - sorts;
+    if (others > 0)
+        run->amount[PHASE_sort] = (seconds_of(run) - run->amount[PHASE_sort]) * sorts / others;
 }
 
 /* --- the run --- */
@@ -265,19 +270,35 @@ static double disk_bytes(const struct simulation *sim)
            BYTES_OF_ROW * rows;
 }
 
-struct forecast forecast_run(const struct unit_costs *c, const struct simulation *sim)
+enum err forecast_run(struct forecast *f, struct session *session, const struct sphfsi_options *o,
+                      struct diag *d)
 {
-    const double n_fluid = (double)sim->kind[KIND_FLUID].n;
-    const double n_solid = (double)sim->kind[KIND_SOLID].n;
+    struct simulation *const sim = &session->simulation;
     const double end = sim->scene->top.end_time;
-    struct forecast f = {.dt = expected_step(sim)};
-    f.steps = ceil(end / f.dt);
-    const bool substeps = sim->effects & FX_MULTIRATE && !implicit_is_next(&sim->solid);
-    if (n_solid > 0) f.substeps = f.steps * (substeps ? max2(1, ceil(f.dt / sim->dt_solid)) : 1);
-    f.evaluations = f.steps * c->evaluations;
-    f.seconds = f.evaluations * n_fluid * c->fluid + f.substeps * n_solid * c->solid + c->rows +
-                c->snapshots + c->opening;
-    f.memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
-    f.disk = disk_bytes(sim);
-    return f;
+    struct stretch trial, run;
+    *f = (struct forecast){0};
+    TRY(take_first_steps(sim, d));
+    TRY(measure(&trial, sim, end, trial_seconds, d));
+    const double n_fluid = (double)sim->kind[KIND_FLUID].n,
+                 n_solid = (double)sim->kind[KIND_SOLID].n;
+    if (trial.amount[TIME] == 0) trial = so_far(sim); /* the first steps were the run */
+    const int threads = thread_count();
+    extend(f, &run, &trial, session, o);
+    thread_use(threads);
+    f->dt = end / run.amount[STEPS];
+    f->steps = ceil(run.amount[STEPS] * (1 - 1e-9));
+    f->substeps = n_solid > 0 ? max2(f->steps, run.amount[SUBSTEPS]) : 0;
+    TRY(measure_rows(f, sim, d));
+    f->snapshots = snapshots_seconds(sim) *
+                   (1 + ceil(end / sim->scene->output.snapshot_interval * (1 - 1e-9)));
+    f->evaluations = run.amount[EVALUATIONS];
+    const double all = seconds_of(&run),
+                 solid = run.amount[PHASE_solid] + run.amount[PHASE_contact];
+    for (int k = 0; k < PHASE_COUNT; k++) f->phase_fraction[k] = run.amount[k] / all;
+    if (n_fluid > 0) f->fluid = (all - solid) / f->evaluations / n_fluid;
+    if (n_solid > 0) f->solid = (n_fluid > 0 ? solid : all) / f->substeps / n_solid;
+    f->seconds = all + f->rows + f->snapshots + session->opening;
+    f->memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
+    f->disk = disk_bytes(sim);
+    return ERR_OK;
 }

@@ -23,6 +23,15 @@ static double seconds_of(clockid_t clock)
 double wall_clock(void) { return seconds_of(CLOCK_MONOTONIC); }
 double thread_clock(void) { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 
+static _Thread_local clockid_t clock_of_phases = CLOCK_MONOTONIC;
+
+double phase_clock(void) { return seconds_of(clock_of_phases); }
+
+void phase_clock_use(bool of_thread)
+{
+    clock_of_phases = of_thread ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
+}
+
 int thread_count(void) { return omp_get_max_threads(); }
 
 void thread_use(int n) { omp_set_num_threads(n); }

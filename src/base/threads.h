@@ -48,6 +48,11 @@ int thread_index(void);
 double wall_clock(void);
 double thread_clock(void);
 
+/* The clock of phases of steps in this thread: the first of both, or the second one, which is
+ * slower to read but does not go on while other programs have the core. */
+double phase_clock(void);
+void phase_clock_use(bool of_thread);
+
 /* Settings of the calling thread that the library changes during a call: the locale, since numbers
  * in files have a decimal point, and the number of threads of parallel regions. */
 struct host {

@@ -103,7 +103,7 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
 {
     const struct integrator *const by = sim->integrator;
     evaluate_start(sim);
-    double clock = wall_clock();
+    double clock = phase_clock();
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
     const double kick = 0.5 * (sim->state.dt + dt);

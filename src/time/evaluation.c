@@ -69,7 +69,7 @@ void evaluate_fluid(struct simulation *sim, double time)
     if (sim->gravity_varies)
         scene_gravity_at(sim->scene, scene_time(sim, time), sim->fluid.k.gravity);
     if (sim->effects & FX_OPEN) {
-        const double start = wall_clock();
+        const double start = phase_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */
         const bool counts = time == sim->state.time;
         open_set(&sim->open, time, counts);
@@ -77,7 +77,7 @@ void evaluate_fluid(struct simulation *sim, double time)
     }
     if (sim->effects & FX_ANTUONO) sim->fluid.keeps_slopes = keeps_slopes(sim, time);
     fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, sim->phase_seconds);
-    const double clock = wall_clock();
+    const double clock = phase_clock();
     coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
     phase_add(sim, PHASE_wall, clock);
     if (sim->effects & FX_OPEN) open_hold(&sim->open);

@@ -72,7 +72,7 @@ static void count_work(struct simulation *sim)
 static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
 {
     const double speed2_before = sim->extremes.speed2;
-    double clock = wall_clock();
+    double clock = phase_clock();
     if (sim->effects & FX_FLUID) {
         timestep_watch_contact(sim, sim->solid.time, 1);
         phase_add(sim, PHASE_solid, clock);
@@ -80,7 +80,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     } else {
         TRY(lone_step(sim, t_limit, d));
     }
-    clock = wall_clock();
+    clock = phase_clock();
     /* Done here so that the state does not depend on output between two steps. */
     if (sim->effects & FX_SHIFTING) {
         sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);

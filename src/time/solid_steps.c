@@ -96,7 +96,7 @@ static void add_external_work(struct simulation *sim, double dt)
 enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
 {
     struct state *const st = &sim->state;
-    const double start = wall_clock(), before = phases_so_far(sim), begin = st->time;
+    const double start = phase_clock(), before = phases_so_far(sim), begin = st->time;
     const bool implicit = sim->solid.implicit != NULL;
     const bool near = timestep_watch_contact(sim, sim->solid.time, implicit ? 1 : SOLID_BATCH);
     const double bound = timestep_bound(sim);

@@ -32,10 +32,10 @@ enum err observe(struct simulation *sim, double until, struct diag *d)
 {
     struct observer *const by = &sim->observer;
     if (!by->context || sim->state.seeks_rest || until < by->next) return ERR_OK;
-    const double begin = wall_clock(), before = phases_so_far(sim);
+    const double begin = phase_clock(), before = phases_so_far(sim);
     const enum err e = by->look(by->context, sim, until, d);
     /* Evaluations, which the coming step uses, are counted in their own phases. */
-    sim->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(sim) - before);
+    sim->phase_seconds[PHASE_output] += phase_clock() - begin - (phases_so_far(sim) - before);
     return e;
 }
 
@@ -49,7 +49,7 @@ double phases_so_far(const struct simulation *sim)
 double phase_add(struct simulation *sim, enum phase phase, double since)
 {
     if (!phase_runs(phase, sim->effects)) return since; /* what there is goes to the next one */
-    const double now = wall_clock();
+    const double now = phase_clock();
     sim->phase_seconds[phase] += now - since;
     if (phase == PHASE_solid && sim->effects & FX_CONTACT) {
         /* Its forces are computed during the solid's sub-steps. */

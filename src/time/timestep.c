@@ -189,7 +189,7 @@ static double step_in_contact(const struct simulation *sim)
 bool timestep_watch_contact(struct simulation *sim, double time, int steps)
 {
     if (!(sim->effects & FX_CONTACT)) return false;
-    const double start = wall_clock(), fixed = sim->scene->numerics.fixed_step;
+    const double start = phase_clock(), fixed = sim->scene->numerics.fixed_step;
     const double longest = fixed > 0                 ? fixed
                            : sim->effects & FX_FLUID ? timestep_fluid_limit(sim)
                                                      : sim->dt_lone_solid;
@@ -205,7 +205,7 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps)
                     : held ? resolved
                            : sim->dt_lone_solid;
     if (near && needed) *needed = sim->state.time;
-    sim->contact.seconds += wall_clock() - start;
+    sim->contact.seconds += phase_clock() - start;
     return near;
 }
 

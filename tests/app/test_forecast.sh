@@ -33,6 +33,15 @@ want=$("$SPHFSI" --explain "${plate[@]}" 2>/dev/null | steps_of)
 got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/plate/summary.json")
 near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
 
+# Bodies that touch after the trial: steps in contact are shorter, and a coarse run has seen it.
+touch=(cases/beam_on_beam.cfg --until 0.6)
+"$SPHFSI" --explain "${touch[@]}" >"$work/touch" 2>/dev/null
+grep -q 'trial steps and a run at dp = ' "$work/touch" || fail "no coarse run: $(cat "$work/touch")"
+"$SPHFSI" "${touch[@]}" --quiet --out "$work/beams" 2>/dev/null || fail "the beams failed"
+got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/beams/summary.json")
+near "$(steps_of <"$work/touch")" "$got" 0.07 ||
+    fail "beams: $(steps_of <"$work/touch") steps foreseen, $got taken"
+
 # An implicit step of a solid is one step, however many sub-steps it takes the place of.
 stiff=(cases/hydrostatic_plate.cfg --set "dp=25 mm" --until 0.01 --explain)
 "$SPHFSI" "${stiff[@]}" 2>/dev/null >"$work/stiff"
