@@ -322,7 +322,7 @@ static void test_bad_input_is_refused(void)
                          "hinge = 0, 0, b\n",
                 "b is no [wall] and no other [rigid]");
     rig_refuses(FREE BOX "[spring s]\nbody = b\nstiffness = 1\nto = 1, 1\n",
-                "there is no [rigid] of that name");
+                "there is no [rigid] or [beam] of that name");
     rig_refuses(FREE BOX "[spring s]\nbody = a\nother = a\nstiffness = 1\nto = 1, 1\n",
                 "to itself");
     rig_refuses(FREE BOX "[spring s]\nbody = a\nstiffness = 1\n", "no direction");
