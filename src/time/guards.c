@@ -72,9 +72,10 @@ static bool fluid_sound(struct simulation *sim)
            e->dens_high <= sim->guard.dens_limit && e->dens_low >= -sim->guard.dens_limit;
 }
 
-#define UNSTABLE                                                                                  \
-    "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, or a " \
-    "wall or light structure presses too hard on it"
+#define UNSTABLE                                                                             \
+    "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, " \
+    "or a wall or structure presses too hard on it; of a soft or light structure a longer "  \
+    "damping_time may help"
 
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
  * until the particle lies in the bed that the front runs over. */
