@@ -110,7 +110,14 @@ static int mover_of(const struct scene *scene, const struct scene_beam *beam, co
     return scene_find(scene, SECTION_motion, wall >= 0 ? scene->wall[wall].motion : beam->motion);
 }
 
-/* Joins a node to one of another beam, unless that is joined to it. */
+/* Joined nodes have the unknowns of the last one of their chain: that of component c. */
+static struct beam_node *owner_of(const struct beams *beams, int k, int c)
+{
+    while (beams->node[k].joined[c == 2] >= 0) k = beams->node[k].joined[c == 2];
+    return &beams->node[k];
+}
+
+/* Joins a node, and all that it is joined to, to one of another beam. */
 static enum err join(struct beams *beams, int k, const struct hinge_point *at, bool turns,
                      struct diag *d)
 {
@@ -127,9 +134,10 @@ static enum err join(struct beams *beams, int k, const struct hinge_point *at, b
                        "apart; give both lines a point there",
                        beams->beam[node->beam].given->common.name, turns ? "hinge" : "clamp",
                        at->at[0], at->at[1], at->other, apart);
-    if (beams->node[to].joined == k) return ERR_OK;
-    node->joined = to;
-    node->turns = turns;
+    for (int c = 1; c < (turns ? 2 : 3); c++) {
+        struct beam_node *const from = owner_of(beams, k, c), *const owner = owner_of(beams, to, c);
+        if (from != owner) from->joined[c == 2] = (int)(owner - beams->node);
+    }
     return ERR_OK;
 }
 
@@ -230,15 +238,6 @@ static enum err create_springs(struct beams *beams, struct arena *a, struct diag
 
 /* --- unknowns --- */
 
-/* Joined nodes have the unknowns of the last node of their chain. */
-static struct beam_node *owner_of(const struct beams *beams, int k, int c)
-{
-    int to = k, turn = 0;
-    while (beams->node[to].joined >= 0 && c < (beams->node[to].turns ? 2 : 3) && turn++ < beams->n)
-        to = beams->node[to].joined;
-    return &beams->node[to];
-}
-
 /* What holds one of them holds all. */
 static void share_holds(struct beams *beams)
 {
@@ -288,8 +287,7 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const struct beam_node *const node = &beams->node[k];
-            const bool shared = node->joined >= 0 && c < (node->turns ? 2 : 3);
-            if (node->row[c] >= 0 && !shared) beams->node[k].row[c] = n++;
+            if (node->row[c] >= 0 && node->joined[c == 2] < 0) beams->node[k].row[c] = n++;
         }
     share_rows(beams);
     TRY(refuse_held_twice(beams, d));
@@ -330,8 +328,10 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     TRY(arena_array(a, &beams->element, beams->n_elements, what, d));
     TRY(arena_array(a, &beams->start, beams->n_elements, what, d));
     TRY(arena_array(a, &beams->load, n * (size_t)scene->n_load, what, d));
-    for (size_t k = 0; k < n; k++)
-        beams->node[k].mover = beams->node[k].joined = beams->node[k].body = -1;
+    for (size_t k = 0; k < n; k++) {
+        struct beam_node *const node = &beams->node[k];
+        node->mover = node->joined[0] = node->joined[1] = node->body = -1;
+    }
     place_nodes(beams);
     for (int k = 0; k < beams->n; k++) {
         TRY(hold(beams, k, &beams->beam[k].given->hinge, true, d));

@@ -29,8 +29,7 @@ struct beam_node {
     double length;  /* of the line that it represents, m */
     int64_t row[3]; /* of the unknowns; -1: held */
     int mover;      /* motion of its clamp or hinge; -1: in place */
-    int joined;     /* node of another beam that has its place; -1: none */
-    bool turns;     /* joined by a hinge */
+    int joined[2];  /* nodes of other beams that have its place, its angle; -1: none */
     int body;       /* rigid body that it is joined to; -1: none */
     bool pivots;    /* by a hinge */
 };

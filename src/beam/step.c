@@ -349,7 +349,7 @@ double beams_longest_step(struct beams *beams)
         length += e->length;
     }
     double low = ROUNDING * high;
-    for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined >= 0;
+    for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined[0] >= 0;
     const int64_t free = joined ? count_below(beams, low) : count_free(beams);
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);

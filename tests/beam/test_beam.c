@@ -226,6 +226,31 @@ static void test_beams_are_joined(void)
     assert_near(2e-7, 1e-3 * 0.125 / 3, -end()->x[1], "deflection beyond the clamp");
 }
 
+/* Each of three beams names the next one: the place and the angle of their joint are common. */
+static void test_three_beams_are_joined_in_a_ring(void)
+{
+#define ARM(name, to, joint)                                                             \
+    "[beam " name "]\nshape = polyline: 0, 0; " to "\naxial_stiffness = 1e6\nmass = 1\n" \
+    "bending_stiffness = 1\nclamp = 0, 0, " joint "\n" STATIC
+    rig_open(&rig,
+             "dp = 5 cm\nend_time = 100\n" ARM("a", "-0.5, 0",
+                                               "b") "clamp = -0.5, 0\n" ARM("b", "0.5, 0", "c")
+                 ARM("c", "0, 0.1", "a") "[load f]\nbody = b\n"
+                                         "force = 0, -0.001\nshape = box 0.49, "
+                                         "-0.01, 0.51, 0.01\n",
+             "numerics.fixed_step=0.1", NULL);
+    rig_run(&rig, 40);
+    const struct beams *const beams = &rig.sim.beams;
+    const struct beam_state *const joint[] = {&beams->state[beams->beam[0].first_node],
+                                              &beams->state[beams->beam[1].first_node],
+                                              &beams->state[beams->beam[2].first_node]};
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++) assert_near(1e-15, joint[0]->x[c], joint[k]->x[c], "the joint");
+    /* A cantilever of 1 m. */
+    assert_near(2e-6, 1e-3 / 3, -state(beams->beam[1].end_node - 1)->x[1], "deflection");
+    assert_near(1e-6, 1e-3 * 0.375, -joint[0]->x[2], "angle");
+}
+
 static void test_bad_input_is_refused(void)
 {
 #define LINE "dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
@@ -328,6 +353,7 @@ int main(void)
     RUN_TEST(test_a_hinged_beam_is_a_pendulum);
     RUN_TEST(test_a_moving_clamp_does_work);
     RUN_TEST(test_beams_are_joined);
+    RUN_TEST(test_three_beams_are_joined_in_a_ring);
     RUN_TEST(test_bad_input_is_refused);
     RUN_TEST(test_beams_begin_beside_each_other_and_bodies);
     return UNITY_END();
