@@ -3,7 +3,7 @@
 """Drag, lift and frequency of a cylinder in the domain of cases/verify/cylinder.cfg, by another
 method.
 
-  cases/reference/cylinder_lattice_boltzmann.py                   Re = 100, to the screen (17 min)
+  cases/reference/cylinder_lattice_boltzmann.py                   Re = 100, to the screen (40 min)
   cases/reference/cylinder_lattice_boltzmann.py --before 20 --length 40    inflow 20 D away
 
 Published values are of wider or longer domains. Here the inflow, five diameters away, and the
