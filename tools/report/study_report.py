@@ -120,9 +120,9 @@ def forecast_section(path):
     try:
         data = json.loads(read_text(path))
         runs = data.get("runs", 1)
-        return ("The table compares the forecast of `--explain` with whole runs of the program, "
-                "its start and the reading of the case included (`make forecast`): CPU time on one "
-                "thread, wall time on more. "
+        return ("The table compares the forecast of `--explain` with whole runs, their start and "
+                "the reading of the case included (`make forecast`). It has CPU time on one "
+                "thread and wall time on more. "
                 f"{f'Each number is a median of {runs}. ' * (runs > 1)}"
                 f"Runs were cut short to about {data['seconds']:g} s. "
                 f"{machine_text(data['machine'])}.\n\n"

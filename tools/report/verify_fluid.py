@@ -283,7 +283,7 @@ def measure_front(run):
 
 # --- several runs at once ---
 def measure_free_front(runs):
-    """The way of the front against potential flow (cases/reference/dam_break_potential.py), whose
+    """The path of the front against potential flow (cases/reference/dam_break_potential.py), whose
     time begins with the release, as in the runs, of which each is finer than the one before."""
     time, place = reference("dam_break_front_potential.csv")
     H, largest, means, rows = 0.6, [], [], []
