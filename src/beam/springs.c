@@ -17,10 +17,35 @@ static double elongation(const struct beam_spring *s, double length)
     return s->given->slack ? max2(longer, 0) : longer;
 }
 
+/* Adds stiffnesses along a direction and across it. */
+static void add_stiffness(struct beams *beams, int k, const double along[2], double stiff,
+                          double across)
+{
+    const struct beam_node *const node = &beams->node[k];
+    for (int c = 0; c < 2; c++)
+        for (int e = 0; e <= c; e++) {
+            const double own = along[c] * along[e];
+            if (node->row[c] >= 0 && node->row[e] >= 0)
+                envelope_add(&beams->matrix, node->row[c], node->row[e],
+                             stiff * own + across * ((c == e) - own));
+        }
+}
+
+void beams_stiffen(struct beams *beams)
+{
+    for (int k = 0; k < beams->n_springs; k++) {
+        const struct beam_spring *const s = &beams->spring[k];
+        double along[2];
+        if (s->node < 0) continue;
+        const double length = reach_of(beams, s, beams->state[s->node].x, along);
+        for (int c = 0; c < 2; c++) along[c] /= length;
+        add_stiffness(beams, s->node, along, 0.5 * s->given->stiffness, 0);
+    }
+}
+
 /* T-108 */
 static void add_spring(struct beams *beams, const struct beam_spring *s, double dt)
 {
-    const struct beam_node *const node = &beams->node[s->node];
     struct beam_step *const step = &beams->step[s->node];
     const double after[2] = {step->x[0] + step->d[0], step->x[1] + step->d[1]};
     double reach[2][2], along[2];
@@ -35,13 +60,7 @@ static void add_spring(struct beams *beams, const struct beam_spring *s, double 
         along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);
         step->touch[c] -= tension * along[c];
     }
-    for (int c = 0; c < 2; c++)
-        for (int e = 0; e <= c; e++) {
-            const double own = along[c] * along[e], across = (c == e) - own;
-            if (node->row[c] >= 0 && node->row[e] >= 0)
-                envelope_add(&beams->matrix, node->row[c], node->row[e],
-                             (stiff + damp) * own + max2(tension, 0) / (l0 + l1) * across);
-        }
+    add_stiffness(beams, s->node, along, stiff + damp, max2(tension, 0) / (l0 + l1));
 }
 
 void beams_add_springs(struct beams *beams, double dt)

@@ -8,6 +8,10 @@
  * derivative to the matrix. */
 void beams_add_springs(struct beams *beams, double dt);
 
+/* Adds half of their stiffnesses to the matrix, as beams and springs are at the start; lines that
+ * only pull as if they were taut. */
+void beams_stiffen(struct beams *beams);
+
 /* --- for output --- */
 
 /* Energy of the springs of a beam, J/m. */

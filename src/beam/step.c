@@ -319,12 +319,14 @@ static int64_t count_free(const struct beams *beams)
     return n;
 }
 
-/* Frequencies below omega, of beams as they are at the start (Sylvester). */
-static int64_t count_below(struct beams *beams, double omega2)
+/* Frequencies below omega, of beams as they are at the start (Sylvester), with springs or without.
+ */
+static int64_t count_below(struct beams *beams, double omega2, bool springs)
 {
     struct largest top = {0};
     for (int k = 0; k < beams->n_nodes; k++) memset(beams->step[k].d, 0, sizeof *beams->step[k].d);
     add_elements(beams, (double)INFINITY, &top);
+    if (springs) beams_stiffen(beams);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const int64_t row = beams->node[k].row[c];
@@ -334,7 +336,8 @@ static int64_t count_below(struct beams *beams, double omega2)
     return envelope_factor(&beams->matrix);
 }
 
-/* As of solids, a hundredth of the longest period (T-93). */
+/* As of solids, a hundredth of the longest period (T-93) that bends beams without springs. Springs
+ * raise this frequency and those above it. */
 double beams_longest_step(struct beams *beams)
 {
     enum { PARTS = 100 };
@@ -350,10 +353,10 @@ double beams_longest_step(struct beams *beams)
     }
     double low = ROUNDING * high;
     for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined[0] >= 0;
-    const int64_t free = joined ? count_below(beams, low) : count_free(beams);
+    const int64_t free = joined ? count_below(beams, low, false) : count_free(beams);
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
-        *(count_below(beams, middle) > free ? &high : &low) = middle;
+        *(count_below(beams, middle, true) > free ? &high : &low) = middle;
     }
     const double swing = max2(elementary_hypot(g[0], g[1]) / length, 1e-300);
     return min2(2 * PI / sqrt(high), 2 * PI / sqrt(swing)) / PARTS;

@@ -3,11 +3,13 @@
  * damping, the force that a probe has, and input that is refused. */
 #include "rig.h"
 #include "beam/springs.h"
+#include "geometry/load.h"
 #include "time/energy.h"
 #include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static struct rig rig;
 
@@ -85,6 +87,50 @@ static void test_a_hanging_bar_pulls_with_its_weight(void)
     assert_near(1e-6, -2.0 / 40, rig.sim.beams.state[5].x[1], "displacement");
 }
 
+/* A cantilever of bending stiffness 1 N m and 1 kg/m, which stiff springs hold at 0.5 m and at its
+ * end: periods of its first mode, by the rising zeros of the velocity at 0.25 m. */
+#define SPRUNG                                                                                   \
+    "dp = 5 cm\nend_time = 1e6\n[beam b]\nshape = polyline: 0, 0; 1, 0\naxial_stiffness = 1e6\n" \
+    "bending_stiffness = 1\nmass = 1\nclamp = 0, 0\nvelocity = 0, 1e-4*x*(0.5-x)*(1-x)\n"        \
+    "[spring s]\nbody = b\nstiffness = 1e7\nfrom = 0.5, 0\nto = 0.5, -1\n"                      \
+    "[spring t]\nbody = b\nstiffness = 1e7\nfrom = 1, 0\nto = 1, -1\n"
+static double sprung_period(const char *step)
+{
+    enum { PERIODS = 10 };
+    rig_open(&rig, SPRUNG, step, NULL);
+    const double start = total();
+    double first = 0, v_old = -1, t_old = 0;
+    for (int n = -1; n < PERIODS;) {
+        rig_steps(&rig, 1, 1e6);
+        const double v = rig.sim.beams.state[5].v[1], t = rig.sim.state.time;
+        assert_near(1e-6 * start, start, total(), "energy");
+        if (v_old < 0 && v >= 0 && ++n == 0) first = t_old + (t - t_old) * v_old / (v_old - v);
+        if (n == PERIODS) first = (t_old + (t - t_old) * v_old / (v_old - v) - first) / PERIODS;
+        v_old = v;
+        t_old = t;
+    }
+    rig_close(&rig);
+    return first;
+}
+
+static void test_stiff_springs_shorten_the_step(void)
+{
+    const double exact = sprung_period("numerics.fixed_step=2e-4");
+    assert_near(0.01 * exact, exact, sprung_period("numerics.cfl=0.2"), "period");
+}
+
+/* One sentence says all. */
+static void refuses_by_one(const char *spring, const char *why)
+{
+    struct scene scene;
+    struct diag d = {0};
+    char text[400];
+    snprintf(text, sizeof text, BAR("") "%s", spring);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, text, "t.cfg", 0, NULL, &d));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
+    TEST_ASSERT_NULL_MESSAGE(strchr(d.text, '\n'), d.text);
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(BAR("") SPRING("s", "from = 0, 0.2\nto = 0, 1\n"),
@@ -96,6 +142,9 @@ static void test_bad_input_is_refused(void)
         "leave `other` out");
     rig_refuses(BAR("") "[spring s]\nbody = c\nstiffness = 1\nto = 0, 1\n",
                 "there is no [rigid] or [beam] of that name");
+    refuses_by_one("[spring s]\nbody = b\nother = b\nstiffness = 1\nto = 0, 1\n",
+                   "other = b: there is no [rigid] of that name");
+    refuses_by_one("[spring s]\nstiffness = 1\nto = 0, 1\n", "[spring s] lacks `body`");
 }
 
 int main(void)
@@ -105,6 +154,7 @@ int main(void)
     RUN_TEST(test_slack_lines_keep_the_energy);
     RUN_TEST(test_a_damper_takes_what_theory_says);
     RUN_TEST(test_a_hanging_bar_pulls_with_its_weight);
+    RUN_TEST(test_stiff_springs_shorten_the_step);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
