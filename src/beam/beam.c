@@ -141,6 +141,23 @@ static enum err join(struct beams *beams, int k, const struct hinge_point *at, b
     return ERR_OK;
 }
 
+/* Where several hold a place, they move alike. */
+static enum err refuse_other_motion(const struct beams *beams, const struct beam_node *node,
+                                    int mover, int line, struct diag *d)
+{
+    const struct scene *const scene = beams->scene;
+    const int movers[] = {node->mover, mover};
+    struct section_title by[2] = {{"none"}, {"none"}};
+    if (node->row[0] >= 0 || mover == node->mover) return ERR_OK;
+    for (int k = 0; k < 2; k++)
+        if (movers[k] >= 0) by[k] = section_title(&scene->motion[movers[k]].common);
+    return fail_at(d, scene, line,
+                   "[beam %s]: those that hold the beam at %g, %g have different motions, %s and "
+                   "%s; leave one `clamp` or `hinge` out, or give both the same motion",
+                   beams->beam[node->beam].given->common.name, node->X[0], node->X[1], by[0].text,
+                   by[1].text);
+}
+
 /* Holds the node nearest to each point: its displacements, with clamps its rotation, too. */
 static enum err hold(struct beams *beams, int beam, const struct hinge_list *list, bool turns,
                      struct diag *d)
@@ -170,8 +187,10 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
         node->body = body;
         node->pivots = turns;
         if (body >= 0) continue;
+        const int mover = mover_of(beams->scene, given, at->other);
+        TRY(refuse_other_motion(beams, node, mover, at->line, d));
         for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
-        node->mover = mover_of(beams->scene, given, at->other);
+        node->mover = mover;
     }
     return ERR_OK;
 }
@@ -239,15 +258,20 @@ static enum err create_springs(struct beams *beams, struct arena *a, struct diag
 /* --- unknowns --- */
 
 /* What holds one of them holds all. */
-static void share_holds(struct beams *beams)
+static enum err share_holds(struct beams *beams, struct diag *d)
 {
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             struct beam_node *const to = owner_of(beams, k, c);
-            if (beams->node[k].row[c] >= 0 || to == &beams->node[k]) continue;
+            const struct beam_node *const from = &beams->node[k];
+            if (from->row[c] >= 0 || to == from) continue;
+            if (c == 0)
+                TRY(refuse_other_motion(beams, to, from->mover,
+                                        beams->beam[from->beam].given->common.line, d));
             to->row[c] = -1;
-            to->mover = beams->node[k].mover;
+            to->mover = from->mover;
         }
+    return ERR_OK;
 }
 
 static void share_rows(struct beams *beams)
@@ -283,7 +307,7 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
                                 struct diag *d)
 {
     int64_t n = 0;
-    share_holds(beams);
+    TRY(share_holds(beams, d));
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const struct beam_node *const node = &beams->node[k];

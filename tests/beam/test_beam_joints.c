@@ -239,6 +239,26 @@ static void test_bad_input_is_refused(void)
                 "[rigid r] is more than a spacing from it");
 }
 
+/* Holds of a place that move alike are one; others contradict each other. */
+static void test_holds_that_move_apart_are_refused(void)
+{
+#define WALLS                                                               \
+    "[wall w]\nshape = box -1, -1, -0.5, -0.5\nmotion = m\n[motion m]\n"    \
+    "kind = velocity\nvelocity = 1, 0\n[wall o]\nshape = box 2, 2, 3, 3\n"  \
+    "motion = n\n[motion n]\nkind = velocity\nvelocity = 0, 1\n"
+#define OTHER(rest)                                                         \
+    "[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"            \
+    "thickness = 1 cm\ndensity = 1\n" rest
+    static const char why[] = "have different motions, [motion m] and [motion n]; leave one";
+    rig_refuses(BEAM("clamp = 1, 0, w\n") OTHER("clamp = 1, 0, b\nclamp = 1, 0, o\n") WALLS,
+                "have different motions");
+    rig_refuses(BEAM("hinge = 1, 0, w\nclamp = 1, 0, o\n") WALLS, why);
+    rig_refuses(BEAM("clamp = 1, 0, w\n") OTHER("hinge = 1, 0, b\nclamp = 1, 0\n") WALLS,
+                "[motion m] and none");
+    rig_open(&rig, BEAM("clamp = 1, 0, w\n") OTHER("clamp = 1, 0, b\nclamp = 1, 0, w\n") WALLS,
+             NULL);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -249,5 +269,6 @@ int main(void)
     RUN_TEST(test_a_heavy_flap_below_a_light_float);
     RUN_TEST(test_a_soft_flap_below_a_raft_that_turns);
     RUN_TEST(test_bad_input_is_refused);
+    RUN_TEST(test_holds_that_move_apart_are_refused);
     return UNITY_END();
 }
