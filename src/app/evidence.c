@@ -11,12 +11,6 @@
 enum evidence_column { SCENE, ACCURACY, CASE, ERROR, RESOLUTION, WHAT, PERCENT };
 enum { MAX_ERRORS = 256 };
 
-static int by_size(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The errors of all problems of a kind, each at its finest resolution that is no finer than n; the
  * smallest first. The rows of a problem are by resolution. */
 static int known_errors(enum scene_kind kind, const char *accuracy, double n,
@@ -38,7 +32,7 @@ static int known_errors(enum scene_kind kind, const char *accuracy, double n,
         before_length = length;
         error[count++] = strtod(csv_field(line, PERCENT, &length), NULL);
     }
-    qsort(error, (size_t)count, sizeof *error, by_size);
+    qsort(error, (size_t)count, sizeof *error, geometry_ascending);
     return count;
 }
 
@@ -48,13 +42,14 @@ static double particles_across(const struct scene *scene, enum kind kind, int bo
     const struct scene_points *const p = &scene->points[kind];
     const struct scene_lattice *const l =
         kind == KIND_SOLID ? &scene->solid_lattice[body] : &scene->lattice;
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, at[2], n[2];
+    struct box2 box = box2_empty();
+    double at[2], n[2];
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body) continue;
         lattice_place(l, p->x[i], p->y[i], at);
-        for (int c = 0; c < 2; c++) low[c] = min2(low[c], at[c]), high[c] = max2(high[c], at[c]);
+        box2_include(&box, at[0], at[1]);
     }
-    for (int c = 0; c < 2; c++) n[c] = floor((high[c] - low[c]) / l->spacing[c] + 1.5);
+    for (int c = 0; c < 2; c++) n[c] = floor((box.high[c] - box.low[c]) / l->spacing[c] + 1.5);
     return kind == KIND_SOLID ? min2(n[0], n[1]) : n[1];
 }
 

@@ -4,19 +4,16 @@
 
 enum { ANY = -1 };
 
-/* Whether the case gives a gravity, before it is read. */
-static bool gives_gravity(const struct reader *r)
-{
-    const struct entry *const e = case_entry(r, 0, "gravity");
-    return case_entry(r, 0, "gravity_file") || (e && e->value[strspn(e->value, "0., ")]);
-}
-
+/* Before the case's gravity is read. */
 static enum scene_kind kind_of_scene(const struct reader *r)
 {
     const struct scene *const scene = r->scene;
+    const struct entry *const e = case_entry(r, 0, "gravity");
+    const bool heavy =
+        case_entry(r, 0, "gravity_file") || (e && e->value[strspn(e->value, "0., ")]);
     if (!scene->n_fluid) return SCENE_SOLID;
     if (scene->n_solid) return SCENE_COUPLED;
-    return scene->n_inflow && !gives_gravity(r) ? SCENE_STREAM : SCENE_FLUID;
+    return scene->n_inflow && !heavy ? SCENE_STREAM : SCENE_FLUID;
 }
 
 enum {
@@ -62,18 +59,13 @@ static const struct preset {
     {false, SOLID, ACCURACY_FINE, ANY, SECTION_numerics, "h_over_dp", 1.8},
 };
 
-static bool preset_is_for(const struct preset *row, enum scene_kind kind)
-{
-    return row->kinds & 1u << kind;
-}
-
 bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
                  double *value)
 {
     for (size_t k = 0; k < COUNT_OF(presets); k++) {
         const struct preset *const row = &presets[k];
         if (!row->of_scheme || row->choice != (int)scheme || row->section != section) continue;
-        if (!preset_is_for(row, kind) || strcmp(row->key, key) != 0) continue;
+        if (!(row->kinds & 1u << kind) || strcmp(row->key, key) != 0) continue;
         *value = row->value;
         return true;
     }
@@ -108,7 +100,7 @@ void case_apply_presets(struct reader *r)
     r->scene->kind = kind_of_scene(r);
     for (size_t k = 0; k < COUNT_OF(presets); k++) {
         const struct preset *const row = &presets[k];
-        if (!preset_is_for(row, r->scene->kind) ||
+        if (!(row->kinds & 1u << r->scene->kind) ||
             row->choice != (row->of_scheme ? scheme : accuracy) ||
             (row->integrator != ANY && row->integrator != integrator))
             continue;

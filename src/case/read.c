@@ -79,13 +79,6 @@ static enum err inherit(struct reader *r, const struct param *like, struct scene
                      section_table[like->section].word, nearest_hint(&near));
 }
 
-/* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
-static void drop_rivals(struct reader *r, int section, struct scene_fluid *f)
-{
-    if (case_entry(r, section, "surface")) f->pressure.e[0] = NULL;
-    if (case_entry(r, section, "pressure")) f->surface = (double)NAN;
-}
-
 /* --- keys --- */
 
 static enum err unknown_key(struct reader *r, int id)
@@ -108,7 +101,10 @@ static enum err read_section(struct reader *r, int section)
     void *const target = section_of(r, &r->sections[section]);
     r->entry = case_entry(r, section, "like");
     if (like && r->entry) TRY(case_go_on(r, inherit(r, like, target)));
-    if (id == SECTION_fluid) drop_rivals(r, section, target);
+    /* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
+    struct scene_fluid *const fluid = id == SECTION_fluid ? target : NULL;
+    if (fluid && case_entry(r, section, "surface")) fluid->pressure.e[0] = NULL;
+    if (fluid && case_entry(r, section, "pressure")) fluid->surface = (double)NAN;
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = r->entry = &r->entries[k];
         if (e->section != section) continue;

@@ -5,17 +5,14 @@
 #include "beam/springs.h"
 #include "geometry/motion.h"
 
-/* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields;
- * this one is smooth and vanishes at the reach. */
-static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
-
-/* Place of the k-th particle from the probe in units of the reach, and its weight. */
+/* Place of the k-th particle from the probe in units of the reach, and its weight. Any positive one
+ * reproduces linear fields; this one is smooth and vanishes at the reach. */
 static double offset(const struct probe *probe, const struct particles *particles, int k,
                      double reach, double *x, double *y)
 {
     *x = (particles->X[probe->particle[k]] - probe->point[0]) / reach;
     *y = (particles->Y[probe->particle[k]] - probe->point[1]) / reach;
-    return weight_at(*x * *x + *y * *y);
+    return square(square(max2(0, 1 - (*x * *x + *y * *y))));
 }
 
 /* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of
@@ -71,13 +68,6 @@ static enum err attach_to_beam(struct probe *probe, const struct scene_probe *sp
     return fail_at(d, sim->scene, sp->common.line,
                    "[probe %s] point = %g, %g is %.3g m from the line of [beam %s]; move it there",
                    sp->common.name, probe->point[0], probe->point[1], off, given->common.name);
-}
-
-static int quantity_columns(int quantity)
-{
-    int n = 1;
-    for (const char *c = quantity_table[quantity].columns; *c; c++) n += *c == ',';
-    return n;
 }
 
 /* What must bring fields up to date before a probe reads them, each more than the one before. */
@@ -140,7 +130,8 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
     *probe = (struct probe){.quantity = sp->quantity,
                             .target = scene_probe_target(sp),
                             .direction = sp->direction,
-                            .columns = quantity_columns(sp->quantity),
+                            .columns = slice_count(
+                                slice_of(quantity_table[sp->quantity].columns), ','),
                             .average = sp->average,
                             .motion = -1,
                             .kind = KIND_SOLID,
@@ -175,15 +166,6 @@ bool probe_column(const struct scene_probe *sp, int column, char *name, size_t s
     return length > 0;
 }
 
-/* Appends the columns of a probe, each after a comma. */
-static size_t name_columns(char *header, size_t size, size_t at, const struct scene_probe *sp)
-{
-    char name[PROBE_COLUMN_TEXT];
-    for (int c = 0; probe_column(sp, c, name, sizeof name); c++)
-        at += (size_t)snprintf(header + at, size - at, ",%s", name);
-    return at;
-}
-
 /* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`.
  */
 static enum err create_file(struct probes *probes, const struct scene *scene, int only,
@@ -192,6 +174,7 @@ static enum err create_file(struct probes *probes, const struct scene *scene, in
     struct probe_file *const f = &probes->file[probes->n_files];
     const size_t size = 8 + (size_t)probes->n * PROBE_MAX_COLUMNS * PROBE_COLUMN_TEXT;
     char *const header = arena_alloc(a, size, 1, "header of probes.csv", d);
+    char name[PROBE_COLUMN_TEXT];
     if (!header) return ERR_MEMORY;
     size_t at = (size_t)snprintf(header, size, "time_s");
     *f = (struct probe_file){.header = header, .columns = 1};
@@ -200,7 +183,8 @@ static enum err create_file(struct probes *probes, const struct scene *scene, in
         if (only >= 0 ? k != only : sp->interval > 0) continue;
         probes->probe[k].file = probes->n_files;
         probes->probe[k].column = f->columns;
-        at = name_columns(header, size, at, sp);
+        for (int c = 0; probe_column(sp, c, name, sizeof name); c++)
+            at += (size_t)snprintf(header + at, size - at, ",%s", name);
         f->columns += probes->probe[k].columns;
         f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;
     }

@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/series.h"
 #include "base/csv.h"
+#include "expr/expr.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-static int count_columns(const char *header)
-{
-    int n = 1;
-    for (; *header; header++) n += *header == ',';
-    return n;
-}
 
 /* One write() per row, so that a killed run leaves complete rows. */
 static enum err append(struct series *s, const char *text, size_t length, struct diag *d)
@@ -30,7 +24,7 @@ static enum err begin(struct series *s, const char *folder, const char *name, co
                       struct diag *d)
 {
     s->fd = -1;
-    s->columns = count_columns(header);
+    s->columns = slice_count(slice_of(header), ',');
     if (s->columns > SERIES_MAX_COLUMNS)
         return diag_fail(d, ERR_INPUT,
                          "%s: would have %d columns, but at most %d are allowed; use fewer probes, "
