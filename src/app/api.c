@@ -2,7 +2,6 @@
  * The functions of include/sphfsi.h on a simulation that the calling program steps. */
 #include "app/session.h"
 #include "output/rows.h"
-#include "time/relax.h"
 #include "check/check.h"
 #include "output/point_data.h"
 
@@ -12,7 +11,7 @@
 _Static_assert((int)SPHFSI_INTERRUPT == (int)ERR_INTERRUPT && (int)SPHFSI_INPUT == (int)ERR_INPUT &&
                    (int)SPHFSI_MEMORY == (int)ERR_MEMORY && (int)SPHFSI_IO == (int)ERR_IO &&
                    (int)SPHFSI_GUARD == (int)ERR_GUARD,
-               "the public results are those of base/error.h");
+               "the public results are those of base/base.h");
 _Static_assert((int)SPHFSI_PROBE_COLUMNS == (int)PROBE_MAX_COLUMNS, "values of a probe");
 _Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)KIND_WALL &&
                    (int)SPHFSI_SOLID == (int)KIND_SOLID,
@@ -254,18 +253,6 @@ const char *sphfsi_field_name(const struct sphfsi_simulation *handle, enum sphfs
     return field_name(&handle->session.simulation, (enum kind)kind, k);
 }
 
-static enum sphfsi_type type_of(const struct field_info *f)
-{
-    if (strcmp(f->type, "double") == 0) return SPHFSI_DOUBLE;
-    return f->size == 8 ? SPHFSI_INT64 : SPHFSI_INT32;
-}
-
-/* What an evaluation finds and integrators then weigh or exchange. */
-static bool is_evaluated(const struct field_info *f)
-{
-    return f->keep == KEEP_DERIVED || strcmp(f->name, "ax") == 0 || strcmp(f->name, "ay") == 0;
-}
-
 static bool view_array(struct simulation *sim, enum kind kind, const char *name,
                        struct sphfsi_view *view)
 {
@@ -273,13 +260,18 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         if (strcmp(f->name, name) != 0 || !field_array(particles, f)) continue;
-        if (is_evaluated(f)) (kind == KIND_WALL ? simulation_wall_forces : simulation_refresh)(sim);
+        /* What an evaluation finds and integrators then weigh or exchange. */
+        if (f->keep == KEEP_DERIVED || strcmp(name, "ax") == 0 || strcmp(name, "ay") == 0)
+            (kind == KIND_WALL ? simulation_wall_forces : simulation_refresh)(sim);
         const void *const data = field_array(particles, f); /* integrators exchange arrays */
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
             solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
         if (kind == KIND_FLUID && data == particles->p)
             fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
-        *view = (struct sphfsi_view){data, particles->n, type_of(f), 1, f->unit, f->meaning};
+        const enum sphfsi_type type = strcmp(f->type, "double") == 0 ? SPHFSI_DOUBLE
+                                      : f->size == 8                 ? SPHFSI_INT64
+                                                                     : SPHFSI_INT32;
+        *view = (struct sphfsi_view){data, particles->n, type, 1, f->unit, f->meaning};
         return true;
     }
     return false;

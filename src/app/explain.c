@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * --explain: what would be simulated and what it would cost, as text and as JSON. */
-#include "app/session.h"
 #include "app/forecast.h"
 #include "check/check.h"
 #include "output/report.h"
-#include "time/timestep.h"
 
 static void say_scene(const struct session *session, const struct sphfsi_options *o)
 {

@@ -8,9 +8,6 @@
 #include "output/report.h"
 #include "output/rows.h"
 #include "output/snapshot.h"
-#include "time/guards.h"
-#include "time/relax.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 
 #include <errno.h>

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "sphfsi.h"
-#include "base/threads.h"
 #include "output/json.h"
 #include "time/simulation.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/arena.h"
-#include "base/threads.h"
+#include "base/base.h"
 
 #include <stdlib.h>
 #ifdef __linux__

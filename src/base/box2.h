@@ -2,7 +2,7 @@
  * The smallest box around points. */
 #pragma once
 
-#include "base/macros.h"
+#include "base/base.h"
 
 struct box2 {
     double low[2], high[2];

@@ -2,7 +2,7 @@
  * Text tables: rows of numbers, or fields with commas between them. */
 #pragma once
 
-#include "base/error.h"
+#include "base/base.h"
 
 /* The line after the one at `at`, or the end of the text. */
 const char *csv_next_line(const char *at);

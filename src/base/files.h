@@ -3,7 +3,7 @@
  * one). */
 #pragma once
 
-#include "base/error.h"
+#include "base/base.h"
 
 enum { PATH_BYTES = 4096 };
 

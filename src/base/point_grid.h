@@ -2,8 +2,7 @@
  * Points in square cells, in a hash table: sparse scenes need no more memory than dense ones. */
 #pragma once
 
-#include "base/arena.h"
-#include "base/hash.h"
+#include "base/base.h"
 
 struct point_grid {
     double side;   /* of a cell, m */

@@ -2,7 +2,7 @@
  * A point and a segment: the geometry of contact between solids, rigid bodies and beams alike. */
 #pragma once
 
-#include "base/macros.h"
+#include "base/base.h"
 
 /* A place on a segment: 0 to 1 from its start to its end, and the vector from there to the point.
  */

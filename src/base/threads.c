@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/threads.h"
+#include "base/base.h"
 
 #include <pthread.h>
 #include <time.h>

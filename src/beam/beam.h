@@ -4,7 +4,6 @@
 #pragma once
 
 #include "beam/element.h"
-#include "case/scene.h"
 #include "implicit/envelope.h"
 #include "rigid/rigid.h"
 

@@ -5,7 +5,6 @@
 #include "beam/joints.h"
 #include "beam/springs.h"
 #include "beam/wet.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 
 #include <float.h>

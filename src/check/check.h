@@ -4,7 +4,6 @@
  * refused where it is read or sampled. */
 #pragma once
 
-#include "base/point_grid.h"
 #include "geometry/sampling.h"
 #include "time/simulation.h"
 

@@ -3,7 +3,6 @@
  * tells the order. */
 #pragma once
 
-#include "case/effects.h"
 #include "fluid/fluid.h"
 #include "solid/solid.h"
 

@@ -3,7 +3,6 @@
  * Included by force_mixed.c and force_double.c after the header of their precision. */
 
 #include "coupling/coupling.h"
-#include "particles/kernel.h"
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */
 #include "fluid/pair_laws.h"

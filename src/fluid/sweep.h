@@ -6,9 +6,7 @@
  * lane of a group of four has its own sum over candidates, so the bits do not depend on the number
  * of groups in a vector. */
 
-#include "fluid/eos.h"
 #include "fluid/fluid.h"
-#include "particles/kernel.h"
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */
 #include "fluid/pair_laws.h"

@@ -202,7 +202,9 @@ static bool edge_crossing(const struct outline *o, int k, double y, double *x)
     return true;
 }
 
-int outline_crossings(const struct outline *o, double y, double *from)
+/* The intervals of the line at height y inside a piece. `from` has memory for max(n, 2). Neighbours
+ * with a common edge neither overlap nor leave a gap: both use the same arithmetic at it. */
+static int crossings_of(const struct outline *o, double y, double *from)
 {
     if (!o->n) {
         const double height = y - o->centre[1];
@@ -223,7 +225,7 @@ bool outline_contains(const struct outline *o, double x, double y)
     double crossing, ends[2];
     bool inside = false;
     if (!box2_contains(&o->box, x, y)) return false;
-    if (!o->n) return outline_crossings(o, y, ends) && ends[0] <= x && x < ends[1];
+    if (!o->n) return crossings_of(o, y, ends) && ends[0] <= x && x < ends[1];
     for (int k = 0; k < o->n; k++) inside ^= edge_crossing(o, k, y, &crossing) && crossing <= x;
     return inside;
 }
@@ -295,7 +297,7 @@ static int merged(const struct outlines *o, double y, double *to)
     int n = 0, kept = 0;
     for (int k = 0; k < o->n; k++) {
         if (y < o->item[k].box.low[1] || y > o->item[k].box.high[1]) continue;
-        n += outline_crossings(&o->item[k], y, to + n);
+        n += crossings_of(&o->item[k], y, to + n);
     }
     qsort(to, (size_t)(n / 2), 2 * sizeof *to, by_start);
     for (int k = 0; k + 1 < n; k += 2) {

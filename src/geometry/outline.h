@@ -41,21 +41,16 @@ enum err body_outlines_of(struct body_outlines *o, const struct scene *scene,
                           struct arena *a, struct diag *d) SPHFSI_CHECKED;
 bool body_outlines_contain(const struct body_outlines *o, double x, double y);
 
-/* The intervals [from[0], from[1]), [from[2], from[3]) ... of the line at height y inside a piece;
- * returns the count of numbers. `from` has memory for max(n, 2). Neighbours with a common edge
- * neither overlap nor leave a gap: both sides intersect an edge with the same arithmetic. */
-int outline_crossings(const struct outline *o, double y, double *from);
-
 /* Rotates pieces into the axes of a lattice at `angle`; the shapes themselves do not change. */
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The intervals of the line at height y inside `add` and not inside `minus` (NULL: none), in the
- * format of outline_crossings, merged where they touch. `to` and `scratch` each hold outlines_ends
- * of both. */
+/* The intervals [to[0], to[1]), [to[2], to[3]) ... of the line at height y inside `add` and not
+ * inside `minus` (NULL: none), merged where they touch; returns the count of numbers. `to` and
+ * `scratch` each hold outlines_ends of both. */
 int outlines_union(const struct outlines *add, const struct outlines *minus, double y, double *to,
                    double *scratch);
-/* The largest count that outline_crossings returns for all pieces together. */
+/* The largest count of ends of intervals on a line inside the pieces, each for itself. */
 int outlines_ends(const struct outlines *o);
 
 /* Integrals over `add` minus `minus` by lines at most `step` apart, exact for polygons that do not

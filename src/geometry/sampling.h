@@ -3,7 +3,6 @@
  * data of all points together (geometry/extent.c). */
 #pragma once
 
-#include "base/box2.h"
 #include "case/case.h"
 #include "particles/particles.h"
 #include "geometry/outline.h"

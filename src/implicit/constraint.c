@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Hinges within implicit steps (T-90a): their forces are unknowns beside the displacements. */
-#include "implicit/constraint.h"
+#include "implicit/implicit.h"
 #include "base/cholesky.h"
 #include "solid/hinges.h"
 

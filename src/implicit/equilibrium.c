@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Static equilibrium of solids by Newton's method (T-78a). Where it does not converge at once, a
  * part of the forces of the start is left out at first: load steps. */
-#include "implicit/equilibrium.h"
-#include "implicit/constraint.h"
+#include "implicit/implicit.h"
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"

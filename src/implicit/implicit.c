@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of the solid (T-90 to T-93): the midpoint rule with the mean stress over the
  * step, solved by Newton's method with a factored matrix that is kept while it serves. */
-#include "implicit/constraint.h"
+#include "implicit/implicit.h"
 
 #include <float.h>
 
@@ -303,26 +303,23 @@ static bool step(struct solid *solid, struct particles *particles, double dt, in
     return done;
 }
 
-void implicit_step(struct solid *solid, struct particles *particles, double dt)
-{
-    struct loads *const loads = solid->loads;
-    struct hinges *const hinges = solid->hinges;
-    solid->implicit->iterations = 0;
-    solid->within_step = take_mean_stress;
-    if (loads) loads->released = true;
-    if (hinges) hinges->released = true;
-    solid->implicit->failed |= !step(solid, particles, dt, HALVINGS);
-    if (loads) loads->released = false;
-    if (hinges) hinges->released = false;
-    solid->within_step = NULL;
-}
-
 void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
                       bool centred)
 {
+    struct loads *const loads = solid->loads;
+    struct hinges *const hinges = solid->hinges;
     if (!implicit_is_next(solid)) {
         solid_advance(solid, particles, dt, n, centred);
         return;
     }
-    for (int k = 0; k < n; k++, solid->time += dt) implicit_step(solid, particles, dt);
+    solid->within_step = take_mean_stress;
+    if (loads) loads->released = true;
+    if (hinges) hinges->released = true;
+    for (int k = 0; k < n; k++, solid->time += dt) {
+        solid->implicit->iterations = 0;
+        solid->implicit->failed |= !step(solid, particles, dt, HALVINGS);
+    }
+    if (loads) loads->released = false;
+    if (hinges) hinges->released = false;
+    solid->within_step = NULL;
 }

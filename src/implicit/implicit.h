@@ -59,9 +59,6 @@ SPHFSI_INLINE bool implicit_is_next(const struct solid *solid)
     return solid->implicit && !solid->contact;
 }
 
-/* A step of dt from the present time, which its caller advances. */
-void implicit_step(struct solid *solid, struct particles *particles, double dt);
-
 /* n steps of dt: implicit ones, or those of solid_advance. */
 void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
                       bool centred);
@@ -90,3 +87,40 @@ void implicit_correct(const struct solid *solid, struct particles *particles);
  * without any. From the number of negative pivots of K - omega^2 M, which is the number of
  * frequencies below omega (Sylvester), three of them zero for each free piece. */
 double implicit_period(struct solid *solid, struct particles *particles);
+
+/* --- constraint.c: hinges within implicit steps (T-90a) --- */
+
+enum err constraint_create(struct implicit *implicit, const struct hinges *hinges, struct arena *a,
+                           struct diag *d) SPHFSI_CHECKED;
+
+/* What forces at the hinges do to their points, with the present factors. */
+void constraint_factor(struct implicit *implicit, const struct hinges *hinges);
+
+/* Where the points are sought for the time: there, or halfway from where they are. */
+void constraint_begin(struct implicit *implicit, struct hinges *hinges,
+                      const struct particles *particles, double time, bool middle);
+
+/* Adds to the residual what the hinges' forces must be changed by, so that the solution leads the
+ * points to their places. */
+void constraint_solve(struct implicit *implicit, struct hinges *hinges,
+                      const struct particles *particles);
+
+/* After a step of dt: the hinges' forces and the velocities of their points, for their work. */
+void constraint_end(const struct implicit *implicit, struct hinges *hinges,
+                    const struct particles *particles, double dt);
+
+/* --- equilibrium.c: static equilibrium of solids without fluid (T-78a) --- */
+
+struct equilibrium {
+    bool found;
+    int corrections; /* solutions with the matrix */
+    int load_steps;
+};
+
+/* Seeks the displacements without velocity at which all forces at t = 0 balance. Not found:
+ * the particles are as they were; there is none, it is not stable, surfaces come near each other
+ * during the search (contact: of the solid, or NULL), or something acts that the matrix does not
+ * have. ERR_GUARD: a body that nothing holds or could hold. */
+enum err equilibrium_find(struct equilibrium *found, const struct solid *solid,
+                          struct particles *particles, const struct scene *scene,
+                          struct contact *contact, struct diag *d) SPHFSI_CHECKED;

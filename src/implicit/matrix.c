@@ -3,7 +3,7 @@
  * numbering of the unknowns, and the springs of hourglass control. */
 
 #include "base/box2.h"
-#include "implicit/constraint.h"
+#include "implicit/implicit.h"
 #include "solid/loads.h"
 
 static const char what[] = "matrix of the solid";

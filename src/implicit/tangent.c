@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The matrix of T-92 and its factors. */
 
-#include "implicit/constraint.h"
+#include "implicit/implicit.h"
 #include "implicit/stress.h"
 
 /* dP/dF of one particle, Pa, in the order xx, xy, yx, yy. */

@@ -114,24 +114,6 @@ double fluid_level(const struct simulation *sim, double x, double y)
     return wet ? top : y;
 }
 
-static void count(void *n, int64_t i, double x, double y, double r)
-{
-    (void)i, (void)x, (void)y, (void)r;
-    ++*(int *)n;
-}
-
-/* The thinnest tongue of water is a row of particles; the first of them has two others within
- * reach. */
-static bool belongs_together(const struct simulation *sim, int64_t i)
-{
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
-    int n = 0; /* with itself */
-    cells_each_near(&sim->cells, KIND_FLUID, particles,
-                    (double[]){particles->x[i], particles->y[i]}, KERNEL_REACH * sim->fluid.k.h,
-                    count, &n);
-    return n >= 3;
-}
-
 double fluid_front(const struct simulation *sim, int direction)
 {
     const struct particles *const particles = &sim->kind[KIND_FLUID];
@@ -144,7 +126,11 @@ double fluid_front(const struct simulation *sim, int direction)
         const int64_t i = sign > 0 ? particles->n - 1 - k : k;
         const double ahead = sign * coordinate[i];
         any = max2(any, ahead);
-        if (ahead > foremost && belongs_together(sim, i)) foremost = ahead;
+        /* The thinnest tongue of water is a row of particles; the first of them has two others
+         * within reach. */
+        if (ahead > foremost &&
+            particles_near(sim, particles->x[i], particles->y[i], KIND_FLUID + 1) >= 3)
+            foremost = ahead;
     }
     if (particles->n == 0) return (double)NAN;
     /* The water ends half a spacing beyond the last particle's centre. */

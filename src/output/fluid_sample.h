@@ -2,7 +2,7 @@
  * The fluid at a point, at its surface, at its front, through a line: for probes. */
 #pragma once
 
-#include "time/state.h"
+#include "time/advance.h"
 
 /* The fluid at a fixed point, by the kernel over its particles within reach. Positions and
  * densities must be up to date, as they are between two steps; for the pressure accelerations

@@ -5,7 +5,6 @@
 #include "coupling/impulse.h"
 #include "geometry/motion.h"
 #include "time/energy.h"
-#include "time/relax.h"
 
 #include <inttypes.h>
 

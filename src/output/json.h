@@ -2,7 +2,7 @@
  * Writes indented JSON. A number that is not finite becomes null. */
 #pragma once
 
-#include "base/macros.h"
+#include "base/base.h"
 
 struct json {
     FILE *file;

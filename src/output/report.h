@@ -2,9 +2,7 @@
  * summary.json: parameters, progress, cost, conservation and extremes of a run. */
 #pragma once
 
-#include "output/json.h"
 #include "output/reference.h"
-#include "time/simulation.h"
 
 /* What a summary holds besides the simulation itself. */
 struct record {

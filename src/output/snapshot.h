@@ -3,7 +3,6 @@
 #pragma once
 
 #include "base/files.h"
-#include "time/simulation.h"
 #include "output/snapshot_file.h"
 
 /* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the

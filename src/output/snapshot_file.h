@@ -2,7 +2,6 @@
  * For snapshot.c: the datasets of fields.vtkhdf, and appending to them with HDF5. */
 #pragma once
 
-#include "case/scene.h"
 #include "output/point_data.h"
 
 #include <hdf5.h>

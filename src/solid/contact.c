@@ -2,7 +2,6 @@
 #include "solid/contact.h"
 #include "case/params.h"
 #include "base/elementary.h"
-#include "solid/contact_pair.h"
 
 /* --- potential of a pair --- */
 
@@ -160,7 +159,7 @@ void contact_forces(struct contact *contact, struct particles *particles, double
             contact_add_force(contact, particles, a, pair->force[1]);
             contact_add_force(contact, particles, b, pair->force[2]);
         }
-        if (contact->friction) contact_friction_forces(contact, particles);
+        if (contact->friction) contact_friction(contact, particles, particles);
         /* The work of driven walls is booked as one number, too. */
         contact->touched |= contact->power != 0;
     }
@@ -188,7 +187,7 @@ double contact_energy(struct contact *contact, const struct particles *particles
     for (int64_t k = 0; k < contact->n_pairs; k++) sum += pair_energy(contact, &contact->pair[k]);
     if (!contact->friction) return sum;
     find_forces(contact);
-    return sum + contact_friction_energy(contact, particles);
+    return sum + contact_friction(contact, particles, NULL);
 }
 
 /* --- before a step --- */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Coulomb friction (T-62c, T-62d): a tangential spring with a slider between a point of a solid
  * and a place that moves with the surface which it presses. */
-#include "solid/contact_pair.h"
+#include "solid/contact.h"
 
 /* --- what presses a point --- */
 
@@ -158,19 +158,8 @@ static void add_friction(struct contact *contact, struct particles *particles, i
     contact_add_force(contact, particles, b, fb);
 }
 
-void contact_friction_forces(struct contact *contact, struct particles *particles)
-{
-    collect_loads(contact);
-    for (int32_t point = 0; point < contact->n_solid_points; point++) {
-        const struct contact_point *const p = &contact->point[point];
-        for (int k = 0; k < p->n_loads; k++) {
-            const struct friction_spring h = spring_at(contact, particles, point, &p->load[k]);
-            if (h.normal_force > 0) add_friction(contact, particles, point, &h);
-        }
-    }
-}
-
-double contact_friction_energy(struct contact *contact, const struct particles *particles)
+double contact_friction(struct contact *contact, const struct particles *particles,
+                        struct particles *move)
 {
     double sum = 0;
     collect_loads(contact);
@@ -178,7 +167,9 @@ double contact_friction_energy(struct contact *contact, const struct particles *
         const struct contact_point *const p = &contact->point[point];
         for (int k = 0; k < p->n_loads; k++) {
             const struct friction_spring h = spring_at(contact, particles, point, &p->load[k]);
-            if (h.force > 0)
+            if (move && h.normal_force > 0)
+                add_friction(contact, move, point, &h);
+            else if (!move && h.force > 0)
                 sum += 0.5 * square(min2(h.force, h.friction * h.normal_force)) / h.stiffness;
         }
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The distance and the law of a point and an edge, and the list of near ones. */
-#include "solid/contact_pair.h"
+#include "solid/contact.h"
 #include "case/params.h"
 #include "base/box2.h"
 #include "base/segment.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Surfaces of solids and walls as lines through their outermost particles: the alpha shape of each
  * group (Edelsbrunner, Kirkpatrick and Seidel 1983). */
-#include "solid/contact_pair.h"
+#include "solid/contact.h"
 #include "base/elementary.h"
 #include "base/segment.h"
 #include "geometry/outline.h"

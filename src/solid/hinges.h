@@ -2,7 +2,7 @@
  * Hinges: points of bodies that stay in place, on another body or on a wall (T-81). */
 #pragma once
 
-#include "solid/types.h"
+#include "solid/solid.h"
 
 /* A point of a body that stays in place, on another body or on a moving wall. */
 struct hinge {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/loads.h"
-#include "geometry/outline.h"
 #include "geometry/sampling.h"
 
 /* --- start --- */

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "geometry/motion.h"
-#include "solid/types.h"
+#include "solid/solid.h"
 
 /* One [load] section: its particles are `first` to `end` of the list. */
 struct load_region {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "solid/material.h"
-#include "solid/solid.h"
 
 /* A packed field of the particles from i on; a weight of a slot. */
 #define lane_of(s, number, i) vload((const real *)(s)->lane[number] + (i))

@@ -4,7 +4,6 @@
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
-#include "solid/solid.h"
 
 /* All forces but those of clamps and hinges, as accelerations into sx, sy, with every particle
  * free. */

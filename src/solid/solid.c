@@ -5,8 +5,6 @@
 #include "solid/hinges.h"
 #include "solid/loads.h"
 #include "case/effects.h"
-#include "case/params.h"
-#include "geometry/motion.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {
@@ -63,11 +61,13 @@ static void find_thickness(struct solid *solid, const struct particles *particle
     }
 }
 
-/* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
- * smaller. Without damping the effect on the motion accumulates: a steel strip without viscosity
- * gained 4e-4 of its energy in 0.14 s. With alpha_s = 0.001 it gained as much as in double. */
-const char *solid_needs_double(const struct solid *solid, const struct scene *scene,
-                               const struct particles *particles)
+/* Whether a body can turn freely, or has hardly any artificial viscosity, so that float is not
+ * sufficient. Float resolves the displacement gradient of a rotation to 1e-7, beside strains that
+ * may be smaller. Without damping the effect on the motion accumulates: a steel strip without
+ * viscosity gained 4e-4 of its energy in 0.14 s. With alpha_s = 0.001 it gained as much as in
+ * double. */
+static bool needs_double(const struct solid *solid, const struct scene *scene,
+                         const struct particles *particles)
 {
     bool held[SCENE_MAX_SECTIONS] = {false};
     for (int64_t i = 0; i < particles->n; i++) {
@@ -77,9 +77,8 @@ const char *solid_needs_double(const struct solid *solid, const struct scene *sc
             held[solid->body[k].bond] = true;
     }
     for (int k = 0; k < solid->n_bodies; k++)
-        if (!held[solid->body[k].bond] || scene->solid[k].artificial_viscosity < SOLID_DAMPED)
-            return scene->solid[k].common.name;
-    return NULL;
+        if (!held[solid->body[k].bond] || scene->solid[k].artificial_viscosity < 0.01) return true;
+    return false;
 }
 
 /* The packed fields that the scene needs. Sweeps in double precision use the particle fields
@@ -134,7 +133,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     const int choice = scene->numerics.solid_precision;
     const bool in_double =
         scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit ||
-        (choice == SOLID_PRECISION_AUTO && solid_needs_double(solid, scene, particles));
+        (choice == SOLID_PRECISION_AUTO && needs_double(solid, scene, particles));
     solid->sweeps = in_double ? &solid_sweeps_double : &solid_sweeps_mixed;
     TRY(packed_create(solid, a, particles, d));
     TRY(solid_stencil_create(solid, a, particles, d));

@@ -3,13 +3,162 @@
  * forces. */
 #pragma once
 
-#include "solid/types.h"
+#include "particles/particles.h"
+#include "case/scene.h"
+#include "base/simd.h"
 
-/* The name of a body that can turn freely, or has less artificial viscosity than SOLID_DAMPED, so
- * that float is not sufficient for it; NULL: none. */
-#define SOLID_DAMPED 0.01
-const char *solid_needs_double(const struct solid *solid, const struct scene *scene,
-                               const struct particles *particles);
+/* Constants of one body, SI. */
+struct solid_body {
+    double dp, h;      /* spacing and smoothing length of its particles */
+    double lambda, mu; /* Lame constants */
+    double density, young;
+    double mass;         /* of a particle per depth, rho0 dp^2 */
+    double viscosity;    /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
+    double sound_speed;  /* c_s of Eq. 29 */
+    double kappa;        /* Eq. 17 */
+    double damping_time; /* of Kelvin and Voigt, s; 0: none */
+    double mass_damping; /* beta of T-77, 1/s; 0: none */
+    double gravity[2];
+    int law, plane, gradient;
+    double thickness; /* of a slender body with those bonded to it: area over largest extent, m */
+    int bond;       /* the same number for bodies joined to each other: that of the first of them */
+    bool symmetric; /* viscous force with both particles' tensors */
+    bool variational; /* hourglass force from an energy */
+    bool mixed;       /* joined to a body of another viscosity: pairs use the mean of both */
+};
+
+/* Packed fields of the sweeps: arrays of the solid's own, float in mixed and double in double
+ * precision. */
+enum solid_packed_field {
+    S_UX, /* displacement, m: in mixed precision its leading digits, */
+    S_UY,
+    S_LOW_X, /* and the remainder, which keeps differences of neighbours accurate. Mixed only */
+    S_LOW_Y,
+    S_VX, /* m/s */
+    S_VY,
+    S_UXX, /* displacement gradient, 1 */
+    S_UXY,
+    S_UYX,
+    S_UYY,
+    S_PXX, /* first Piola-Kirchhoff stress, with the part of a variational hourglass force, Pa */
+    S_PXY,
+    S_PYX,
+    S_PYY,
+    S_GX, /* sum of the gradient weights of its neighbours, 1/m */
+    S_GY,
+    S_PAIRS_X, /* acceleration by hourglass and viscous force, m/s^2; variational only */
+    S_PAIRS_Y,
+    S_DRAG, /* rho0 alpha_s c_s h of its body, Pa s; of joined bodies */
+    SOLID_PACKED_FIELDS
+};
+
+/* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
+#define NOBODY 1e6
+
+/* One reference neighbour of each particle of a pack, a slot. For lane l it is the particle
+ * `offset` + i + l; the weights are zero if that lane has no such neighbour. A slot has one number
+ * per lane for each weight, one weight after the other. */
+enum solid_weight {
+    W_GX, /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    W_GY,
+    W_HX, /* -G_ba, 1/m: the weight of P_b in the force on a */
+    W_HY,
+    W_X, /* X_ab, m */
+    W_Y,
+    W_HALF_K, /* k_ab of T-26 or T-26a over 2 V rho0, 1/s^2 */
+    SOLID_WEIGHTS
+};
+
+/* Particles i .. i + lanes - 1 of one body, with common slots for their neighbours. Packs with
+ * equal surroundings use the same slots: the interior of a lattice needs one set. */
+struct solid_pack {
+    int32_t i, lanes, body;
+    int32_t first_slot, n_slots;
+};
+
+struct solid;
+
+/* Processes the packs from `first` to before `last`. */
+typedef void solid_sweep(const struct solid *solid, struct particles *particles, int64_t first,
+                         int64_t last);
+
+/* Kick by the accelerations, s, of the particles from first to end - 1; their drift to the end of
+ * the step, and then into the next one. The sum of both would have other bits, and n steps at once
+ * not those of n steps. */
+typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
+                        double drift, double next);
+
+/* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:
+ * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */
+struct solid_sweeps {
+    const char *name;
+    int lanes;                 /* particles of a full pack */
+    size_t size;               /* bytes of a number */
+    solid_sweep *pack_motion;  /* packs displacement and velocity of p */
+    solid_sweep *stress;       /* gradient, and stress except of variational bodies */
+    solid_sweep *pairs;        /* forces of pairs, and stress of variational bodies */
+    solid_sweep *damping;      /* adds the Kelvin-Voigt stress */
+    solid_sweep *forces;       /* acceleration by neighbours to sx, sy of p */
+    solid_sweep *write_stress; /* gradient and stress to p */
+    /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
+    void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
+};
+extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
+
+/* Smaller solids are stepped by one thread: the loops of several would be shorter than the barriers
+ * between them. */
+enum { SOLID_PARALLEL = 2048 };
+
+struct solid {
+    int n_bodies;
+    struct solid_body *body;
+    double dp; /* the smallest spacing of any body */
+    int64_t n_packs, n_slots;
+    int threads; /* that its loops use */
+    const struct solid_sweeps *sweeps;
+    void *lane[SOLID_PACKED_FIELDS]; /* each [n] */
+    struct solid_pack *pack;
+    void *weight;       /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
+    int64_t *offset;    /* [n_slots] */
+    bool coupled;       /* meets fluid */
+    bool variational;   /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;  /* some body has a damping_time */
+    double omega_max;   /* largest frequency of the linearised operator, 1/s */
+    double damping_max; /* largest rate of its viscous part, 1/s */
+    double stable_step; /* the largest stable step that follows from both, s */
+    double paper_step;  /* Eq. 29, s */
+    double *scratch[6]; /* memory for the search of the step */
+    double time;        /* of the displacements, s: contact uses walls at their positions then */
+    /* Actions from outside, each NULL if there is none; contact: if none is near. */
+    struct contact *contact;
+    struct loads *loads;
+    struct hinges *hinges;
+    bool calls_out; /* a motion may be a function of the program, called on its own thread */
+    const struct scene *gravity; /* varies in time: its change since t = 0 */
+    const double *external[2];   /* accelerations, x and y, m/s^2 */
+    solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
+    struct implicit *implicit;   /* data of implicit/; NULL: explicit steps only */
+    solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
+    double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
+    double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
+};
+
+/* Element of an array in the precision of the sweeps, such as a packed field or the weights. */
+SPHFSI_INLINE void solid_set(const struct solid *solid, void *array, int64_t i, double value)
+{
+    if (solid->sweeps->size == sizeof(double))
+        ((double *)array)[i] = value;
+    else
+        ((float *)array)[i] = (float)value;
+}
+
+SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int64_t i)
+{
+    return solid->sweeps->size == sizeof(double) ? ((const double *)array)[i]
+                                                 : (double)((const float *)array)[i];
+}
+
+/* --- solid.c, stencil.c, spectrum.c, cauchy.c, reaction.c --- */
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
  * are set). implicit: for implicit steps, in double precision. */

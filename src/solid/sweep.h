@@ -2,8 +2,6 @@
  * The sweeps of the solid for both precisions: solid/sweep_mixed.c and solid/sweep_double.c include
  * this file after base/real_float.h and base/real_double.h. A pack of particles goes through its
  * slots, one neighbour per lane at a time. Each particle is written by its own pack only. */
-#include "solid/material.h"
-#include "solid/solid.h"
 #include "solid/pair_laws.h"
 
 /* Writes the lanes of a pack only: the memory behind it belongs to the next. */

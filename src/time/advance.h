@@ -84,8 +84,9 @@ void clear_fluid_sums(struct particles *particles);
  * neighbours. To be called after a step, while cells are valid. */
 void limit_isolated_tension(struct simulation *sim);
 
-/* Particles of all kinds within the kernel's reach of a point. */
-int particles_near(const struct simulation *sim, double x, double y);
+/* Particles within the kernel's reach of a point, of the first `kinds` kinds: fluid, walls,
+ * solids. */
+int particles_near(const struct simulation *sim, double x, double y, int kinds);
 
 /* --- solid_steps.c --- */
 
@@ -93,6 +94,82 @@ int particles_near(const struct simulation *sim, double x, double y);
  * latest. The observer sees the state before them, and within them the states on both sides of the
  * time that it waits for. */
 enum err lone_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
+/* --- timestep.c: the time step and its bounds (Sec. 2.5 of the paper; time/bounds.def) --- */
+
+/* Largest possible step of the fluid, s: Eq. 28b at rest; of the simulation's next step. */
+double timestep_fluid_limit(const struct simulation *sim);
+double timestep_longest(const struct simulation *sim);
+
+/* The bound that limits the step now. */
+enum bound timestep_binding(const struct simulation *sim);
+
+/* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step,
+ * with half of the smallest bound, if neither cfl nor solid_safety sets that step. */
+const char *timestep_shorter(const struct simulation *sim, double *half);
+
+/* Finds all bounds of the next step, s->dt_bound, from the fluid's last evaluation and the solid's
+ * bound; returns the smallest, s. */
+double timestep_bound(struct simulation *sim);
+
+/* Chooses the next step by its bounds. It ends at t_limit at the latest; the last two steps before
+ * that are equal. Sets `*hits` if the step ends at t_limit. */
+double timestep_choose(struct simulation *sim, double t_limit, bool *hits);
+
+/* Largest allowed number of the solid's sub-steps in one step of the fluid. */
+enum { SUBSTEPS_MOST = 10000 };
+
+/* Solid sub-steps of the coming fluid step of dt; 1 at a single rate. Kept in the state: raised as
+ * soon as the solid's bound requires it, reduced once that cannot excite an oscillation (T-34c). */
+int timestep_substeps(struct simulation *sim, double dt);
+
+/* Sets the solid's step from its bound about the undeformed state and the reduction in s->state. */
+void timestep_set_solid(struct simulation *sim);
+
+/* Computes the solid's bound again if its stiffness has left the range of the last bound. Reads
+ * gradients that are up to date. The state decides, so that a restart does the same. */
+void timestep_recheck_solid(struct simulation *sim);
+
+/* Counts n completed steps of dt. */
+void timestep_count(struct simulation *sim, double dt, int n);
+
+/* The end of a step with fluid: its time and what is counted. */
+void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits);
+
+/* Whether contact can matter in the coming `steps` from `time` on. Stores its effect on their
+ * bounds, and enables its forces if it can. */
+bool timestep_watch_contact(struct simulation *sim, double time, int steps);
+
+/* --- guards.c: limits beyond which a state is invalid --- */
+
+/* Steps of the fluid between two checks of the solid's deformation, which need a pass of their
+ * own. At a tenth of the speed of sound, neighbours approach by a third of their distance in
+ * that time. */
+enum { CHECK_INTERVAL = 16 };
+
+/* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
+int64_t penetration_count(const struct simulation *sim, int64_t *first);
+
+/* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
+ * there are more than stray particles. */
+enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
+ * cell. */
+void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d);
+
+/* Names the body of the structure particle that is last in the order of cells, which is in none. */
+enum err guards_body_left(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Whether surfaces in contact are pressed harder than the modulus of contact. */
+bool guards_contact_hard(const struct simulation *sim);
+
+/* Whether the check after this step reads the solid's gradients, which must then be up to date. */
+bool guards_strain_due(const struct simulation *sim);
+
+/* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time,
+ * quantity and likely cause; warns once if a limit is near. */
+enum err guards_check(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* --- the integrators, each in a file of its own --- */
 

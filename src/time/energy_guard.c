@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What is said of energy that a region has gained, and when the run stops (T-46). */
 #include "time/energy.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 
 /* Fraction of its available energy that a region may gain without a warning; the time for which a
  * gain below a tenth lasts before it counts, s: while a run starts, little energy is available. */

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "time/guards.h"
 #include "beam/contact.h"
 
 #include <stdarg.h>
 
-#include "time/timestep.h"
+#include "time/advance.h"
 #include "time/energy.h"
 
 /* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h.

@@ -1,25 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
 #include "beam/wet.h"
-#include "geometry/motion.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
-#include "time/timestep.h"
-
-static unsigned groups_of(const struct simulation *sim, enum kind kind)
-{
-    const unsigned groups = effects_groups(sim->effects, kind);
-    if (!groups || kind == KIND_WALL) return groups;
-    return groups | (kind == KIND_FLUID ? sim->integrator->fluid_groups : G_STAGE);
-}
 
 static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_id, struct diag *d)
 {
     const struct scene_points *const points = &sim->scene->points[kind];
-    const unsigned groups = groups_of(sim, kind);
+    unsigned groups = effects_groups(sim->effects, kind);
     struct particles *const particles = &sim->kind[kind];
     memset(particles, 0, sizeof *particles);
     if (!groups || points->n == 0) return ERR_OK;
+    if (kind == KIND_FLUID) groups |= sim->integrator->fluid_groups;
+    if (kind == KIND_SOLID) groups |= G_STAGE;
     const int64_t most = groups & G_OPEN ? open_places(sim->scene) : points->n;
     TRY(particles_create(particles, &sim->arena, most, groups, kind_names[kind], d));
     particles->n = points->n;

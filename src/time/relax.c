@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The search for a state of rest (T-78) by kinetic damping: where the kinetic energy has passed a
  * maximum, all velocities are set to zero. Its steps are those of a run, with forces at t = 0. */
-#include "time/relax.h"
-#include "time/advance.h"
 #include "time/simulation.h"
 #include "time/energy.h"
 

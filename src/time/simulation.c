@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: its creation, the order of a step, and its continuation from a checkpoint. */
 #include "time/simulation.h"
-#include "time/guards.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 
 static const struct integrator *const integrators[] = {
@@ -61,14 +59,6 @@ static void add_exchange(struct simulation *sim)
     sim->state.exchanged += sim->state.dt * sqrt(fx * fx + fy * fy);
 }
 
-/* Work and impulse of the last step. */
-static void count_work(struct simulation *sim)
-{
-    if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
-    energy_after_step(sim);
-    if (sim->effects & FX_COUPLING) add_exchange(sim);
-}
-
 static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
 {
     const double speed2_before = sim->extremes.speed2;
@@ -89,7 +79,9 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
     find_speed(sim);
-    count_work(sim);
+    if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
+    energy_after_step(sim);
+    if (sim->effects & FX_COUPLING) add_exchange(sim);
     /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
     if (!(sim->effects & FX_FLUID)) energy_test_due(sim);
     TRY(guards_check(sim, d));

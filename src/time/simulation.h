@@ -4,7 +4,6 @@
 #pragma once
 
 #include "time/advance.h"
-#include "time/state.h"
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called once for each evaluation of the fluid; the solid's sub-steps use
@@ -30,3 +29,22 @@ enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKE
 /* Hash of every STATE field and state scalar but those of the energy account, which measures the
  * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
+
+/* --- relax.c: the search for a state of rest before a run (T-78) --- */
+
+/* A step of the search, whose clock is the state's time. Without motion for long enough the search
+ * is over. ERR_GUARD: a guard, or no rest within relax.limit. */
+enum err relax_step(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Ends the search: the run begins with the present positions at rest; time, counts of steps and the
+ * account of energy begin anew. */
+void relax_end(struct simulation *sim);
+
+/* All steps of the search. */
+enum err relax_to_rest(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+enum { RELAX_TEXT = 320 };
+/* Says how far the search has come. */
+void relax_progress(const struct simulation *sim, char text[RELAX_TEXT]);
+/* Says what was found and by which criterion. */
+void relax_text(const struct simulation *sim, char text[RELAX_TEXT]);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-#include "time/guards.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
@@ -118,11 +116,11 @@ static void count(void *n, int64_t i, double x, double y, double r)
     ++*(int *)n;
 }
 
-int particles_near(const struct simulation *sim, double x, double y)
+int particles_near(const struct simulation *sim, double x, double y, int kinds)
 {
     const double at[] = {x, y}, reach = KERNEL_REACH * sim->fluid.k.h;
     int n = 0;
-    for (int kind = 0; kind < KIND_COUNT; kind++)
+    for (int kind = 0; kind < kinds; kind++)
         if (sim->cells.kind[kind].n_active)
             cells_each_near(&sim->cells, (enum kind)kind, &sim->kind[kind], at, reach, count, &n);
     return n;
@@ -142,7 +140,7 @@ void limit_isolated_tension(struct simulation *sim)
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < particles->n; i++) {
         if (!(particles->dens[i] < lowest) ||
-            particles_near(sim, particles->x[i], particles->y[i]) > most)
+            particles_near(sim, particles->x[i], particles->y[i], KIND_COUNT) > most)
             continue;
         particles->dens[i] = 0;
         if (particles->dens_slow) particles->dens_slow[i] = 0;

@@ -7,11 +7,8 @@
 #include "coupling/coupling.h"
 #include "fluid/damping.h"
 #include "fluid/open.h"
-#include "fluid/wall_motion.h"
-#include "particles/cells.h"
-#include "rigid/rigid.h"
 #include "solid/contact.h"
-#include "implicit/equilibrium.h"
+#include "implicit/implicit.h"
 #include "time/energy_account.h"
 
 struct guard {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "coupling/bounds.h"
-#include "implicit/implicit.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven
  * lattices. */

@@ -4,7 +4,7 @@
 #include "rig.h"
 #include "unity.h"
 
-#include "base/hash.h"
+#include "base/base.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 #include "twin_solid.h"
 
 #include "rig.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 #include "unity.h"
 
 #include <math.h>

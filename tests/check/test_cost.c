@@ -3,7 +3,6 @@
  */
 #include "check/check.h"
 #include "rig.h"
-#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>

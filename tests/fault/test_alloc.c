@@ -7,7 +7,6 @@
  * Those within HDF5, a shared library, are not: it says itself that it does not survive all of
  * them; a snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
 #include "base/files.h"
-#include "base/threads.h"
 #include "geometry/load.h"
 #include "rig.h"
 #include "sphfsi.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * libFuzzer's mutator for checkpoints: it keeps the frame of header, blocks and footer whole and
  * puts the sums right, so that what it changes reaches the reader behind them. */
-#include "base/hash.h"
 #include "output/checkpoint.h"
 
 #include <stdlib.h>

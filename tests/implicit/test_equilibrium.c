@@ -2,7 +2,7 @@
  * Static equilibrium of solids by Newton's method (T-78a): against the elastica and by hand, in
  * load steps, of bodies that nothing holds; and where the kinetic search takes over. */
 #include "rig.h"
-#include "time/relax.h"
+#include "time/simulation.h"
 #include "unity.h"
 
 #include <math.h>

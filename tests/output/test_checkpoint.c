@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
 #include "output/checkpoint.h"
-#include "base/hash.h"
 #include "geometry/load.h"
 #include "time/energy.h"
 #include "fuzz.h"

@@ -2,7 +2,6 @@
  * Contact of solids: a pair by hand, momentum, energy, walls, restart. */
 #include "output/checkpoint.h"
 #include "rig.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * Contact between checks: which pairs are listed, for how long the list holds, what is near, what a
  * clamp holds together. */
 #include "contact_rig.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
  * Contact at the outline of the shapes (T-61b): how far it is from the surface points, and that
  * forces on points and edges are those of a potential where both are not parallel. */
 #include "contact_rig.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 #include "time/energy.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * The account of energy by regions (T-46): gains are found after losses and beside other scenes,
  * and work on what is at rest is no gain. */
 #include "time/energy.h"
-#include "time/guards.h"
+#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -8,7 +8,7 @@
 #include "time/energy.h"
 #include "coupling/motion.h"
 #include "coupling/bounds.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 #include "unity.h"
 
 /* A stiff plate beside water: a coupled scene with sub-steps, h/c0 = 0.0135/20 s. */

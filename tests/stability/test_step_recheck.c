@@ -3,7 +3,6 @@
  * is then wrong; looked at again it is right, at no cost while deformations are small. */
 #include "output/checkpoint.h"
 #include "rig.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 #include "unity.h"
 

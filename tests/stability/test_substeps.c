@@ -2,7 +2,7 @@
  * Sub-steps that change in number feed oscillations which each number alone keeps (T-34b, T-34c).
  */
 #include "rig.h"
-#include "time/timestep.h"
+#include "time/advance.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * The account of energy (T-46a to T-46d): what does not close is the error of the time integration,
  * which falls with the step, and a run that becomes unstable is named as soon as it does. */
 #include "time/energy.h"
-#include "time/guards.h"
+#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 

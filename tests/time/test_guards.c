@@ -2,7 +2,6 @@
  * The guards: a state that is not sound is found, and the sentence names particle, place, quantity.
  */
 #include "time/energy.h"
-#include "time/guards.h"
 
 #include "time/advance.h"
 #include "rig.h"

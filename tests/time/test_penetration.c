@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Fluid inside of walls: at any size, on any side of their particles, and across joined sides. */
-#include "time/guards.h"
+#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -4,7 +4,6 @@
  * was continued. */
 #include "output/checkpoint.h"
 #include "rig.h"
-#include "time/relax.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -4,7 +4,6 @@
 #include "check/check.h"
 #include "rig.h"
 #include "coupling/bounds.h"
-#include "time/timestep.h"
 #include "time/energy.h"
 #include "unity.h"
 
