@@ -58,7 +58,8 @@ void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, d
 void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
 
 /* T-110c: the direction in which fluid slides past particle i of the walls, a dummy of the line;
- * left as it is on a line without tips, beyond a corner, and beyond an end that is no tip. */
+ * left as it is on a line without tips (T-110d), beyond a corner, and beyond an end that is no
+ * tip. */
 void line_slides(const struct thin_line *line, int64_t i, double t[2]);
 
 /* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
