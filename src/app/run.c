@@ -48,17 +48,6 @@ static bool continues_rows(const struct run *r)
     return r->options->restart && !r->sim->state.seeks_rest;
 }
 
-/* A run begins with a snapshot, and without a checkpoint: that state is the case, or the checkpoint
- * of the fork. */
-static void set_intervals(struct run *r, double time)
-{
-    const struct scene_output *out = &r->session.scene.output;
-    r->due[OUT_SNAPSHOT].interval = out->snapshot_interval;
-    r->due[OUT_CHECKPOINT].interval = out->checkpoint_interval;
-    if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
-    due_pass(&r->due[OUT_CHECKPOINT], time);
-}
-
 /* Compares the probes with their references; a failure is only a warning. */
 static void score_references(struct run *r)
 {
@@ -434,7 +423,12 @@ static enum err begin_run(struct run *r)
     TRY(replace_case(r, part));
     TRY(continues_rows(r) ? start_restart(r) : start_fresh(r));
     const double time = simulation_time(r->sim);
-    set_intervals(r, time);
+    r->due[OUT_SNAPSHOT].interval = r->session.scene.output.snapshot_interval;
+    r->due[OUT_CHECKPOINT].interval = r->session.scene.output.checkpoint_interval;
+    /* A run begins with a snapshot, and without a checkpoint: that state is the case, or the
+     * checkpoint of the fork. */
+    if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
+    due_pass(&r->due[OUT_CHECKPOINT], time);
     r->record.version = SPHFSI_VERSION;
     r->record.restarted_from = r->options->fork ? "" : r->restarted_from;
     r->record.forked_from = r->options->fork ? r->restarted_from : "";

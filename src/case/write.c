@@ -89,13 +89,6 @@ static void relocate(const struct scene *scene, const char *name, const char *pa
     if (strlen(moved) < SCENE_TEXT) snprintf(text, SCENE_TEXT, "%.255s", moved);
 }
 
-static void write_hinge(FILE *out, const char *key, const struct hinge_point *hinge)
-{
-    fprintf(out, "%s = ", key);
-    write_reals(out, 2, hinge->at);
-    fprintf(out, "%s%s\n", hinge->other[0] ? ", " : "", hinge->other);
-}
-
 static void write_param(FILE *out, const struct scene *scene, const struct param *param,
                         const char *section, const char *path)
 {
@@ -135,7 +128,11 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
         for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
         return;
     case PARAM_HINGES:
-        for (int k = 0; k < hinges->n; k++) write_hinge(out, param->key, &hinges->item[k]);
+        for (int k = 0; k < hinges->n; k++) {
+            fprintf(out, "%s = ", param->key);
+            write_reals(out, 2, hinges->item[k].at);
+            fprintf(out, "%s%s\n", *hinges->item[k].other ? ", " : "", hinges->item[k].other);
+        }
         return;
     }
     fprintf(out, "\n");

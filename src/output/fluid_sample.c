@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Sampling the fluid: at a point, at its surface, at its front, through a line. */
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 
 /* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1

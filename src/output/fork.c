@@ -69,15 +69,6 @@ static enum err fork_clamps(struct simulation *sim, const double *free, struct d
     return ERR_OK;
 }
 
-/* Drops the interface impulse if the new case has no impedance interface, which would give it on.
- */
-static void clear_interface_impulse(struct simulation *sim)
-{
-    struct particles *const particles = &sim->kind[KIND_SOLID];
-    if (!particles->interface_pressure || sim->effects & FX_IMPEDANCE) return;
-    for (int64_t i = 0; i < particles->n; i++) impulse_clear(particles, i);
-}
-
 /* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork
  * without a change keeps its bits. */
 static bool order_fits(const struct simulation *sim)
@@ -115,13 +106,15 @@ static enum err sort_again(struct simulation *sim, struct diag *d)
 
 enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d)
 {
-    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct particles *const solid = &sim->kind[KIND_SOLID];
     double *const free = sim->solid.scratch[0];
     if (sim->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
     TRY(checkpoint_load(m, sim, true, d));
     if (sim->effects & (FX_FLUID | FX_MOTION)) TRY(fork_walls(sim, d));
     if (sim->effects & FX_SOLID) TRY(fork_clamps(sim, free, d));
-    clear_interface_impulse(sim);
+    /* Without an impedance interface nothing would give the interface impulse on. */
+    if (solid->interface_pressure && !(sim->effects & FX_IMPEDANCE))
+        for (int64_t i = 0; i < solid->n; i++) impulse_clear(solid, i);
     if ((sim->effects & FX_FLUID) && !order_fits(sim)) TRY(sort_again(sim, d));
     TRY(simulation_resume(sim, d));
     if (sim->state.seeks_rest && !(sim->effects & FX_RELAX))

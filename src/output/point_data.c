@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/point_data.h"
 
-/* Cauchy stress, in the order of the file: xx yy zz xy yz xz. */
-static double stress_value(const double sigma[4], int column)
-{
-    static const int order[] = {0, 1, 3, 2};
-    return column < (int)COUNT_OF(order) ? sigma[order[column]] : 0;
-}
-
 static double vector_value(double x, double y, int column)
 {
     return column == 0 ? x : column == 1 ? y : 0;
@@ -32,6 +25,7 @@ double snapshot_value(enum data what, const struct simulation *sim, enum kind ki
                       int column)
 {
     const struct particles *particles = &sim->kind[kind];
+    static const int order[] = {0, 1, 3, 2}; /* of a stress in the file: xx yy zz xy yz xz */
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;
     const struct thin_line *const lines = sim->fluid.lines.line;
@@ -58,7 +52,7 @@ double snapshot_value(enum data what, const struct simulation *sim, enum kind ki
     case D_DENSITY:
         if (solid) return sim->solid.body[particles->body[i]].density / det;
         return particles->dens ? sim->scene->rho0 * (1 + particles->dens[i]) : 0;
-    case D_STRESS: return stress_value(sigma, column);
+    case D_STRESS: return column < (int)COUNT_OF(order) ? sigma[order[column]] : 0;
     case D_DISPLACEMENT:
         if (solid) return vector_value(particles->ux[i], particles->uy[i], column);
         return particles->X ? vector_value(particles->x[i] - particles->X[i],

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * From [probe] sections to columns of files, and the values in them. */
 #include "output/probes.h"
-#include "output/fluid_sample.h"
 #include "beam/springs.h"
 #include "geometry/motion.h"
 

@@ -21,15 +21,6 @@ static void write_shapes(struct json *j, const char *key, const struct shape_lis
     json_close(j, ']');
 }
 
-static void write_expressions(struct json *j, const struct param *param,
-                              const struct scene_expr *value)
-{
-    json_open(j, param->key, '[');
-    for (int k = 0; k < param->count; k++)
-        if (value->e[k]) json_text(j, NULL, expr_source(value->e[k]));
-    json_close(j, ']');
-}
-
 static void write_hinges(struct json *j, const char *key, const struct hinge_list *list)
 {
     json_open(j, key, '[');
@@ -44,6 +35,7 @@ static void write_hinges(struct json *j, const char *key, const struct hinge_lis
 
 static void write_value(struct json *j, const struct param *param, const void *value)
 {
+    const struct scene_expr *const field = value;
     switch (param->type) {
     case PARAM_REAL: json_number(j, param->key, *(const double *)value); break;
     case PARAM_INTEGER: json_integer(j, param->key, *(const int *)value); break;
@@ -52,7 +44,12 @@ static void write_value(struct json *j, const struct param *param, const void *v
         break;
     case PARAM_TEXT: json_text(j, param->key, value); break;
     case PARAM_VECTOR: json_numbers(j, param->key, value, 2); break;
-    case PARAM_EXPR: write_expressions(j, param, value); break;
+    case PARAM_EXPR:
+        json_open(j, param->key, '[');
+        for (int k = 0; k < param->count; k++)
+            if (field->e[k]) json_text(j, NULL, expr_source(field->e[k]));
+        json_close(j, ']');
+        break;
     case PARAM_SHAPES: write_shapes(j, param->key, value); break;
     case PARAM_HINGES: write_hinges(j, param->key, value); break;
     case PARAM_NUMBERS: {

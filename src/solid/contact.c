@@ -404,15 +404,6 @@ static void set_law(struct contact *contact, const struct scene_contact *from, i
     contact->spacing = max2(contact->spacing, spacing);
 }
 
-static void set_laws(struct contact *contact)
-{
-    for (int a = 0; a < contact->n_solids; a++)
-        for (int b = a; b < contact->n_bodies; b++) {
-            const struct scene_contact *const from = scene_contact_of(contact->scene, a, b);
-            if (from) set_law(contact, from, a, b);
-        }
-}
-
 /* Whether a pair of the list is of two groups and begins within its reach. */
 static bool begins_near(const struct contact *contact, const struct contact_pair *pair)
 {
@@ -490,7 +481,11 @@ enum err contact_create(struct contact *contact, struct arena *a, const struct s
     *contact = (struct contact){.scene = scene, .arena = a, .solid = solid};
     contact->friction = particles->stick_edge;
     TRY(bodies_create(contact, a, d));
-    set_laws(contact);
+    for (int one = 0; one < contact->n_solids; one++)
+        for (int other = one; other < contact->n_bodies; other++) {
+            const struct scene_contact *const from = scene_contact_of(scene, one, other);
+            if (from) set_law(contact, from, one, other);
+        }
     TRY(contact_surface_create(contact, a, particles, d));
     contact->reach += 2 * contact->max_inset;
     const size_t edges = (size_t)contact->n_edges;

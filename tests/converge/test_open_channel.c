@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Plane Poiseuille flow from a parabolic inflow to an outlet of given pressure: u = 4 U y (H -
  * y)/H^2 and a pressure that falls by 8 nu rho U/H^2 a metre, Re = 20 by the mean velocity. */
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 #include "rig.h"
 #include "unity.h"
 

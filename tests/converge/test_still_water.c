@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Still water in a rigid tank, H = 0.2 m, dp = H/20: the pressure it settles to, and that it comes
  * to rest. */
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

@@ -2,7 +2,7 @@
  * Open boundaries: what comes in and goes is counted, streams pass at any angle and in either
  * direction, sound leaves, and what makes no sense is refused. */
 #include "geometry/load.h"
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

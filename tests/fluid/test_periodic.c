@@ -3,7 +3,7 @@
  *
  * The pair of test_fluid.c through a side: h = 1 m, m = 640 kg/m, c0 = 10 m/s, x_ab = (0.6, 0.8),
  * rho = 1010 and 1020 kg/m^3: 0.6822899792818219 m/s^2 apart. */
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Values of the fluid at points and lines: by hand in water at rest, and the same in a scene
  * that is moved anywhere, mirrored, or periodic. */
-#include "output/fluid_sample.h"
+#include "output/probes.h"
 #include "rig.h"
 #include "unity.h"
 

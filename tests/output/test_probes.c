@@ -2,7 +2,6 @@
  * Probes: exact values on states made by hand; names of columns; files. */
 #include "case/params.h"
 #include "output/probes.h"
-#include "output/fluid_sample.h"
 #include "rig.h"
 #include "tiny.h"
 #include "unity.h"
