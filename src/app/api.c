@@ -121,8 +121,8 @@ static enum err step(struct sphfsi_simulation *handle, double limit, struct diag
                          "earlier error says; create a new one");
     if (!(limit > simulation_time(sim)))
         return diag_fail(d, ERR_INPUT,
-                         "step: the limit must be later than the simulated time: it is %.17g s, "
-                         "and the time is %.17g s",
+                         "step: the limit of %.17g s must be later than the simulated time, %.17g "
+                         "s",
                          limit, simulation_time(sim));
     enum err e = relax_to_rest(sim, d);
     if (!e) e = simulation_step(sim, limit, d);

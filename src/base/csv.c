@@ -74,8 +74,8 @@ static int read_numbers(struct csv *c, const char *line, double *row)
     const char *const blanks = " \t\r", *const count = c->n == 2 ? "two" : "three";
     if (doubtful) {
         diag_add(c->diag, ERR_INPUT,
-                 "%s:%d: commas and %s: if a comma stands for a decimal point, write a point, as "
-                 "in 0.5; if not, separate the columns by one of the two",
+                 "%s:%d: commas and %s in one row; write decimal numbers with a point, as 0.5, and "
+                 "separate all columns by the same character",
                  c->path, c->line, doubtful);
         return -1;
     }

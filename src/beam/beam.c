@@ -181,7 +181,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
         if (node->body >= 0 || (body >= 0 && node->row[0] < 0))
             return fail_at(d, beams->scene, at->line,
                            "[beam %s] %s = %g, %g, %s: another `clamp` or `hinge` holds this "
-                           "point; a point can have only one if any is on a [rigid]",
+                           "point; where one is on a [rigid], it must be the only one",
                            given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
                            at->other);
         node->body = body;
@@ -220,7 +220,7 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
         beams->load[k].part = beams->load[k].length / length;
     if (beams->n_loads > first) return ERR_OK;
     return fail_at(d, scene, from->common.line,
-                   "[load %s] contains no node of [beam %s], which are up to %.3g m apart; move or "
+                   "[load %s] contains no node of [beam %s]; nodes are up to %.3g m apart; move or "
                    "enlarge its `shape`",
                    from->common.name, from->body,
                    beams->element[beams->beam[beam].first_element].length);
@@ -297,7 +297,7 @@ static enum err refuse_held_twice(const struct beams *beams, struct diag *d)
         if (twice)
             return fail_at(d, beams->scene, given->common.line,
                            "[beam %s]: more than one `clamp` or `hinge` holds the beams that are "
-                           "joined at %g, %g; they can have only one if any is on a [rigid]",
+                           "joined at %g, %g; where one is on a [rigid], it must be the only one",
                            given->common.name, node->X[0], node->X[1]);
     }
     return ERR_OK;

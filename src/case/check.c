@@ -191,7 +191,7 @@ static enum err check_contact(struct reader *r, const void *section)
     if (scene->n_solid + scene->n_rigid + scene->n_beam == 0)
         return bad_section(r, "needs a [solid], a [rigid] or a [beam]");
     if (scene->n_rigid == 0 && c->restitution > 0)
-        return bad_section(r, "has a `restitution`, which is that of a [rigid]; the rebound of a "
+        return bad_section(r, "has a `restitution`, which only a [rigid] uses; the rebound of a "
                               "[solid] follows from its stiffness");
     for (int k = 0; k < scene->n_solid; k++) dp = min2(dp, scene_solid_dp(scene, k));
     if (c->gap > max_gap * dp * (1 + 1e-9))

@@ -172,15 +172,16 @@ static const struct rule {
     {EFFECT_OUTFLOW, NEEDS, EFFECT_FLUID, "fluid leaves through it"},
     {EFFECT_DAMPING_ZONE, NEEDS, EFFECT_FLUID, "it damps the fluid"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
-    {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX, "a rigid body moves while rest is sought"},
+    {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX,
+     "[relax] does not find the rest of a rigid body; leave [relax] out"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX,
-     "a beam moves while rest is sought; leave [relax] out and let `mass_damping` of the [beam] "
-     "and `artificial_viscosity` bring it to rest"},
+     "[relax] does not find the rest of a beam; leave [relax] out and let `mass_damping` of the "
+     "[beam] and `artificial_viscosity` bring the beam to rest"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC,
      "a beam does not pass through periodic sides; use walls or a longer [domain] without "
      "`periodic`"},
-    {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary is no state of rest"},
-    {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary never comes to rest"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary never comes to rest"},
 };
 
 /* A key that means nothing without its effect: refused where the effect is off and the key has a

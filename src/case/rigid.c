@@ -133,8 +133,8 @@ enum err case_check_spring(struct reader *r, const void *section)
     const bool joins = scene_find(r->scene, SECTION_rigid, spring->other) >= 0;
     if (joins && scene_find(r->scene, SECTION_beam, spring->body) >= 0)
         return bad_section(r,
-                           "joins [beam %s] to [rigid %s]; the other end of a beam's spring stays "
-                           "in place: leave `other` out, or join both by `hinge`",
+                           "joins [beam %s] to [rigid %s]; the other end of a beam's spring is a "
+                           "fixed point: leave `other` out, or join both by `hinge`",
                            spring->body, spring->other);
     if (joins && strcmp(spring->body, spring->other) == 0)
         return bad_section(r, "joins [rigid %s] to itself; name another body, or none",

@@ -251,7 +251,7 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
         point_at(check, back, 1.5 * dp, POINT_BODY) < 0)
         warn_section(check, o->common,
                      "leaks beside its buffer at (%.4g, %.4g) m, where the wall or body beside the "
-                     "line ends; let it go on to %.3g m behind the line",
+                     "line ends; extend that wall or body to %.3g m behind the line",
                      end[0], end[1], o->depth);
 }
 
@@ -342,9 +342,9 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
     const double *const at = probe->point;
     if (scene_probe_target(probe) != TARGET_FLUID_POINT) return;
     if (is_buried(check, at)) {
-        char value[SCENE_NAME + 80] = "its level is that of the point";
+        char value[SCENE_NAME + 80] = "its value is the height of the point";
         if (probe->quantity != PROBE_LEVEL)
-            snprintf(value, sizeof value, "its %s is that of fluid within 2 h = %g m, or 0",
+            snprintf(value, sizeof value, "its %s comes from fluid within 2 h = %g m, or is 0",
                      quantity_table[probe->quantity].name, 2 * scene->h);
         warn_section(
             check, &probe->common,

@@ -199,9 +199,9 @@ static void mark_returned(struct open *o, int64_t i, struct diag *d)
     const struct scene_open *const b = open_boundary(o, i);
     if (!o->warned)
         diag_warn(d,
-                  "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less "
-                  "flows in than is given; a higher `level`, a slower start or a line further away "
-                  "may help",
+                  "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed, so "
+                  "less flows in than given. A higher `level`, a slower start or a line further "
+                  "away may help",
                   b->word, b->common->name, particles->x[i], particles->y[i]);
     o->warned = true;
     particles->open[i] = -particles->open[i];

@@ -39,8 +39,8 @@ static enum err check_size(struct sampler *sampler)
     if (particles <= max_cells && bytes <= memory && cells <= max_cells) return ERR_OK;
     return diag_add(sampler->diag, ERR_INPUT,
                     "%s: dp = %g m gives about %.3g particles, which need %.3g GB, in shapes that "
-                    "span %.3g cells. This machine has %.3g GB, and the limit of both numbers is "
-                    "%g; use a larger dp or smaller shapes",
+                    "span %.3g cells. This machine has %.3g GB, and at most %g particles and "
+                    "cells are allowed; use a larger dp or smaller shapes",
                     sampler->scene->path, dp, particles, 1e-9 * bytes, cells, 1e-9 * memory,
                     max_cells);
 }

@@ -414,7 +414,7 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         /* Without memory nothing is known about this checkpoint. A restart from an older one would
          * remove it. */
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
-        diag_warn(d, "%s; the one before it is tried", why.text);
+        diag_warn(d, "%s; trying the checkpoint before it", why.text);
     }
     return diag_fail(d, ERR_IO, "%s: contains no %scheckpoint (step-*.ckpt) to restart from",
                      folder, damaged_ones ? "valid " : "");
@@ -474,8 +474,8 @@ static enum err load_part(const struct image *m, const struct part *part, struct
         if (number >= part->low && number <= part->high) continue;
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: %s of %s, item %" PRId64
-                         ", is %g, outside the valid range %g to %g; the file is damaged or not of "
-                         "this case",
+                         ", is %g, outside the valid range %g to %g; the file is damaged or of "
+                         "another case",
                          part->name, b.owner, k, number, part->low, part->high);
     }
     if (b.bytes) memcpy(part->data, b.data, b.bytes);
@@ -551,7 +551,7 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
                 continue;
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64 " at (%.6g, %.6g) m %s cell %d, of "
-                             "-1 (outside) to %" PRId64 "; the file is damaged or not of this case",
+                             "-1 (outside) to %" PRId64 "; the file is damaged or of another case",
                              kind_names[k], i, particles->x[i], particles->y[i],
                              known ? "is too far from its" : "has no", cell, cells - 1);
         }

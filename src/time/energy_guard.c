@@ -86,8 +86,8 @@ enum err energy_guard(struct simulation *sim, struct diag *d)
     if (share <= GAIN_WARNING) return ERR_OK;
     write_fastest(sim, g.entry, place);
     snprintf(text, sizeof text,
-             "%s: %.3g J/m of energy that nothing supplied (available: %.3g J/m) have been gained "
-             "in %s; fastest: %s",
+             "%s: the run has gained %.3g J/m of energy that nothing supplied (available: %.3g "
+             "J/m), in %s; fastest: %s",
              time_text(sim).text, g.energy, g.available, sources[g.term], place);
     write_remedy(sim, g.term, remedy);
     /* A gain at the interface may be less than what the rest loses. */

@@ -33,8 +33,8 @@ static struct finding find_invalid(const struct particles *particles, double spe
     return (struct finding){-1, "", 0};
 }
 
-static enum err complain(const struct simulation *sim, enum kind kind, struct finding f,
-                         const char *cause, struct diag *d)
+static enum err invalid(const struct simulation *sim, enum kind kind, struct finding f,
+                        const char *cause, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[kind];
     return diag_fail(d, ERR_GUARD,
@@ -60,7 +60,7 @@ static void SPHFSI_PRINTF(4, 5)
 }
 
 /* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
-static bool fluid_sound(struct simulation *sim)
+static bool fluid_is_valid(struct simulation *sim)
 {
     const struct extremes *const e = &sim->extremes;
     const double speed = sqrt(e->speed2);
@@ -73,7 +73,7 @@ static bool fluid_sound(struct simulation *sim)
 
 #define UNSTABLE                                                                             \
     "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, " \
-    "or a wall or structure presses too hard on it; of a soft or light structure a longer "  \
+    "or a wall or structure presses too hard on it; for a soft or light structure a longer " \
     "damping_time may help"
 
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
@@ -84,11 +84,11 @@ static bool fluid_sound(struct simulation *sim)
 
 static enum err check_fluid(struct simulation *sim, struct diag *d)
 {
-    if (!fluid_sound(sim)) {
+    if (!fluid_is_valid(sim)) {
         const struct finding f =
             find_invalid(&sim->kind[KIND_FLUID], sim->guard.speed_limit, sim->guard.dens_limit);
         if (f.at >= 0)
-            return complain(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
+            return invalid(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
     }
     if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0)
         warn_once(sim, &sim->guard.warned_speed, d,
@@ -177,19 +177,19 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
-        return complain(sim, KIND_SOLID, fast,
-                        "the limit is ten times the speed of sound of the material. The solid is "
-                        "unstable (a smaller solid_safety may help) or far too soft for its load",
-                        d);
+        return invalid(sim, KIND_SOLID, fast,
+                       "the limit is ten times the speed of sound of the material. The solid is "
+                       "unstable (a smaller solid_safety may help) or far too soft for its load",
+                       d);
     if (sim->solid.contact) TRY(check_contact(sim, d));
     if (!guards_strain_due(sim)) return ERR_OK;
     const struct finding det = smallest_det(particles);
     sim->state.det_low = min2(sim->state.det_low, det.value);
     if (!(det.value > 0))
-        return complain(sim, KIND_SOLID, det,
-                        "the material is inverted; finer particles, more hourglass control or a "
-                        "stiffer law may help",
-                        d);
+        return invalid(sim, KIND_SOLID, det,
+                       "the material is inverted; finer particles, more hourglass control or a "
+                       "stiffer law may help",
+                       d);
     if (det.value < DET_WARNING)
         warn_once(
             sim, &sim->guard.warned_det, d,

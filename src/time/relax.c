@@ -19,7 +19,7 @@ static double kinetic_energy(const struct simulation *sim)
 
 /* With `verlet` a solid's velocity is half a step behind its position: at rest it is that of half a
  * step before. Zero instead would put energy into the fastest modes. */
-static void stop_solid(struct simulation *sim)
+static void clear_solid_velocities(struct simulation *sim)
 {
     struct particles *const particles = &sim->kind[KIND_SOLID];
     const double back = -0.5 * sim->state.dt / sim->substeps;
@@ -37,13 +37,13 @@ static void stop_solid(struct simulation *sim)
 }
 
 /* The integrators' memories of earlier steps end with the motion. */
-static void stop(struct simulation *sim)
+static void clear_velocities(struct simulation *sim)
 {
     const struct particles *const f = &sim->kind[KIND_FLUID];
     double *const of_fluid[] = {f->vx,     f->vy,     f->vx_half,   f->vy_half,
                                 f->vx_old, f->vy_old, f->ddens_old, f->ddens_older};
     for (size_t k = 0; k < COUNT_OF(of_fluid); k++) particles_clear(of_fluid[k], f->n);
-    if (sim->effects & FX_SOLID) stop_solid(sim);
+    if (sim->effects & FX_SOLID) clear_solid_velocities(sim);
     sim->state.verlet_count = 0; /* the next step is an Euler step */
     sim->state.relax_energy = 0;
     sim->evaluated = false;
@@ -52,7 +52,7 @@ static void stop(struct simulation *sim)
 void relax_end(struct simulation *sim)
 {
     const struct state found = sim->state;
-    stop(sim);
+    clear_velocities(sim);
     sim->state = (struct state){
         .sorts = found.sorts,
         .particle_steps = found.particle_steps,
@@ -71,7 +71,7 @@ void relax_end(struct simulation *sim)
 }
 
 /* T-78: judges the motion after a step of the search. */
-static void judge(struct simulation *sim)
+static void test_for_rest(struct simulation *sim)
 {
     struct state *const st = &sim->state;
     const double energy = kinetic_energy(sim), before = st->relax_energy;
@@ -80,7 +80,7 @@ static void judge(struct simulation *sim)
     const double tolerated = square(sim->scene->relax.tolerance) * st->relax_most;
     if (energy > tolerated) st->relax_quiet = st->time;
     if (before > tolerated && energy < before) {
-        stop(sim);
+        clear_velocities(sim);
         st->relax_left = before;
         st->relax_swings++;
         st->relax_longest = max2(st->relax_longest, st->time - st->relax_swing);
@@ -91,7 +91,7 @@ static void judge(struct simulation *sim)
     if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) relax_end(sim);
 }
 
-/* T-78: what has moved further than the size of the domain since the last stop, by its mean
+/* T-78: what has moved further than the size of the domain since the last peak, by its mean
  * velocity now and an even acceleration, meets nothing that could hold it; nor does fluid that has
  * left. */
 static enum err check_held(const struct simulation *sim, const struct particles *particles,
@@ -148,8 +148,8 @@ static enum err check_limit(const struct simulation *sim, struct diag *d)
     return diag_fail(
         d, ERR_GUARD,
         "[relax]: no state of rest within %.3g s (`limit` = %g times the longest time of %.3g s "
-        "between two stops): the speed is still %.2g of its largest value; a larger tolerance or "
-        "limit, `mass_damping` in a [solid]%s may help",
+        "between two peaks of kinetic energy): the speed is still %.2g of its largest value; a "
+        "larger tolerance or limit, `mass_damping` in a [solid]%s may help",
         st->time, limit, longest, sqrt(st->relax_left / st->relax_most),
         sim->effects & FX_FLUID && sim->scene->top.scheme == SCHEME_PAPER
             ? " or `scheme = standard`, which keeps water still,"
@@ -166,7 +166,7 @@ enum err relax_step(struct simulation *sim, struct diag *d)
     TRY(simulation_step(sim, (double)INFINITY, d));
     sim->guard.case_at_fault = true; /* for what follows */
     TRY(check_fall(sim, d));
-    judge(sim);
+    test_for_rest(sim);
     if (sim->state.seeks_rest) TRY(check_limit(sim, d));
     sim->guard.case_at_fault = false;
     return ERR_OK;
@@ -183,8 +183,8 @@ void relax_progress(const struct simulation *sim, char text[RELAX_TEXT])
     const struct state *const st = &sim->state;
     const double share = st->relax_most > 0 ? sqrt(st->relax_energy / st->relax_most) : 0;
     snprintf(text, RELAX_TEXT,
-             "seeking rest: after %.3g s and %lld stops the speed is %.2g of its largest value, "
-             "tolerance = %g",
+             "seeking rest: after %.3g s and %lld peaks of kinetic energy the speed is %.2g of its "
+             "largest value, tolerance = %g",
              st->time, (long long)st->relax_swings, share, sim->scene->relax.tolerance);
 }
 
@@ -201,8 +201,8 @@ void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
     else
         snprintf(
             text, RELAX_TEXT,
-            "at rest after %.3g s and %lld stops: over the last %.3g s, twice the longest time "
-            "between two stops, the speed stayed below %g of its largest value",
+            "at rest after %.3g s and %lld peaks of kinetic energy: over the last %.3g s, twice "
+            "the longest time between two peaks, the speed stayed below %g of its largest value",
             st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
             sim->scene->relax.tolerance);
 }

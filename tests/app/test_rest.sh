@@ -34,7 +34,7 @@ law = svk
 shape = box 0.18, -0.04, 0.26, 0
 END
 expect 0 '^seeking a state of rest before t = 0' "$dir/bar.cfg" --out "$dir/whole"
-grep -q '^at rest after .* s and [0-9]* stops: over the last' "$dir/output" ||
+grep -q '^at rest after .* s and [0-9]* peaks of kinetic energy: over the last' "$dir/output" ||
     fail "what was found is not said"
 # It hangs by rho g L^2/(2 E), L = 0.18 m, from the first row on.
 awk -F, 'NR > 1 { y = $3 / (-1000 * 9.81 * 0.18^2 / 2e5) - 1; if (y * y > 9e-4) bad = $0 }

@@ -291,7 +291,7 @@ static void test_tables(void)
         {"0, 1e-3, 0\n1, 0, 0\n", "test_case_limits.tmp:1: the first row must have"},
         {"-1, 0, 0\n1, 0, 0\n", "test_case_limits.tmp:1: the first row must have"},
         {"0, 0, 0\n", "needs two rows or more; there is 1"},
-        {"0;0;0\n1;0,5;0\n", "test_case_limits.tmp:2: commas and semicolons: if a comma stands"},
+        {"0;0;0\n1;0,5;0\n", "test_case_limits.tmp:2: commas and semicolons in one row"},
         {"0\t0\t0\n0,5\t0\n", "test_case_limits.tmp:2: commas and tabs"},
         {"0,\t0,\t0\n1,\t0,\t0\n", NULL},
         {"# nothing\n", "needs two rows or more; there are 0"},

@@ -104,9 +104,9 @@ static void test_probes_inside_a_wall(void)
 {
 #define PROBED HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK "[probe p]\n"
     read(PROBED "quantity = velocity\npoint = 0.05, -0.01\n");
-    expect("its velocity is that of fluid within 2 h");
+    expect("its velocity comes from fluid within 2 h");
     read(PROBED "quantity = level\npoint = 0.05, -0.01\n");
-    expect("so its level is that of the point");
+    expect("so its value is the height of the point");
     read(PROBED "quantity = velocity\npoint = 0.05, 0.02\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }

@@ -124,8 +124,8 @@ mkfifo "$dir/run/step-000000160.ckpt"
 : >"$dir/run/step-99999999999999999999.ckpt"
 : >"$dir/run/step-000000170.ckpt"
 echo torn >"$dir/run/step-000000180.ckpt.part"
-expect 0 'step-000000170.ckpt: is not a valid checkpoint: .*; the one before it is tried' "$case" \
-    --out "$dir/run" --restart
+expect 0 'step-000000170.ckpt: is not a valid checkpoint: .*; trying the checkpoint before it' \
+    "$case" --out "$dir/run" --restart
 [ "$(hash "$dir/run")" = "$(hash "$dir/whole")" ] ||
     fail "strangers beside checkpoints change the bits"
 [ ! -e "$dir/run/step-000000180.ckpt.part" ] || fail "an unfinished checkpoint stays for ever"

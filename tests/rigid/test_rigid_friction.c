@@ -139,7 +139,7 @@ static void test_bad_input_is_refused(void)
                 "one of the two must be a [solid], [rigid] or [beam]");
     rig_refuses(FREE "[solid a]\nshape = box 0, 0, 1, 1\ndensity = 1000\nyoung = 1e6\n"
                      "poisson = 0.3\n[contact d]\nrestitution = 0.5\n",
-                "has a `restitution`, which is that of a [rigid]");
+                "has a `restitution`, which only a [rigid] uses");
 }
 
 int main(void)

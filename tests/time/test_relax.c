@@ -223,7 +223,8 @@ static void test_a_body_that_falls_has_no_rest(void)
                                  rig.diag.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "nothing holds it"), rig.diag.text);
     relax_progress(&rig.sim, text);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "and 0 stops the speed is 1 of its largest"), text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(text, "and 0 peaks of kinetic energy the speed is 1 of its largest"), text);
 }
 
 /* What is said of a search, and that the first velocities of the two-step scheme are those of
@@ -247,8 +248,9 @@ static void test_verlet_and_what_is_said(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(
         4,
         sscanf(text,
-               "at rest after %lg s and %lld stops: over the last %lg s, twice the longest time "
-               "between two stops, the speed stayed below %lg of its largest value",
+               "at rest after %lg s and %lld peaks of kinetic energy: over the last %lg s, twice "
+               "the longest time between two peaks, the speed stayed below %lg of its largest "
+               "value",
                &time, &stops, &span, &share),
         text);
     TEST_ASSERT_EQUAL_INT64(rig.sim.state.relax_swings, stops);
