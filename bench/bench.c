@@ -236,7 +236,7 @@ static void print_per_particle(const struct bench *b, const struct sim *x, int t
 {
     const int64_t n = x->s.kind[KIND_FLUID].n;
     for (int r = 0; r < b->reps; r++) seconds[r] *= 1e9 / (double)n;
-    print_row(b, "fluid", x->s.fluid.kernel->name, n, threads, part, unit, seconds);
+    print_row(b, "fluid", x->s.fluid.variant->name, n, threads, part, unit, seconds);
 }
 
 /* Cost of a snapshot and a checkpoint, in a temporary folder. The first snapshot creates the file
@@ -309,7 +309,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     bool sound = true;
     for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r);
     const int64_t count = x.s.kind[KIND_FLUID].n;
-    const char *const variant = x.s.fluid.kernel->name;
+    const char *const variant = x.s.fluid.variant->name;
     for (size_t k = 0; sound && k < COUNT_OF(parts); k++)
         print_row(b, "fluid", variant, count, threads, phase_table[parts[k]].name,
                   "ns/particle/evaluation", b->sample[parts[k]]);

@@ -110,8 +110,8 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     sim->substeps == 1 ? "" : "s");
     if (sim->effects & FX_COUPLING)
         session_say(o,
-                    "  with sub-steps alone, %.0f in each fluid step; an implicit step costs as "
-                    "much as %.0f, the bodies being %.3g particles across (T-94)",
+                    "  sub-steps alone: %.0f in each fluid step; an implicit step costs as much as "
+                    "%.0f sub-steps for bodies %.3g particles across (T-94)",
                     ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
                     implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]),
                     implicit_across(&sim->solid, &sim->kind[KIND_SOLID]));
@@ -155,15 +155,15 @@ static void say_cost(const struct simulation *sim, const struct forecast *f,
     session_say(o, "  %s on this machine when idle, memory %s, disk at most %s",
                 text_of_seconds(f->seconds).text, text_of_bytes(f->memory).text,
                 text_of_bytes(f->disk).text);
-    session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer",
+    session_say(o, "  nine of ten runs take %s to %s; more on a busy machine",
                 text_of_seconds(least_of_forecast * f->seconds).text,
                 text_of_seconds(most_of_forecast * f->seconds).text);
     if (sim->effects & FX_RELAX)
-        session_say(o, "  [relax] finds the state of rest before that; its time is not included");
+        session_say(o, "  without the time that [relax] needs to find the state of rest");
 }
 
-static enum err foresee(struct forecast *f, struct session *session, const struct sphfsi_options *o,
-                        struct diag *d)
+static enum err forecast_cost(struct forecast *f, struct session *session,
+                              const struct sphfsi_options *o, struct diag *d)
 {
     const enum err e = forecast_run(f, session, o, d);
     check_simulation(&session->simulation, d); /* bounds of the step are known now */
@@ -174,7 +174,7 @@ static enum err say_trial(struct session *session, const struct sphfsi_options *
 {
     struct simulation *const sim = &session->simulation;
     struct forecast f;
-    TRY(foresee(&f, session, o, d));
+    TRY(forecast_cost(&f, session, o, d));
     say_bounds(sim, o);
     say_cost(sim, &f, o);
     evidence_say(sim->scene, o);
@@ -196,7 +196,7 @@ static enum err explain_text(struct session *session, const struct sphfsi_option
                 param_choice(param_find(SECTION_top, "scheme"), top->scheme).text,
                 param_choice(param_find(SECTION_top, "integrator"), top->integrator).text,
                 param_choice(param_find(SECTION_top, "precision"), top->precision).text,
-                sim->kind[KIND_FLUID].n > 0 ? sim->fluid.kernel->name : "none",
+                sim->kind[KIND_FLUID].n > 0 ? sim->fluid.variant->name : "none",
                 sim->solid.sweeps ? sim->solid.sweeps->name : "none");
     return say_trial(session, o, d);
 }
@@ -271,7 +271,7 @@ static enum err write_all(struct json *j, void *context, struct diag *d)
     json_open(j, NULL, '{');
     write_scene(j, session);
     report_effects(j, sim);
-    TRY(foresee(&f, session, &of->call->options, d));
+    TRY(forecast_cost(&f, session, &of->call->options, d));
     write_bounds(j, sim);
     write_cost(j, sim, &f);
     report_derived(j, &session->scene);

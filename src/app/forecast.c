@@ -190,8 +190,8 @@ static void run_coarse(struct stretch *first, struct stretch *whole, struct simu
 }
 
 /* Opens the scene at r times its spacing, or half of that until it can be sampled, and runs it. */
-static double rehearse(struct stretch *first, struct stretch *whole, double r, double dp,
-                       double trial_end, double seconds, const struct sphfsi_options *o)
+static double run_trial(struct stretch *first, struct stretch *whole, double r, double dp,
+                        double trial_end, double seconds, const struct sphfsi_options *o)
 {
     struct session *const coarse = calloc(1, sizeof *coarse);
     enum err e = coarse ? open_coarse(coarse, o, r * dp) : ERR_MEMORY;
@@ -223,8 +223,8 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
                  longer = end / trial->amount[TIME], rough = seconds_of(trial) * longer,
                  seconds = min2(max2(coarse_seconds[0], 0.02 * rough), coarse_seconds[1]);
     struct stretch first = {0}, whole = {0};
-    const double r = rehearse(&first, &whole, ceil(cbrt(rough / seconds)), dp,
-                              session->simulation.state.time, seconds, o);
+    const double r = run_trial(&first, &whole, ceil(cbrt(rough / seconds)), dp,
+                               session->simulation.state.time, seconds, o);
     *run = *trial;
     add(run, trial, longer - 1);
     if (!(whole.amount[TIME] > 0)) return;

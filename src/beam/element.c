@@ -2,7 +2,10 @@
 #include "beam/element.h"
 #include "base/elementary.h"
 
-static double across(const double a[2], const double b[2]) { return a[0] * b[1] - a[1] * b[0]; }
+static double cross_product(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
 static double along(const double a[2], const double b[2]) { return a[0] * b[0] + a[1] * b[1]; }
 
 void beam_strain(const struct beam_element *e, const double *const q[2], double strain[3],
@@ -15,7 +18,7 @@ void beam_strain(const struct beam_element *e, const double *const q[2], double 
     turn[0] = (c * e->between[0] - s * e->between[1]) / e->length;
     turn[1] = (s * e->between[0] + c * e->between[1]) / e->length;
     strain[0] = along(turn, apart) / e->length - 1;
-    strain[1] = across(turn, apart) / e->length;
+    strain[1] = cross_product(turn, apart) / e->length;
     strain[2] = (q[1][2] - q[0][2]) / e->length;
 }
 
@@ -51,7 +54,7 @@ static struct middle find_middle(const struct beam_element *e, const struct beam
     m.normal[1] = m.tangent[0];
     const double both = 1 + half[0] * half[1];
     const double bend = beam_atan_over((half[1] - half[0]) / both) / both / e->length;
-    const double by_turn[2] = {across(m.tangent, m.mean), -along(m.tangent, m.mean)};
+    const double by_turn[2] = {cross_product(m.tangent, m.mean), -along(m.tangent, m.mean)};
     const double *const axis[2] = {m.tangent, m.normal};
     memset(m.B, 0, sizeof m.B);
     for (int k = 0; k < 2; k++) {

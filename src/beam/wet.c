@@ -68,8 +68,8 @@ static void place_end(const struct beams *beams, const struct beam_element *e, i
 }
 
 /* The largest displacement of a dummy from one place of its end to the other, m. */
-static double way_of(const struct beams *beams, const struct line_end *from,
-                     const struct line_end *to)
+static double displacement_between(const struct beams *beams, const struct line_end *from,
+                                   const struct line_end *to)
 {
     const double deep = KERNEL_REACH * beams->scene->h + beams->scene->top.dp;
     return elementary_hypot(to->x[0] - from->x[0], to->x[1] - from->x[1]) +
@@ -79,7 +79,7 @@ static double way_of(const struct beams *beams, const struct line_end *from,
 
 double beams_place(struct beams *beams, double since)
 {
-    double way = 0;
+    double largest = 0;
     for (int k = 0; k < beams->n; k++) {
         const struct beam *const b = &beams->beam[k];
         struct thin_line *const line = beams->line[k];
@@ -94,11 +94,11 @@ double beams_place(struct beams *beams, double since)
                 struct line_end *const end = &line->end[2 * (m - b->first_element) + last],
                                        before = *end;
                 place_end(beams, &beams->element[m], last, since, end);
-                way = max2(way, way_of(beams, &before, end));
+                largest = max2(largest, displacement_between(beams, &before, end));
             }
         line_place(line, beams->walls);
     }
-    return way;
+    return largest;
 }
 
 /* --- exchange --- */

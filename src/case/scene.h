@@ -205,8 +205,8 @@ struct scene_given {
 
 /* Set by tests after reading a case and before creating its simulation; neither changes a bit. */
 struct test_switches {
-    bool generic_kernel; /* the generic kernel of the fluid also if there is a specialised one */
-    bool never_skip;     /* visit dry walls, place and sort walls at rest */
+    bool generic_variant; /* the generic sweep of the fluid also if there is a specialised one */
+    bool never_skip;      /* visit dry walls, place and sort walls at rest */
 };
 
 /* A scene: every section, every value in effect. Unnamed sections are single structs, named ones

@@ -99,11 +99,11 @@ enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *
     fluid->never_skip = scene->test.never_skip;
     fluid->sweeps =
         scene->top.precision == PRECISION_MIXED ? &fluid_sweeps_mixed : &fluid_sweeps_double;
-    fluid->kernel = fluid->sweeps->kernels;
-    while (fluid->kernel->effects != ANY_EFFECTS &&
-           (scene->test.generic_kernel ||
-            fluid->kernel->effects != (effects & (effect_set)PAIR_EFFECTS)))
-        fluid->kernel++;
+    fluid->variant = fluid->sweeps->variants;
+    while (fluid->variant->effects != ANY_EFFECTS &&
+           (scene->test.generic_variant ||
+            fluid->variant->effects != (effects & (effect_set)PAIR_EFFECTS)))
+        fluid->variant++;
     fluid->threads = thread_count();
     if (effects & FX_THIN) TRY(lines_create(&fluid->lines, a, scene, &kinds[KIND_WALL], d));
     for (int k = 0; k < KIND_COUNT; k++) fluid->packed[k].n = packed_count((enum kind)k, effects);
@@ -234,7 +234,7 @@ static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUN
                       end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
         struct fluid_extremes top = {acceleration2, approach};
-        fluid->kernel->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
+        fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
         acceleration2 = top.acceleration2;
         approach = top.approach;
     }

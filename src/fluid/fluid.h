@@ -109,7 +109,7 @@ typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          struct fluid_extremes *top);
 
 /* They for a set of pair effects. */
-struct fluid_kernel {
+struct fluid_variant {
     const char *name;
     effect_set effects; /* ANY_EFFECTS: generic */
     fluid_rates *rates;
@@ -129,7 +129,7 @@ struct fluid_sweeps {
      * fields. The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
-    const struct fluid_kernel *kernels; /* the generic one is the last */
+    const struct fluid_variant *variants; /* the generic one is the last */
 };
 extern const struct fluid_sweeps fluid_sweeps_mixed, fluid_sweeps_double;
 
@@ -174,12 +174,12 @@ struct neighbour_scratch {
 struct fluid {
     struct fluid_constants k;
     effect_set effects;
-    bool never_skip;                   /* visit dry walls, place resting ones; set by tests */
-    double *volume[KIND_COUNT];        /* [sections] of a resting dummy over a fluid particle's */
-    double *near2[KIND_COUNT];         /* [sections]: (r0^2 + eta^2)/h^2 of fx_repulsion */
-    bool *moves[KIND_COUNT];           /* [sections]: structures, and walls that have a motion */
-    const struct fluid_sweeps *sweeps; /* of the precision */
-    const struct fluid_kernel *kernel; /* for the effects */
+    bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
+    double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
+    double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of fx_repulsion */
+    bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
+    const struct fluid_sweeps *sweeps;   /* of the precision */
+    const struct fluid_variant *variant; /* for the effects */
     struct packed_fields packed[KIND_COUNT];
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */

@@ -37,7 +37,7 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
     return q;
 }
 
-/* Contributions of pairs of receivers and candidates; fx is a constant in specialised kernels. */
+/* Contributions of pairs of receivers and candidates; fx is a constant in specialised sweeps. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
                                             const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)

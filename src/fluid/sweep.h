@@ -212,7 +212,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
 VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
 
-static const struct fluid_kernel SWEEP(kernels)[] = {
+static const struct fluid_variant SWEEP(variants)[] = {
 #define VARIANT(variant, set) {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant)},
 #include "fluid/variants.def"
     VARIANT(any, ANY_EFFECTS)
@@ -225,4 +225,4 @@ static const struct fluid_kernel SWEEP(kernels)[] = {
 #undef VARIANT
 
 const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(packed), SWEEP(slopes),
-                                                 SWEEP(dummies), SWEEP(kernels)};
+                                                 SWEEP(dummies), SWEEP(variants)};

@@ -231,7 +231,7 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
 }
 
 /* Adds a point unless there is already one at its place. */
-static enum err offer(struct layers *l, double x, double y)
+static enum err add_new_point(struct layers *l, double x, double y)
 {
     if (point_grid_any(&l->points, x, y, coincident * l->dp)) return ERR_OK;
     return point_grid_add(&l->points, x, y, &l->g->temp, l->g->diag);
@@ -253,7 +253,7 @@ static enum err space_out(struct layers *l, const struct trace *t, int64_t first
         const double *a = t->pt[k % t->n], *b = t->pt[(k < last ? k + 1 : k) % t->n];
         const double between = gap(t, k, k < last ? k + 1 : k);
         const double share = between > 0 ? (wanted - passed) / between : 0;
-        TRY(offer(l, a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])));
+        TRY(add_new_point(l, a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])));
     }
     return ERR_OK;
 }
@@ -361,7 +361,7 @@ enum err geometry_lay_layers(struct sampler *sampler, const struct region *regio
     for (int k = 0; k < l.n_sets; k++) TRY(each_loop(&l, &l.set[k], trace_all));
     for (int64_t k = 0; k < layered->n; k++)
         if (is_behind(&l, layered->x[k], layered->y[k]))
-            TRY(offer(&l, layered->x[k], layered->y[k]));
+            TRY(add_new_point(&l, layered->x[k], layered->y[k]));
     for (int64_t k = first; k < l.points.n; k++)
         TRY(geometry_sample(sampler, region, l.points.x[k], l.points.y[k], to));
     return ERR_OK;

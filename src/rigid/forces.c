@@ -237,7 +237,7 @@ void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid
     }
 }
 
-double rigid_way(const struct rigid *rigid, int k, int c, double late)
+double rigid_displacement(const struct rigid *rigid, int k, int c, double late)
 {
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double v =

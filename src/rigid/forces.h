@@ -90,7 +90,7 @@ void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid
                     double impulse);
 
 /* Component c of the displacement that the velocity after the step gives a body. */
-double rigid_way(const struct rigid *rigid, int k, int c, double late);
+double rigid_displacement(const struct rigid *rigid, int k, int c, double late);
 
 /* From the centre of mass to a point of a body, where the body is. */
 void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angle, double arm[2]);

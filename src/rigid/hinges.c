@@ -122,7 +122,7 @@ static void place_after(const struct rigid *rigid, int k, const double at[2], do
 {
     const struct rigid_body *const body = &rigid->body[k];
     double x[3], arm[2];
-    for (int c = 0; c < 3; c++) x[c] = rigid->state[k].x[c] + rigid_way(rigid, k, c, late);
+    for (int c = 0; c < 3; c++) x[c] = rigid->state[k].x[c] + rigid_displacement(rigid, k, c, late);
     if (body->fixed) rigid_follow_hinge(rigid, k, rigid->end, x);
     rigid_arm(rigid, k, at, x[2], arm);
     for (int c = 0; c < 2; c++) place[c] = body->centre[c] + x[c] + arm[c];
@@ -135,7 +135,7 @@ double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, 
     for (int side = 0; side < 2; side++) {
         const int k = row->body[side];
         if (k < 0) continue;
-        double place[3] = {0, 0, rigid->state[k].x[2] + rigid_way(rigid, k, 2, late)};
+        double place[3] = {0, 0, rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, late)};
         if (!turns) place_after(rigid, k, row->hinge->at, late, place);
         left += side ? -place[row->component] : place[row->component];
     }

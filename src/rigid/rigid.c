@@ -177,7 +177,7 @@ void rigid_load(struct rigid *rigid, int k, const double impulse[3])
 }
 
 /* What solids change in the velocity after the forces of a step that act at its start. */
-static double later(const struct rigid *rigid, int k, int c)
+static double change_by_solids(const struct rigid *rigid, int k, int c)
 {
     return rigid->centred ? 0 : rigid->eq[k].pushed[c];
 }
@@ -194,7 +194,7 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
         const double change = kick * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
-        body->mean[c] = eq->before[c] + 0.5 * (change - later(rigid, k, c));
+        body->mean[c] = eq->before[c] + 0.5 * (change - change_by_solids(rigid, k, c));
         body->work += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
@@ -219,7 +219,8 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
         /* The force that turns the velocity within the step is a reaction, too. */
         s->reaction[c] +=
             body->mass[c] *
-            (steady + impact - (2 * (body->mean[c] - eq->before[c]) + later(rigid, k, c)) / kick);
+            (steady + impact -
+             (2 * (body->mean[c] - eq->before[c]) + change_by_solids(rigid, k, c)) / kick);
         /* Contact with solids is not half a step behind. */
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);

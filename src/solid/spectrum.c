@@ -6,7 +6,7 @@
 #include "solid/material.h"
 
 /* Numbers without a pattern that the operator could have too; the same on every machine. */
-static void scramble(double *v, int64_t n, uint64_t seed, const double *moves)
+static void fill_random(double *v, int64_t n, uint64_t seed, const double *moves)
 {
     for (int64_t i = 0; i < n; i++) {
         uint64_t z = (seed += 0x9e3779b97f4a7c15u);
@@ -88,8 +88,8 @@ static double largest_factor(struct solid *solid, struct particles *particles,
 {
     enum { ROUNDS = 60 };
     double factor = 0;
-    scramble(particles->sx, particles->n, 1, particles->free);
-    scramble(particles->sy, particles->n, 2, particles->free);
+    fill_random(particles->sx, particles->n, 1, particles->free);
+    fill_random(particles->sy, particles->n, 2, particles->free);
     for (int round = 0; round < ROUNDS; round++) {
         if (!(largest(particles->sx, particles->sy, particles->n) > 0)) return 0;
         factor = apply_operator(solid, particles, v);

@@ -93,7 +93,7 @@ int particles_near(const struct simulation *sim, double x, double y, int kinds);
 /* Up to 16 steps of solids without fluid, or one with rigid bodies, which end at t_limit at the
  * latest. The observer sees the state before them, and within them the states on both sides of the
  * time that it waits for. */
-enum err lone_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
+enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* --- timestep.c: the time step and its bounds (Sec. 2.5 of the paper; time/bounds.def) --- */
 

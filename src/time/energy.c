@@ -288,7 +288,7 @@ static int region_of(const struct energy_account *account, int entry)
     return (int)account->entry[entry].region;
 }
 
-static void unite(struct energy_account *account, int one, int other)
+static void merge_regions(struct energy_account *account, int one, int other)
 {
     const int a = region_of(account, one), b = region_of(account, other);
     const int first = a < b ? a : b, second = a < b ? b : a;
@@ -307,9 +307,10 @@ static void unite(struct energy_account *account, int one, int other)
 static void join_bodies(struct simulation *sim)
 {
     const int first = energy_entry(KIND_SOLID, 0);
-    for (int k = first + 1; k < ENERGY_ENTRIES; k++) unite(&sim->state.energy, first, k);
+    for (int k = first + 1; k < ENERGY_ENTRIES; k++) merge_regions(&sim->state.energy, first, k);
     for (int k = 0; k < sim->rigid.n; k++)
-        unite(&sim->state.energy, first, energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k)));
+        merge_regions(&sim->state.energy, first,
+                      energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k)));
 }
 
 /* Beams are one system of equations, from the start. Rigid bodies from the section `from` on belong
@@ -318,7 +319,8 @@ static void join_beams(struct simulation *sim, int from)
 {
     const int first = scene_beam_wall(sim->scene, 0);
     for (int k = from; k < sim->scene->n_wall && sim->beams.n; k++)
-        unite(&sim->state.energy, energy_entry(KIND_WALL, first), energy_entry(KIND_WALL, k));
+        merge_regions(&sim->state.energy, energy_entry(KIND_WALL, first),
+                      energy_entry(KIND_WALL, k));
 }
 
 /* Sections whose boxes are within the kernel's reach of each other belong together from now on; all
@@ -338,7 +340,7 @@ static void join_neighbours(struct simulation *sim)
     for (int j = 0; j < ENERGY_ENTRIES; j++)
         for (int k = 0; k < j && region_of(account, j) >= 0; k++)
             if (all || box2_near(&box[j], &box[k], KERNEL_REACH * sim->scene->h))
-                unite(account, j, k);
+                merge_regions(account, j, k);
 }
 
 void energy_after_step(struct simulation *sim)

@@ -68,7 +68,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
         phase_add(sim, PHASE_solid, clock);
         sim->integrator->step(sim, t_limit);
     } else {
-        TRY(lone_step(sim, t_limit, d));
+        TRY(step_without_fluid(sim, t_limit, d));
     }
     clock = phase_clock();
     /* Done here so that the state does not depend on output between two steps. */

@@ -91,7 +91,7 @@ static void add_external_work(struct simulation *sim, double dt)
                            external->ay[i] * particles->vy[i]));
 }
 
-enum err lone_step(struct simulation *sim, double t_limit, struct diag *d)
+enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
     struct state *const st = &sim->state;
     const double start = phase_clock(), before = phases_so_far(sim), begin = st->time;

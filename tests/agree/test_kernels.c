@@ -21,7 +21,7 @@ static const char scene[] =
     "water.diffusion_form=antuono", "water.diffusion_limiter=strain", "water.wall_repulsion=0.3", \
         "water.wall_damping=1"
 
-/* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel.
+/* The sets of effects of fluid/variants.def, as case files ask for them, and one without a variant.
  */
 static const struct {
     const char *name, *alpha, *delta, *set[8], *mass;
@@ -108,11 +108,11 @@ static uint64_t run(int set, const char *precision, bool generic)
     snprintf(alpha, sizeof alpha, "water.artificial_viscosity=%s", sets[set].alpha);
     snprintf(delta, sizeof delta, "water.density_diffusion=%s", sets[set].delta);
     snprintf(mass, sizeof mass, "water.particle_mass=%s", sets[set].mass);
-    rig_switches.generic_kernel = generic;
+    rig_switches.generic_variant = generic;
     rig_open(&rig, scene, precision, alpha, delta, mass, sets[set].set[0], sets[set].set[1],
              sets[set].set[2], sets[set].set[3], sets[set].set[4], sets[set].set[5],
              sets[set].set[6], sets[set].set[7], NULL);
-    rig_switches.generic_kernel = false;
+    rig_switches.generic_variant = false;
     rig_steps(&rig, 40, 1);
     return simulation_hash(&rig.sim);
 }
@@ -121,11 +121,11 @@ static void compare(const char *precision)
 {
     for (int k = 0; k < (int)COUNT_OF(sets); k++) {
         const uint64_t generic = run(k, precision, true);
-        TEST_ASSERT_EQUAL_HEX64(ANY_EFFECTS, rig.sim.fluid.kernel->effects);
+        TEST_ASSERT_EQUAL_HEX64(ANY_EFFECTS, rig.sim.fluid.variant->effects);
         const uint64_t stamped = run(k, precision, false);
-        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, rig.sim.fluid.kernel->effects,
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, rig.sim.fluid.variant->effects,
                                         sets[k].name);
-        TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.kernel->name, sets[k].name,
+        TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.variant->name, sets[k].name,
                                          strlen(sets[k].name)));
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(generic, stamped, sets[k].name);
     }
@@ -138,14 +138,14 @@ static void test_double(void) { compare("precision=double"); }
 /* Every row of fluid/variants.def is in the table above, so that none goes untested. */
 static void test_every_variant_is_compared(void)
 {
-    const struct fluid_kernel *row = fluid_sweeps_mixed.kernels;
+    const struct fluid_variant *row = fluid_sweeps_mixed.variants;
     for (; row->effects != ANY_EFFECTS; row++) {
         bool found = false;
         for (int k = 0; k < (int)COUNT_OF(sets); k++) found |= sets[k].effects == row->effects;
         TEST_ASSERT_TRUE_MESSAGE(found, row->name);
     }
     for (int k = 0; k + 1 < (int)COUNT_OF(sets); k++) {
-        const struct fluid_kernel *other = fluid_sweeps_double.kernels;
+        const struct fluid_variant *other = fluid_sweeps_double.variants;
         while (other->effects != ANY_EFFECTS && other->effects != sets[k].effects) other++;
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, other->effects, sets[k].name);
     }
@@ -188,9 +188,9 @@ static void sums_with(effect_set effects, uint64_t *fluid, uint64_t *force)
  * above, fails. */
 static void test_every_pair_effect_has_a_law(void)
 {
-    rig_switches.generic_kernel = true;
+    rig_switches.generic_variant = true;
     rig_open(&rig, all, NULL);
-    rig_switches.generic_kernel = false;
+    rig_switches.generic_variant = false;
     uint64_t seed = 3, fluid, force, fluid_without, force_without;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         struct particles *const particles = &rig.sim.kind[kind];
