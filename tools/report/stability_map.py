@@ -198,13 +198,16 @@ def draw(rows):
                 worst[at] = np.fmax(worst[at], 100 * max(row["in_run"], row["result"] == "stopped"))
         shown = panel.pcolormesh(worst, norm=LogNorm(1e-3, 100 * LIMIT),
                                  cmap=plt.get_cmap("Blues").with_extremes(over=COLOURS[1]))
+        panel.set_facecolor("0.85")
         panel.set_xticks(np.arange(len(DENSITIES)) + 0.5, [f"{d:g}" for d in DENSITIES], fontsize=8)
         panel.set_yticks(np.arange(len(SUBSTEPS)) + 0.5, [f"{n:g}" for n in SUBSTEPS], fontsize=8)
         panel.set_title(f"{across} particles across", fontsize=9)
         panel.tick_params(length=0)
     figure.supxlabel("density of the plate over that of water", fontsize=10)
     figure.supylabel("fluid step over the limit\nof the solid's step", fontsize=10)
-    bar = figure.colorbar(shown, extend="both", label="gain of energy, %")
+    figure.suptitle("Largest spurious gain of energy of an elastic plate in water. "
+                    "Grey: cannot stand by statics", fontsize=10, x=0.01, ha="left")
+    bar = figure.colorbar(shown, extend="both", label="gain of energy (%)")
     bar.set_ticks([1e-3, 0.01, 0.1, 1], labels=["0.001", "0.01", "0.1", "1: limit"])
     palette.save(figure, PICTURE, dpi=150)
     print(f"wrote {PICTURE.relative_to(ROOT)}")

@@ -52,8 +52,8 @@ def draw_case(study, case, path):
     label = textwrap.fill(f"error (%): {main_error(study.cases[case])}", 30)
     axes.set(xlabel="CPU time (s)", ylabel=label,
              xlim=(None, 4 * max(cost(p) for p in known)))
-    axes.set_title(f"{study.cases[case].get('title', case)}. Grey: other settings; band: "
-                   "those that none beats", fontsize=8, loc="left")
+    axes.set_title(f"{study.cases[case].get('title', case)}. Dots: other settings; "
+                   "grey band: the best of all", fontsize=8, loc="left")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(PlainLog(minor_thresholds=(1, 0.5)))

@@ -399,20 +399,22 @@ SCENES = {
 
 def draw(known):
     """Frequencies in water over those in vacuum against the mass of the water that moves along."""
-    figure, axes = plt.subplots(figsize=(7, 4.5))
+    figure, axes = plt.subplots(figsize=(6, 3.4), layout="constrained")
     ratio = np.logspace(-1.5, 4.5, 200)
-    axes.plot(ratio, 1 / np.sqrt(1 + ratio), "k-", lw=1, label="theory")
+    axes.plot(ratio, 1 / np.sqrt(1 + ratio), "k-", lw=1)
+    axes.annotate("theory", (100, 0.1), xytext=(6, 6), textcoords="offset points")
     for sides, marker, colour in ((1, "o", COLOURS[0]), (2, "s", COLOURS[1])):
         rows = known.get(f"plate in a basin, {SIDES[sides]}", {"figures": []})["figures"]
         for k, (_, error, _) in enumerate(rows):
             thick, density = POINTS[k]
             inside, alone = theory(sides, thick, density)
             axes.plot((alone / inside)**2 - 1, inside / alone * (1 + error / 100), marker,
-                      mfc="none", color=colour, label=SIDES[sides] if k == 0 else None)
-    axes.set(xscale="log", yscale="log", xlabel="mass of the water over that of the plate",
-             ylabel="frequency in water over that in vacuum")
-    axes.legend(fontsize=10, loc="upper right")
-    save(figure, IMAGES / "beam_wet.png", dpi=130, bbox_inches="tight")
+                      mfc="none", color=colour)
+        axes.annotate(SIDES[sides], (0.05, 0.03 * 1.8 ** (2 - sides)), color=colour)
+    axes.set(xscale="log", yscale="log", xlabel="added mass of the water / mass of the plate",
+             ylabel="frequency in water / in vacuum")
+    axes.set_title("Plate modelled as a beam: first frequency in water", fontsize=10, loc="left")
+    save(figure, IMAGES / "beam_wet.png", dpi=130)
 
 
 def main():
