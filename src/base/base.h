@@ -157,7 +157,8 @@ struct team {
     int most, now, chosen; /* threads to use at most, in the next step, and between trials */
     int steps;             /* of the present block */
     double seconds;        /* of the present block */
-    double each, settled;  /* s a step of `chosen`: in its last block, at the last trial */
+    double last, each;     /* s a step of `chosen`: in its last block, in the faster of two */
+    double settled;        /* the same at the last trial */
     double wait;           /* s until the next trial */
 };
 

@@ -65,15 +65,20 @@ int team_next(struct team *team, double seconds)
     team->seconds = team->steps = 0;
     if (team->settled == 0) { /* the first block touches memory for the first time */
         team->settled = HUGE_VAL;
+        team->last = each;
         return team->now;
     }
     if (team->now != team->chosen) { /* a trial ends */
-        if (each < team->each) team->chosen = team->now;
+        if (each < team->each) {
+            team->chosen = team->now;
+            team->last = each;
+        }
         team->settled = min2(each, team->each);
         team->wait = pause_in_trials * spent;
         return team->now = team->chosen;
     }
-    team->each = each;
+    team->each = min2(each, team->last); /* a pause of the machine delays a single block */
+    team->last = each;
     team->wait -= spent;
     if (team->wait <= 0 || each > slower * team->settled)
         team->now = team->chosen == 1 ? team->most : 1;

@@ -240,6 +240,11 @@ static void test_a_team_keeps_the_faster_number_of_threads(void)
     /* On an idle machine trials cost at most 2 %. */
     TEST_ASSERT_TRUE(steps_per_second(&team, 100, 4e-4, 1e-4) > 0.97 / 1e-4);
     TEST_ASSERT_EQUAL_INT(8, team.chosen);
+    /* A single slow step, however long, changes nothing. */
+    TEST_ASSERT_TRUE(steps_per_second(&team, 0.1, 4e-4, 1e-4) > 0.9 / 1e-4);
+    team_next(&team, 0.1);
+    TEST_ASSERT_TRUE(steps_per_second(&team, 0.5, 4e-4, 1e-4) > 0.9 / 1e-4);
+    TEST_ASSERT_EQUAL_INT(8, team.chosen);
     /* Another program delays the team by a factor of 40: one thread within two blocks. */
     TEST_ASSERT_TRUE(steps_per_second(&team, 0.2, 4e-4, 4e-3) > 0.5 / 4e-4);
     TEST_ASSERT_EQUAL_INT(1, team.chosen);
