@@ -158,9 +158,6 @@ enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECK
  * cell. */
 void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d);
 
-/* Names the body of the structure particle that is last in the order of cells, which is in none. */
-enum err guards_body_left(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
-
 /* Whether surfaces in contact are pressed harder than the modulus of contact. */
 bool guards_contact_hard(const struct simulation *sim);
 

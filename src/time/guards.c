@@ -414,18 +414,6 @@ void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct dia
               particles->y[first]);
 }
 
-enum err guards_body_left(const struct simulation *sim, struct diag *d)
-{
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
-    const int32_t last = sim->cells.kind[KIND_SOLID].order[particles->n - 1];
-    return diag_fail(d, ERR_GUARD,
-                     "%s: [solid %s] has left the domain at (%.6g, %.6g) m: contact is not "
-                     "computed in a domain with periodic sides, so no wall stops it; use periodic "
-                     "= none, a `clamp`, gravity = off or a larger [domain]",
-                     time_text(sim).text, sim->scene->solid[particles->body[last]].common.name,
-                     particles->x[last], particles->y[last]);
-}
-
 /* --- fluid inside a wall or a solid: at the places of the body's own particles --- */
 
 /* Distance from a particle of a body, in spacings, below which a fluid particle is inside. Fluid at

@@ -52,9 +52,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
         cells_sort(&sim->cells, KIND_WALL, &sim->kind[KIND_WALL]);
     else if (sim->effects & FX_MOTION)
         wall_motion_sort(&sim->wall_motion, &sim->cells, &sim->kind[KIND_WALL]);
-    if (sim->effects & FX_COUPLING && cells_sort(&sim->cells, KIND_SOLID, solid) > 0 &&
-        sim->effects & FX_PERIODIC)
-        return guards_body_left(sim, d);
+    if (sim->effects & FX_COUPLING) cells_sort(&sim->cells, KIND_SOLID, solid);
     fluid_find_near(&sim->fluid, &sim->cells);
     sim->state.sorts++;
     const int32_t fullest = fluid_fullest_cell(&sim->cells);

@@ -474,25 +474,6 @@ static void test_a_run_stops_at_once(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "fluid particle"), rig.diag.text);
 }
 
-/* Contact is not computed there, so a block falls through the bed. */
-static void test_a_body_that_leaves_a_periodic_domain(void)
-{
-    rig_close(&rig);
-    rig_open(&rig,
-             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
-             "[domain]\nlower = 0, -0.1\nupper = 0.4, 0.3\nperiodic = x\n"
-             "[fluid water]\nshape = box 0, 0, 0.4, 0.04\nsound_speed = 20\nsurface = 0.04\n"
-             "[wall bed]\nshape = box 0, -0.04, 0.4, 0\n"
-             "[solid block]\nshape = box 0.1, -0.09, 0.14, -0.05\ndensity = 4000\nyoung = 1e6\n"
-             "poisson = 0.3\n",
-             NULL);
-    enum err e = ERR_OK;
-    while (e == ERR_OK && rig.sim.state.time < 0.1) e = simulation_step(&rig.sim, 1, &rig.diag);
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[solid block] has left the domain at"),
-                                 rig.diag.text);
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -520,6 +501,5 @@ int main(void)
     RUN_TEST(test_voids_in_a_full_channel);
     RUN_TEST(test_substeps_without_end);
     RUN_TEST(test_a_run_stops_at_once);
-    RUN_TEST(test_a_body_that_leaves_a_periodic_domain);
     return UNITY_END();
 }
