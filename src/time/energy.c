@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/energy.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 #include "time/advance.h"
 
@@ -16,7 +15,6 @@ struct energies {
                        (T-35b) at the velocity that the fluid uses */
     double term[ENERGY_TERMS];
     double tolerance; /* below which a gain is an error of the sums */
-    double fall;      /* work of the weight of free solids over one spacing (T-46) */
 };
 
 /* Round-off of sums, and of strains and speeds, whose squares are energies (T-46). */
@@ -71,9 +69,6 @@ static double add_solids(struct simulation *sim, struct energies *solid)
         const struct solid_body *const b = &sim->solid.body[particles->body[i]];
         add_particle(&e->row, particles, i, b->mass, b->gravity);
         e->tolerance += b->young * square(ROUND_OFF * b->dp);
-        const struct scene_solid *const given = &sim->scene->solid[particles->body[i]];
-        if (given->clamp.n + given->hinge.n == 0)
-            e->fall += b->mass * b->dp * elementary_hypot(b->gravity[0], b->gravity[1]);
         if (!particles->interface_impulse_x) continue;
         const double x = particles->interface_impulse_x[i], y = particles->interface_impulse_y[i];
         e->row.momentum_x -= x;
@@ -441,11 +436,10 @@ static struct energy_gain gain_of_region(struct energy_account *account, int ent
         gained = now - at->lowest[t];
         account->most[t] = max2(account->most[t], gained);
         gained -= region->tolerance;
-        const double available = at->available[t] + (t == TERM_SOLID ? region->fall : 0);
-        const double share = available > 0 ? gained / available : (double)INFINITY;
+        const double share = at->available[t] > 0 ? gained / at->available[t] : (double)INFINITY;
         if (t != TERM_ALL && gained > 0 && share > worst.share)
             worst = (struct energy_gain){entry, (enum energy_term)t, .share = share,
-                                         .energy = gained, .available = available};
+                                         .energy = gained, .available = at->available[t]};
     }
     worst.all = max2(0, gained / at->available[TERM_ALL]);
     return worst;

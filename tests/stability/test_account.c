@@ -189,18 +189,6 @@ static void test_work_on_what_rests(void)
     }
 }
 
-/* It settles by a thousandth of a spacing; its energy is measured by its weight over a spacing. */
-static void test_a_domino_settles_on_a_floor(void)
-{
-    static const char domino[] =
-        "dp = 10 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nsolid_safety = 0.99\n"
-        "[wall floor]\nshape = box -0.1, -0.04, 0.2, 0\n[solid d]\nshape = box 0, 0, 0.02, 0.1\n"
-        "young = 10 MPa\ndensity = 1000\npoisson = 0.3\n";
-    TEST_ASSERT_EQUAL_INT(ERR_OK, run(domino, "integrator=verlet", 0.025));
-    TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
-    TEST_ASSERT_TRUE(rig.sim.state.energy.most[TERM_SOLID] > 1e-6);
-}
-
 /* A body at rest in which particles have moved at random, by a fraction of their spacing. */
 static struct energy_gain gain_of_noise(double fraction)
 {
@@ -300,7 +288,6 @@ int main(void)
     RUN_TEST(test_bodies_in_contact_are_one_region);
     RUN_TEST(test_gain_after_a_loss);
     RUN_TEST(test_work_on_what_rests);
-    RUN_TEST(test_a_domino_settles_on_a_floor);
     RUN_TEST(test_round_off_is_no_gain);
     RUN_TEST(test_regions_add_up);
     RUN_TEST(test_a_gain_is_named_in_time);
