@@ -66,7 +66,8 @@ static void say_error(const struct scene *scene, enum kind kind, int body, const
     const int k = (int)min2(m, ceil(0.9 * (m + 1)));
     const char *const name =
         fluid ? scene->fluid[body].common.name : scene->solid[body].common.name;
-    char text[120] = "error unknown: docs/results/coverage.md has no similar problem as coarse";
+    char text[120] =
+        "error unknown: docs/results/coverage.md has no similar problem at so coarse a resolution";
     if (m > 0)
         snprintf(text, sizeof text,
                  "error of at most %.2g %% in %.0f of 100 cases (%d similar errors in "

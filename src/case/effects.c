@@ -173,10 +173,10 @@ static const struct rule {
     {EFFECT_DAMPING_ZONE, NEEDS, EFFECT_FLUID, "it damps the fluid"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX,
-     "[relax] does not find the rest of a rigid body; leave [relax] out"},
+     "[relax] does not find the state of rest of a rigid body; leave [relax] out"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX,
-     "[relax] does not find the rest of a beam; leave [relax] out and let `mass_damping` of the "
-     "[beam] and `artificial_viscosity` bring the beam to rest"},
+     "[relax] does not find the state of rest of a beam; leave [relax] out and let `mass_damping` "
+     "of the [beam] and `artificial_viscosity` bring the beam to rest"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC,
      "a beam does not pass through periodic sides; use walls or a longer [domain] without "
      "`periodic`"},

@@ -198,7 +198,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
 }
 
-/* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a
+/* Variants are compiled outside of any parallel region: the compiler makes the body of a region a
  * separate function before it can see that fx is a constant. */
 #define VARIANT(variant, set)                                                                  \
     static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Kernels stamped for a set of effects against the generic one that decides at run time: the same
+ * Variants compiled for a set of effects against the generic one that decides at run time: the same
  * bits after many steps. */
 #include "rig.h"
 #include "unity.h"
