@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
-#include "output/checkpoint.h"
-#include "output/rows.h"
+#include "base/csv.h"
+#include "output/probes.h"
+#include "output/series.h"
 #include "output/snapshot.h"
+#include "time/energy.h"
 
-#include <errno.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 enum { FIRST_STEPS = 20 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of the trial; of
- * the coarse run, which takes a fiftieth of the run between these. */
-static const double first_seconds = 0.1, trial_seconds = 0.2, coarse_seconds[] = {0.5, 2};
+ * steps with rows of a file; of the coarse run, which takes a fiftieth of the run between these. */
+static const double first_seconds = 0.1, trial_seconds = 0.2, row_seconds = 0.05,
+                    coarse_seconds[] = {0.5, 2};
 
 /* --- measurement --- */
 
@@ -44,12 +45,6 @@ static double seconds_of(const struct stretch *s)
     double seconds = 0;
     for (int k = 0; k < PHASE_COUNT; k++) seconds += s->amount[k];
     return seconds;
-}
-
-/* Without rows. */
-static double seconds_of_steps(const struct stretch *s)
-{
-    return seconds_of(s) - s->amount[PHASE_output];
 }
 
 /* An amount per one of another. */
@@ -121,63 +116,42 @@ static enum err measure(struct stretch *s, struct simulation *sim, double until,
     return e == ERR_GUARD ? ERR_OK : e;
 }
 
-/* --- outputs of a run, in a folder that is removed --- */
-
-struct outputs {
-    char folder[PATH_BYTES], checkpoint[PATH_BYTES];
+/* The time of all rows of the run. A row lies between two states, and a state serves all rows
+ * beside it. The evaluation that a reading needs is that of the next step. */
+static enum err measure_rows(struct forecast *f, struct simulation *sim, struct diag *d)
+{
+    const double end = sim->scene->top.end_time;
+    double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
+    char text[NUMBER_TEXT];
     struct probes probes;
-    struct row_files rows;
-    struct snapshots snapshots;
-};
-
-/* Rows follow the simulation from now on as in a run, after the search for rest. */
-static enum err outputs_open(struct outputs *to, struct simulation *sim, struct diag *d)
-{
-    const char *const top = getenv("TMPDIR");
-    *to = (struct outputs){.checkpoint = ""};
-    snprintf(to->folder, sizeof to->folder, "%s/sphfsi-XXXXXX", top && *top ? top : "/tmp");
-    if (!mkdtemp(to->folder))
-        return diag_fail(d, ERR_IO,
-                         "%s: the forecast cannot make this folder: %s; set TMPDIR to "
-                         "one that can be written",
-                         to->folder, strerror(errno));
-    TRY(probes_create(&to->probes, sim, &sim->arena, d));
-    TRY(rows_create(&to->rows, &to->probes, sim, true, &sim->arena, d));
-    TRY(rows_start(&to->rows, to->folder, 0, d));
-    TRY(snapshots_create(&to->snapshots, to->folder, sim->scene, "", d));
-    sim->state.seeks_rest = false;
-    rows_follow(&to->rows, sim);
-    return ERR_OK;
-}
-
-static void outputs_close(struct outputs *to, struct simulation *sim)
-{
-    sim->observer = (struct observer){.context = NULL};
-    for (int k = 0; k < to->rows.n; k++) unlink(to->rows.file[k].series.path);
-    rows_close(&to->rows);
-    snapshots_close(&to->snapshots);
-    unlink(to->snapshots.path);
-    unlink(to->checkpoint);
-    rmdir(to->folder);
-}
-
-/* Snapshots and checkpoints of the run, each as often as the second one, which finds a file. */
-static enum err measure_files(struct forecast *f, struct outputs *to, struct simulation *sim,
-                              struct diag *d)
-{
-    const struct scene_output *const out = &sim->scene->output;
-    const double end = sim->scene->top.end_time * (1 - 1e-9);
-    struct image image = {.bytes = NULL};
-    TRY(snapshots_write(&to->snapshots, sim, d));
-    const double begin = thread_clock();
-    TRY(snapshots_write(&to->snapshots, sim, d));
-    const double written = thread_clock();
-    enum err e = checkpoint_capture(&image, sim, "", "", d);
-    if (!e) e = checkpoint_store(&image, to->folder, to->checkpoint, d);
-    checkpoint_free(&image);
-    f->files = (written - begin) * (1 + ceil(end / out->snapshot_interval));
-    f->files += (thread_clock() - written) *
-                (out->checkpoint_interval > 0 ? ceil(end / out->checkpoint_interval) : 1);
+    TRY(probes_create(&probes, sim, &sim->arena, d));
+    enum err e = ERR_OK;
+    for (int file = -1; file < probes.n_files && !e; file++) {
+        const double interval =
+            file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
+        const double rows = end / interval, readings = min2(2 * rows, end / f->dt),
+                     begun = thread_clock();
+        const int columns =
+            file < 0 ? (int)(sizeof(struct ledger) / sizeof *row) : probes.file[file].columns;
+        double reading = 0, writing = 0;
+        int n = 0;
+        do {
+            simulation_refresh(sim);
+            const double start = thread_clock();
+            if (file < 0)
+                *(struct ledger *)(void *)row = simulation_ledger(sim);
+            else
+                probes_sample(&probes, sim, file, false, row, rate);
+            const double read = thread_clock();
+            for (int c = 0; c < columns; c++) number_text(text, row[c]);
+            reading += read - start;
+            writing += thread_clock() - read;
+            n++;
+            e = try_step(sim, d);
+        } while (!e && thread_clock() - begun < row_seconds && goes_on(sim, end));
+        f->rows += (reading * readings + writing * rows) / n;
+        if (e == ERR_GUARD) e = ERR_OK;
+    }
     return e;
 }
 
@@ -226,12 +200,8 @@ static double run_trial(struct stretch *first, struct stretch *whole, double r, 
         e = open_coarse(coarse, o, r * dp);
     }
     if (!e) {
-        struct diag ignored = {.code = ERR_OK};
-        struct outputs outputs;
         phase_clock_use(true);
-        if (!outputs_open(&outputs, &coarse->simulation, &ignored))
-            run_coarse(first, whole, &coarse->simulation, trial_end, seconds);
-        outputs_close(&outputs, &coarse->simulation);
+        run_coarse(first, whole, &coarse->simulation, trial_end, seconds);
         phase_clock_use(false);
         session_close(coarse);
     }
@@ -270,16 +240,14 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
     run->amount[SUBSTEPS] = run->amount[STEPS] * each(trial, SUBSTEPS, STEPS) * (fluid ? near : 1);
     run->amount[EVALUATIONS] = run->amount[STEPS] * each(trial, EVALUATIONS, STEPS);
     for (int k = 0; k < PHASE_COUNT; k++) {
-        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS
-                        : k == PHASE_output                    ? TIME
-                                                               : STEPS;
+        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS : STEPS;
         if (first.amount[k] > 0)
             run->amount[k] = run->amount[per] * each(trial, k, per) * each(&whole, k, per) /
                              each(&first, k, per);
     }
-    const double sorts = whole.amount[PHASE_sort], others = seconds_of_steps(&whole) - sorts;
-    run->amount[PHASE_sort] = 0;
-    if (others > 0) run->amount[PHASE_sort] = seconds_of_steps(run) * sorts / others;
+    const double sorts = whole.amount[PHASE_sort], others = seconds_of(&whole) - sorts;
+    if (others > 0)
+        run->amount[PHASE_sort] = (seconds_of(run) - run->amount[PHASE_sort]) * sorts / others;
 }
 
 /* --- the run --- */
@@ -302,13 +270,13 @@ static double disk_bytes(const struct simulation *sim)
            BYTES_OF_ROW * rows;
 }
 
-/* The forecast of a simulation whose rows are followed. */
-static enum err foresee(struct forecast *f, struct outputs *outputs, struct session *session,
-                        const struct sphfsi_options *o, struct diag *d)
+enum err forecast_run(struct forecast *f, struct session *session, const struct sphfsi_options *o,
+                      struct diag *d)
 {
     struct simulation *const sim = &session->simulation;
     const double end = sim->scene->top.end_time;
     struct stretch trial, run;
+    *f = (struct forecast){0};
     TRY(take_first_steps(sim, d));
     TRY(measure(&trial, sim, end, trial_seconds, d));
     const double n_fluid = (double)sim->kind[KIND_FLUID].n,
@@ -320,27 +288,17 @@ static enum err foresee(struct forecast *f, struct outputs *outputs, struct sess
     f->dt = end / run.amount[STEPS];
     f->steps = ceil(run.amount[STEPS] * (1 - 1e-9));
     f->substeps = n_solid > 0 ? max2(f->steps, run.amount[SUBSTEPS]) : 0;
-    f->rows = run.amount[PHASE_output];
-    TRY(measure_files(f, outputs, sim, d));
+    TRY(measure_rows(f, sim, d));
+    f->snapshots = snapshots_seconds(sim) *
+                   (1 + ceil(end / sim->scene->output.snapshot_interval * (1 - 1e-9)));
     f->evaluations = run.amount[EVALUATIONS];
-    const double all = seconds_of_steps(&run),
+    const double all = seconds_of(&run),
                  solid = run.amount[PHASE_solid] + run.amount[PHASE_contact];
     for (int k = 0; k < PHASE_COUNT; k++) f->phase_fraction[k] = run.amount[k] / all;
     if (n_fluid > 0) f->fluid = (all - solid) / f->evaluations / n_fluid;
     if (n_solid > 0) f->solid = (n_fluid > 0 ? solid : all) / f->substeps / n_solid;
-    f->seconds = all + f->rows + f->files + session->opening;
+    f->seconds = all + f->rows + f->snapshots + session->opening;
     f->memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
     f->disk = disk_bytes(sim);
     return ERR_OK;
-}
-
-enum err forecast_run(struct forecast *f, struct session *session, const struct sphfsi_options *o,
-                      struct diag *d)
-{
-    struct outputs outputs;
-    *f = (struct forecast){0};
-    enum err e = outputs_open(&outputs, &session->simulation, d);
-    if (!e) e = foresee(f, &outputs, session, o, d);
-    outputs_close(&outputs, &session->simulation);
-    return e;
 }

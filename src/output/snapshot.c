@@ -268,6 +268,28 @@ enum err snapshots_write(struct snapshots *w, struct simulation *sim, struct dia
     return update(w, -1, sim, d);
 }
 
+double snapshots_seconds(struct simulation *sim)
+{
+    double seconds = 0;
+    simulation_refresh(sim);
+    pthread_mutex_lock(&hdf5_mutex);
+    H5E_BEGIN_TRY
+    {
+        const struct snapshot_layout layout = snapshot_file_layout(sim->scene);
+        const hid_t memory = H5Pcreate(H5P_FILE_ACCESS);
+        H5Pset_fapl_core(memory, 1 << 20, false);
+        const hid_t file = H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, memory);
+        const bool ok = snapshot_file_create(file, sim->scene, "", count_points(sim, false), -1);
+        const double begin = thread_clock();
+        if (ok && append_snapshot(&layout, file, sim)) seconds = thread_clock() - begin;
+        H5Fclose(file);
+        H5Pclose(memory);
+    }
+    H5E_END_TRY
+    pthread_mutex_unlock(&hdf5_mutex);
+    return seconds;
+}
+
 void snapshots_close(struct snapshots *w)
 {
     if (w->spare[0]) unlink(w->spare);

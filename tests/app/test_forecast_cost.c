@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run: its parts, bytes of its files; and how costs are measured. The linker puts
  * these in between:
- * --wrap: thread_clock phase_clock simulation_step probes_sample snapshots_write sort_particles
+ * --wrap: thread_clock phase_clock simulation_step simulation_ledger probes_sample sort_particles
  */
 #include "app/forecast.h"
 #include "output/probes.h"
-#include "output/snapshot.h"
 #include "time/advance.h"
 #include "time/energy.h"
 
@@ -89,7 +88,13 @@ enum err __wrap_sort_particles(struct simulation *s, struct diag *d)
     return __real_sort_particles(s, d);
 }
 
-static double reading; /* what a reading of probes takes in the second half of the run, s */
+struct ledger __real_simulation_ledger(struct simulation *s);
+struct ledger __wrap_simulation_ledger(struct simulation *s);
+struct ledger __wrap_simulation_ledger(struct simulation *s)
+{
+    now += clock_step;
+    return __real_simulation_ledger(s);
+}
 
 void __real_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
                           double *row, double *rate);
@@ -98,18 +103,8 @@ void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int
 void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
                           double *row, double *rate)
 {
-    now += s->state.time > 0.5 * s->scene->top.end_time ? reading : 0;
+    now += clock_step;
     __real_probes_sample(probes, s, file, means, row, rate);
-}
-
-static double writing; /* what a snapshot takes, s */
-
-enum err __real_snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d);
-enum err __wrap_snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d);
-enum err __wrap_snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d)
-{
-    now += writing;
-    return __real_snapshots_write(w, s, d);
 }
 
 /* By clocks that count readings, from now on. */
@@ -124,37 +119,36 @@ static struct forecast foresee(const char *text, const char *set)
     now = 0;
     steps = 0;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, forecast_run(&f, &session, &o, &diag), diag.text);
-    clock_step = longer = late = tick = sorting = reading = writing = 0;
+    clock_step = longer = late = tick = sorting = 0;
     return f;
 }
 
-/* With rows in them. */
-static double seconds_of_steps(const struct forecast *f)
-{
-    return f->seconds - f->files - session.opening;
-}
-
-/* Steps of all particles; rows of probes and ledger; snapshots and checkpoints; the opening. */
+/* Steps of all particles; rows of probes and ledger; snapshots; the opening. */
 static void test_seconds(void)
 {
     clock_step = 1e-4;
     const struct forecast f = foresee(tiny_case, NULL);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * f.evaluations, 0.02 / f.dt, f.evaluations);
     TEST_ASSERT_TRUE(f.steps == ceil(0.02 / f.dt * (1 - 1e-9)));
-    TEST_ASSERT_TRUE(f.fluid > 0 && f.solid > 0 && f.rows > 0 && f.files > 0);
+    TEST_ASSERT_TRUE(f.fluid > 0 && f.solid > 0 && f.rows > 0 && f.snapshots > 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * f.seconds,
                               f.evaluations * 100 * f.fluid + f.substeps * 45 * f.solid + f.rows +
-                                  f.files + session.opening,
+                                  f.snapshots + session.opening,
                               f.seconds);
     check_bytes(&f);
 }
 
-/* Five snapshots of 1 ms each. */
-static void test_snapshots_are_measured(void)
+/* By a clock of 1 ms a reading each state takes 2 ms, of itself and of the clock, and a row 1 ms:
+ * two readings for each of 20 rows of the ledger; for the 200 of the probes, more than there are
+ * steps, one a step. */
+static void test_rows_are_measured(void)
 {
-    tick = 1e-9;
-    writing = 1e-3;
-    assert_near(0.1e-3, 5e-3, foresee(tiny_case, NULL).files, "s");
+    clock_step = 1e-3;
+    const struct forecast f = foresee(tiny_case, NULL);
+    const double steps_of_run = 0.02 / f.dt;
+    TEST_ASSERT_TRUE(steps_of_run < 200);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 80e-3 + 20e-3 + 2e-3 * steps_of_run + 200e-3, f.rows);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5e-3, f.snapshots); /* five, of 1 ms each */
 }
 
 /* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then
@@ -174,7 +168,9 @@ static void test_work_of_some_steps_counts(void)
     clock_step = 1e-4;
     longer = 8e-3;
     const struct forecast f = foresee(tiny_case, NULL);
-    TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, seconds_of_steps(&f) / f.steps);
+    const double each =
+        f.fluid * f.evaluations / f.steps * 100 + f.solid * f.substeps / f.steps * 45;
+    TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, each);
 }
 
 /* A column of water that falls on its bed, and rows that take no part of it. */
@@ -194,25 +190,9 @@ static void test_later_steps_count(void)
         late = k * 1e-3;
         const struct forecast f = foresee(COLUMN, NULL);
         assert_near(1e-9, 0.02, f.coarse_dp, "the spacing of the coarse run");
-        each[k] = seconds_of_steps(&f) / f.steps;
+        each[k] = f.fluid * f.evaluations / f.steps * 200;
     }
     assert_near(0.05e-3, 0.5e-3, each[1] - each[0], "s a step");
-}
-
-/* Readings of probes later in the run, too: of 10 ms in its second half, on both sides of each of
- * 50 rows. */
-static void test_rows_of_later_states_count(void)
-{
-    double rows[2];
-    for (int k = 0; k < 2; k++) {
-        tick = 1e-5;
-        reading = k * 1e-2;
-        rows[k] = foresee(COLUMN "[probe p]\nquantity = front\n"
-                                 "[output]\nprobe_interval = 0.01\nledger_interval = 0.01\n",
-                          NULL)
-                      .rows;
-    }
-    assert_near(0.2, 1, rows[1] - rows[0], "s");
 }
 
 /* Sorts of water that flows, although the trial has none: by a run, each of 1 ms. */
@@ -220,7 +200,7 @@ static void test_sorts_of_the_flow_count(void)
 {
     tick = 2e-5;
     sorting = 1e-3;
-    const struct forecast f = foresee(COLUMN, "output.ledger_interval=0.1");
+    const struct forecast f = foresee(COLUMN, NULL);
     assert_near(1e-9, 0.02, f.coarse_dp, "the spacing of the coarse run");
     const double seconds = f.phase_fraction[PHASE_sort] * f.fluid * f.evaluations * 200;
     struct rig rig = {0};
@@ -243,11 +223,10 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_seconds);
-    RUN_TEST(test_snapshots_are_measured);
+    RUN_TEST(test_rows_are_measured);
     RUN_TEST(test_all_steps_are_measured);
     RUN_TEST(test_work_of_some_steps_counts);
     RUN_TEST(test_later_steps_count);
-    RUN_TEST(test_rows_of_later_states_count);
     RUN_TEST(test_sorts_of_the_flow_count);
     RUN_TEST(test_sorts_without_a_skin);
     return UNITY_END();
