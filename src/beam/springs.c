@@ -37,9 +37,10 @@ void beams_stiffen(struct beams *beams)
         const struct beam_spring *const s = &beams->spring[k];
         double along[2];
         if (s->node < 0) continue;
-        const double length = reach_of(beams, s, beams->state[s->node].x, along);
+        const double length = reach_of(beams, s, beams->state[s->node].x, along),
+                     half = 0.5 * s->given->stiffness;
         for (int c = 0; c < 2; c++) along[c] /= length;
-        add_stiffness(beams, s->node, along, 0.5 * s->given->stiffness, 0);
+        add_stiffness(beams, s->node, along, half, half * max2(elongation(s, length), 0) / length);
     }
 }
 

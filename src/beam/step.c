@@ -335,8 +335,15 @@ static int64_t count_below(struct beams *beams, double omega2, bool springs)
     return envelope_factor(&beams->matrix);
 }
 
-/* As of solids, a hundredth of the longest period (T-93) that bends beams without springs. Springs
- * raise this frequency and those above it. */
+static bool is_above_lowest(struct beams *beams, double omega2, const int64_t free[2])
+{
+    return count_below(beams, omega2, false) > free[0] &&
+           (beams->n_springs == 0 || count_below(beams, omega2, true) > free[1]);
+}
+
+/* As of solids, a hundredth of the longest period (T-93): that which bends beams without springs,
+ * or that of beams with springs if this is shorter. Soft springs add long periods, in which beams
+ * move as a whole. Stiff ones shorten those that bend. */
 double beams_longest_step(struct beams *beams)
 {
     enum { PARTS = 100 };
@@ -352,10 +359,11 @@ double beams_longest_step(struct beams *beams)
     }
     double low = ROUNDING * high;
     for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined[0] >= 0;
-    const int64_t free = joined ? count_below(beams, low, false) : count_free(beams);
+    const int64_t free[] = {joined ? count_below(beams, low, false) : count_free(beams),
+                            count_below(beams, low, true)};
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
-        *(count_below(beams, middle, true) > free ? &high : &low) = middle;
+        *(is_above_lowest(beams, middle, free) ? &high : &low) = middle;
     }
     const double swing = max2(elementary_hypot(g[0], g[1]) / length, 1e-300);
     return min2(2 * PI / sqrt(high), 2 * PI / sqrt(swing)) / PARTS;
