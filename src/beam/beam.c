@@ -141,21 +141,21 @@ static enum err join(struct beams *beams, int k, const struct hinge_point *at, b
     return ERR_OK;
 }
 
-/* Where several hold a place, they move alike. */
-static enum err refuse_other_motion(const struct beams *beams, const struct beam_node *node,
-                                    int mover, int line, struct diag *d)
+/* Where several hold a place, they move alike: one that is held, and another hold. */
+static enum err refuse_other_motion(const struct beams *beams, const struct beam_node *held,
+                                    const struct beam_node *other, struct diag *d)
 {
     const struct scene *const scene = beams->scene;
-    const int movers[] = {node->mover, mover};
-    struct section_title by[2] = {{"none"}, {"none"}};
-    if (node->row[0] >= 0 || mover == node->mover) return ERR_OK;
+    const int movers[] = {other->mover, held->mover};
+    struct section_title by[2] = {{"no motion"}, {"no motion"}};
+    if (held->row[0] >= 0 || movers[0] == movers[1]) return ERR_OK;
     for (int k = 0; k < 2; k++)
         if (movers[k] >= 0) by[k] = section_title(&scene->motion[movers[k]].common);
-    return fail_at(d, scene, line,
-                   "[beam %s]: those that hold the beam at %g, %g have different motions, %s and "
-                   "%s; leave one `clamp` or `hinge` out, or give both the same motion",
-                   beams->beam[node->beam].given->common.name, node->X[0], node->X[1], by[0].text,
-                   by[1].text);
+    return fail_at(d, scene, other->line,
+                   "[beam %s] is held at %g, %g with %s, but %s holds this point with %s; leave "
+                   "one `clamp` or `hinge` out, or give both the same motion",
+                   beams->beam[other->beam].given->common.name, other->X[0], other->X[1],
+                   by[0].text, scene_place(scene, held->line).text, by[1].text);
 }
 
 /* Holds the node nearest to each point: its displacements, with clamps its rotation, too. */
@@ -184,13 +184,14 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
                            "point; where one is on a [rigid], it must be the only one",
                            given->common.name, turns ? "hinge" : "clamp", at->at[0], at->at[1],
                            at->other);
+        const struct beam_node before = *node;
         node->body = body;
         node->pivots = turns;
+        node->line = at->line;
         if (body >= 0) continue;
-        const int mover = mover_of(beams->scene, given, at->other);
-        TRY(refuse_other_motion(beams, node, mover, at->line, d));
+        node->mover = mover_of(beams->scene, given, at->other);
+        TRY(refuse_other_motion(beams, &before, node, d));
         for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
-        node->mover = mover;
     }
     return ERR_OK;
 }
@@ -265,11 +266,10 @@ static enum err share_holds(struct beams *beams, struct diag *d)
             struct beam_node *const to = owner_of(beams, k, c);
             const struct beam_node *const from = &beams->node[k];
             if (from->row[c] >= 0 || to == from) continue;
-            if (c == 0)
-                TRY(refuse_other_motion(beams, to, from->mover,
-                                        beams->beam[from->beam].given->common.line, d));
+            if (c == 0) TRY(refuse_other_motion(beams, to, from, d));
             to->row[c] = -1;
             to->mover = from->mover;
+            to->line = from->line;
         }
     return ERR_OK;
 }
@@ -293,12 +293,11 @@ static enum err refuse_held_twice(const struct beams *beams, struct diag *d)
         for (int j = 0; j < k; j++)
             twice |= node->body >= 0 && beams->node[j].body >= 0 &&
                      node->row[0] == beams->node[j].row[0];
-        const struct scene_beam *const given = beams->beam[node->beam].given;
         if (twice)
-            return fail_at(d, beams->scene, given->common.line,
-                           "[beam %s]: more than one `clamp` or `hinge` holds the beams that are "
-                           "joined at %g, %g; where one is on a [rigid], it must be the only one",
-                           given->common.name, node->X[0], node->X[1]);
+            return fail_at(d, beams->scene, node->line,
+                           "more than one `clamp` or `hinge` holds the beams that are joined at "
+                           "%g, %g; where one is on a [rigid], it must be the only one",
+                           node->X[0], node->X[1]);
     }
     return ERR_OK;
 }

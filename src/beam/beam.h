@@ -31,6 +31,7 @@ struct beam_node {
     int joined[2];  /* nodes of other beams that have its place, its angle; -1: none */
     int body;       /* rigid body that it is joined to; -1: none */
     bool pivots;    /* by a hinge */
+    int line;       /* of its clamp or hinge in the case */
 };
 
 /* In a step: see beam_advance. */

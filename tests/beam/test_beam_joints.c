@@ -234,7 +234,8 @@ static void test_bad_input_is_refused(void)
     rig_refuses(BEAM("clamp = 1, 0, r\n[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"
                      "thickness = 1 cm\ndensity = 1\nclamp = 1, 0, b\nclamp = 1, 0\n"
                      "[rigid r]\nshape = box 1, -1, 2, 1\nmass = 1\n"),
-                "more than one `clamp` or `hinge` holds the beams that are joined at 1, 0");
+                "t.cfg:15: more than one `clamp` or `hinge` holds the beams that are joined "
+                "at 1, 0");
     rig_refuses(BEAM("clamp = 1, 0, r\n[rigid r]\nshape = box 2, -1, 3, 1\nmass = 1\n"),
                 "[rigid r] is more than a spacing from it");
 }
@@ -249,12 +250,13 @@ static void test_holds_that_move_apart_are_refused(void)
 #define OTHER(rest)                                                         \
     "[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"            \
     "thickness = 1 cm\ndensity = 1\n" rest
-    static const char why[] = "have different motions, [motion m] and [motion n]; leave one";
     rig_refuses(BEAM("clamp = 1, 0, w\n") OTHER("clamp = 1, 0, b\nclamp = 1, 0, o\n") WALLS,
-                "have different motions");
-    rig_refuses(BEAM("hinge = 1, 0, w\nclamp = 1, 0, o\n") WALLS, why);
+                "t.cfg:15: [beam c] is held at 1, 0 with [motion n], but t.cfg:8 holds this point "
+                "with [motion m]; leave one");
+    rig_refuses(BEAM("hinge = 1, 0, w\nclamp = 1, 0, o\n") WALLS,
+                "t.cfg:9: [beam b] is held at 1, 0 with [motion n], but t.cfg:8 holds this point");
     rig_refuses(BEAM("clamp = 1, 0, w\n") OTHER("hinge = 1, 0, b\nclamp = 1, 0\n") WALLS,
-                "[motion m] and none");
+                "t.cfg:15: [beam c] is held at 1, 0 with no motion");
     rig_open(&rig, BEAM("clamp = 1, 0, w\n") OTHER("clamp = 1, 0, b\nclamp = 1, 0, w\n") WALLS,
              NULL);
 }
