@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
-#include "base/csv.h"
-#include "output/probes.h"
-#include "output/series.h"
+#include "output/checkpoint.h"
+#include "output/rows.h"
 #include "output/snapshot.h"
-#include "time/energy.h"
 
 #include <stdlib.h>
 
 enum { FIRST_STEPS = 20 };
 /* CPU time of this thread, s: of the first steps, which are not measured, at most; of the trial; of
- * steps with rows of a file; of the coarse run, which takes a fiftieth of the run between these. */
-static const double first_seconds = 0.1, trial_seconds = 0.2, row_seconds = 0.05,
-                    coarse_seconds[] = {0.5, 2};
+ * the coarse run, which takes a fiftieth of the run between these. */
+static const double first_seconds = 0.1, trial_seconds = 0.2, coarse_seconds[] = {0.5, 2};
 
 /* --- measurement --- */
 
@@ -45,6 +42,12 @@ static double seconds_of(const struct stretch *s)
     double seconds = 0;
     for (int k = 0; k < PHASE_COUNT; k++) seconds += s->amount[k];
     return seconds;
+}
+
+/* Without rows. */
+static double seconds_of_steps(const struct stretch *s)
+{
+    return seconds_of(s) - s->amount[PHASE_output];
 }
 
 /* An amount per one of another. */
@@ -116,43 +119,38 @@ static enum err measure(struct stretch *s, struct simulation *sim, double until,
     return e == ERR_GUARD ? ERR_OK : e;
 }
 
-/* The time of all rows of the run. A row lies between two states, and a state serves all rows
- * beside it. The evaluation that a reading needs is that of the next step. */
-static enum err measure_rows(struct forecast *f, struct simulation *sim, struct diag *d)
-{
-    const double end = sim->scene->top.end_time;
-    double row[SERIES_MAX_COLUMNS], rate[SERIES_MAX_COLUMNS];
-    char text[NUMBER_TEXT];
+/* --- outputs of a run, without files --- */
+
+struct outputs {
     struct probes probes;
-    TRY(probes_create(&probes, sim, &sim->arena, d));
-    enum err e = ERR_OK;
-    for (int file = -1; file < probes.n_files && !e; file++) {
-        const double interval =
-            file < 0 ? sim->scene->output.ledger_interval : probes.file[file].interval;
-        const double rows = end / interval, readings = min2(2 * rows, end / f->dt),
-                     begun = thread_clock();
-        const int columns =
-            file < 0 ? (int)(sizeof(struct ledger) / sizeof *row) : probes.file[file].columns;
-        double reading = 0, writing = 0;
-        int n = 0;
-        do {
-            simulation_refresh(sim);
-            const double start = thread_clock();
-            if (file < 0)
-                *(struct ledger *)(void *)row = simulation_ledger(sim);
-            else
-                probes_sample(&probes, sim, file, false, row, rate);
-            const double read = thread_clock();
-            for (int c = 0; c < columns; c++) number_text(text, row[c]);
-            reading += read - start;
-            writing += thread_clock() - read;
-            n++;
-            e = try_step(sim, d);
-        } while (!e && thread_clock() - begun < row_seconds && goes_on(sim, end));
-        f->rows += (reading * readings + writing * rows) / n;
-        if (e == ERR_GUARD) e = ERR_OK;
-    }
-    return e;
+    struct row_files rows;
+};
+
+/* From now on rows are read and formatted as in a run, after the search for rest. */
+static enum err follow_rows(struct simulation *sim, struct diag *d)
+{
+    struct outputs *const to = arena_alloc(&sim->arena, 1, sizeof *to, "rows", d);
+    if (!to) return ERR_MEMORY;
+    TRY(probes_create(&to->probes, sim, &sim->arena, d));
+    TRY(rows_create(&to->rows, &to->probes, sim, true, &sim->arena, d));
+    sim->state.seeks_rest = false;
+    rows_follow(&to->rows, sim);
+    return ERR_OK;
+}
+
+/* Snapshots and checkpoints of the run, in memory. */
+static enum err measure_files(struct forecast *f, struct simulation *sim, struct diag *d)
+{
+    const struct scene_output *const out = &sim->scene->output;
+    const double end = sim->scene->top.end_time * (1 - 1e-9), begin = thread_clock();
+    struct image image = {.bytes = NULL};
+    TRY(checkpoint_capture(&image, sim, "", "", d));
+    checkpoint_seal(&image);
+    f->files = (thread_clock() - begin) *
+               (out->checkpoint_interval > 0 ? ceil(end / out->checkpoint_interval) : 1);
+    checkpoint_free(&image);
+    f->files += snapshots_seconds(sim) * (1 + ceil(end / out->snapshot_interval));
+    return ERR_OK;
 }
 
 /* --- a run of the same scene at a coarser spacing --- */
@@ -175,13 +173,15 @@ static enum err open_coarse(struct session *coarse, const struct sphfsi_options 
     return e;
 }
 
-/* Its first stretch, until the time of the trial and some more, and all of it. */
+/* Its first stretch, until the time of the trial and some more, and all of it. Without rows where a
+ * probe does not fit the coarse particles. */
 static void run_coarse(struct stretch *first, struct stretch *whole, struct simulation *sim,
                        double trial_end, double seconds)
 {
     struct diag ignored = {.code = ERR_OK};
     struct stretch more;
-    if (take_first_steps(sim, &ignored)) return;
+    const enum err e = follow_rows(sim, &ignored);
+    if ((e && e != ERR_INPUT) || take_first_steps(sim, &ignored)) return;
     if (measure(first, sim, trial_end, seconds, &ignored)) return;
     if (measure(&more, sim, (double)INFINITY, 0.1 * seconds - seconds_of(first), &ignored)) return;
     add(first, &more, 1);
@@ -240,14 +240,16 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
     run->amount[SUBSTEPS] = run->amount[STEPS] * each(trial, SUBSTEPS, STEPS) * (fluid ? near : 1);
     run->amount[EVALUATIONS] = run->amount[STEPS] * each(trial, EVALUATIONS, STEPS);
     for (int k = 0; k < PHASE_COUNT; k++) {
-        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS : STEPS;
+        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS
+                        : k == PHASE_output                    ? TIME
+                                                               : STEPS;
         if (first.amount[k] > 0)
             run->amount[k] = run->amount[per] * each(trial, k, per) * each(&whole, k, per) /
                              each(&first, k, per);
     }
-    const double sorts = whole.amount[PHASE_sort], others = seconds_of(&whole) - sorts;
-    if (others > 0)
-        run->amount[PHASE_sort] = (seconds_of(run) - run->amount[PHASE_sort]) * sorts / others;
+    const double sorts = whole.amount[PHASE_sort], others = seconds_of_steps(&whole) - sorts;
+    run->amount[PHASE_sort] = 0;
+    if (others > 0) run->amount[PHASE_sort] = seconds_of_steps(run) * sorts / others;
 }
 
 /* --- the run --- */
@@ -277,6 +279,7 @@ enum err forecast_run(struct forecast *f, struct session *session, const struct 
     const double end = sim->scene->top.end_time;
     struct stretch trial, run;
     *f = (struct forecast){0};
+    TRY(follow_rows(sim, d));
     TRY(take_first_steps(sim, d));
     TRY(measure(&trial, sim, end, trial_seconds, d));
     const double n_fluid = (double)sim->kind[KIND_FLUID].n,
@@ -288,16 +291,15 @@ enum err forecast_run(struct forecast *f, struct session *session, const struct 
     f->dt = end / run.amount[STEPS];
     f->steps = ceil(run.amount[STEPS] * (1 - 1e-9));
     f->substeps = n_solid > 0 ? max2(f->steps, run.amount[SUBSTEPS]) : 0;
-    TRY(measure_rows(f, sim, d));
-    f->snapshots = snapshots_seconds(sim) *
-                   (1 + ceil(end / sim->scene->output.snapshot_interval * (1 - 1e-9)));
+    f->rows = run.amount[PHASE_output];
+    TRY(measure_files(f, sim, d));
     f->evaluations = run.amount[EVALUATIONS];
-    const double all = seconds_of(&run),
+    const double all = seconds_of_steps(&run),
                  solid = run.amount[PHASE_solid] + run.amount[PHASE_contact];
     for (int k = 0; k < PHASE_COUNT; k++) f->phase_fraction[k] = run.amount[k] / all;
     if (n_fluid > 0) f->fluid = (all - solid) / f->evaluations / n_fluid;
     if (n_solid > 0) f->solid = (n_fluid > 0 ? solid : all) / f->substeps / n_solid;
-    f->seconds = all + f->rows + f->snapshots + session->opening;
+    f->seconds = all + f->rows + f->files + session->opening;
     f->memory = (double)(sim->arena.bytes + sim->scene->arena.bytes);
     f->disk = disk_bytes(sim);
     return ERR_OK;

@@ -15,13 +15,14 @@ struct forecast {
     double solid;                       /* per solid particle and step */
     double phase_fraction[PHASE_COUNT]; /* of the time of all steps */
     double rows;                        /* of probes and ledger */
-    double snapshots;
-    double seconds;      /* all, the opening of the session included */
-    double memory, disk; /* bytes; disk: at most, while it runs */
-    double coarse_dp;    /* spacing of the coarse run, m; 0: there was none */
+    double files;                       /* of snapshots and checkpoints */
+    double seconds;                     /* all, the opening of the session included */
+    double memory, disk;                /* bytes; disk: at most, while it runs */
+    double coarse_dp;                   /* spacing of the coarse run, m; 0: there was none */
 };
 
-/* Takes trial steps for 0.3 s, measures outputs, and runs the scene that `o` describes once more,
- * at a coarser spacing. Leaves the simulation in a state of no meaning. */
+/* Takes trial steps for 0.3 s, with the rows of a run, measures its files in memory, and runs the
+ * scene that `o` describes once more, at a coarser spacing. Leaves the simulation in a state of no
+ * meaning. */
 enum err forecast_run(struct forecast *f, struct session *session, const struct sphfsi_options *o,
                       struct diag *d) SPHFSI_CHECKED;

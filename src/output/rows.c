@@ -104,7 +104,7 @@ static enum err write_rows(const struct row_files *r, struct rows *f, struct dia
             f->before[0] = -1;
             break;
         }
-        if (f->series.fd >= 0) {
+        if (r->ledger) {
             row[0] = f->next;
             for (int c = 1; c < f->columns; c++) row[c] = between(f, c, f->next);
             FOR_MEANS(r, f, probe) put_mean(f, probe, row);
@@ -119,7 +119,7 @@ static enum err write_rows(const struct row_files *r, struct rows *f, struct dia
 static enum err follow_file(const struct row_files *r, struct rows *f, struct simulation *sim,
                             double until, struct diag *d)
 {
-    const bool whole = f->series.fd >= 0 && f->next <= until;
+    const bool whole = r->ledger && f->next <= until;
     const size_t bytes = (size_t)f->columns * sizeof(double);
     if (until < f->next - f->window) return ERR_OK;
     if (f->now[0] == sim->state.time) {
@@ -155,11 +155,11 @@ void rows_follow(struct row_files *r, struct simulation *sim)
 
 static void add_file(struct row_files *r, struct rows f)
 {
-    f.series.fd = -1;
+    f.series = (struct series){.fd = -1, .columns = f.columns};
     r->file[r->n++] = f;
 }
 
-static void list_files(struct row_files *r, const struct scene *scene, bool ledger)
+static void list_files(struct row_files *r, const struct scene *scene)
 {
     for (int k = 0; k < r->probes->n_files; k++) {
         const struct probe_file *const from = &r->probes->file[k];
@@ -169,12 +169,12 @@ static void list_files(struct row_files *r, const struct scene *scene, bool ledg
         for (int m = 0; m < r->probes->n; m++)
             if (r->probes->probe[m].file == k)
                 f.window = max2(f.window, r->probes->probe[m].average);
-        if (ledger || f.window > 0) add_file(r, f);
+        if (r->ledger || f.window > 0) add_file(r, f);
     }
     struct rows f = {.name = "ledger.csv", .header = ledger_header + 1, .file = -1};
     f.columns = (int)(sizeof(struct ledger) / sizeof(double));
     f.due.interval = scene->output.ledger_interval;
-    if (ledger) add_file(r, f);
+    if (r->ledger) add_file(r, f);
 }
 
 static enum err allocate(const struct row_files *r, struct rows *f, struct arena *a,
@@ -202,9 +202,9 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
     enum { MEAN = sizeof(struct probe_mean) / sizeof(double) };
     const bool ends =
         ledger && sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
-    *r = (struct row_files){.probes = p, .end = ends ? sim->scene->top.end_time : HUGE_VAL};
+    *r = (struct row_files){p, ledger, ends ? sim->scene->top.end_time : HUGE_VAL, 0, NULL};
     TRY(arena_array(a, &r->file, (size_t)p->n_files + 1, "rows", d));
-    list_files(r, sim->scene, ledger);
+    list_files(r, sim->scene);
     size_t n = 0;
     for (int k = 0; k < r->n; k++) n += 2 * (size_t)r->file[k].columns;
     for (int k = 0; k < p->n; k++) n += p->probe[k].average > 0 ? MEAN : 0;

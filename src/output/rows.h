@@ -3,7 +3,6 @@
  * both sides of each time; means of probes over time. No step depends on them. */
 #pragma once
 
-#include "output/probes.h"
 #include "output/series.h"
 
 /* --- times of outputs: the multiples of an interval --- */
@@ -34,20 +33,22 @@ struct rows {
     double next;    /* s: time of the next row */
     bool *angle;    /* [columns]: rad, from -pi to pi */
     double *before, *before_rate, *now, *now_rate;
-    bool whole;           /* `now` has all columns, not only what means need */
-    struct series series; /* not open: means only */
+    bool whole; /* `now` has all columns, not only what means need */
+    struct series series;
 };
 
 /* All files of a run, the ledger last. */
 struct row_files {
     struct probes *probes;
-    double end; /* s: no row is later; the last step passes it */
+    bool ledger; /* and all rows; false: means only */
+    double end;  /* s: no row is later; the last step passes it */
     int n;
     struct rows *file;
 };
 
 /* Lists the files, or without `ledger` only what the means of probes need. What a restart needs of
- * them becomes the simulation's `carried`. */
+ * them becomes the simulation's `carried`. Rows of files that are not started are formatted only.
+ */
 enum err rows_create(struct row_files *r, struct probes *p, struct simulation *sim, bool ledger,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/files.h"
+#include "output/probes.h"
 
 struct series {
     char path[PATH_BYTES];
@@ -10,7 +11,8 @@ struct series {
     int columns;
 };
 
-enum { SERIES_MAX_COLUMNS = 256 };
+/* The time, and all columns of all probes that a case may have. */
+enum { SERIES_MAX_COLUMNS = 1 + SCENE_MAX_SECTIONS * PROBE_MAX_COLUMNS };
 
 /* Starts the file with its header, column names joined by commas. */
 enum err series_create(struct series *s, const char *folder, const char *name, const char *header,
@@ -22,7 +24,7 @@ enum err series_create(struct series *s, const char *folder, const char *name, c
 enum err series_resume(struct series *s, const char *folder, const char *name, const char *header,
                        double time, double *first, double *last, struct diag *d) SPHFSI_CHECKED;
 
-/* Appends a row in one write. */
+/* Appends a row in one write; of a series that is not open it is formatted only. */
 enum err series_row(struct series *s, const double *values, struct diag *d) SPHFSI_CHECKED;
 
 /* Makes the rows survive a power failure; no effect on a series that is not open. */

@@ -27,7 +27,8 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
 enum err snapshots_write(struct snapshots *w, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 
-/* CPU time of this thread for a snapshot that is written to a file in memory, s; 0: it failed. */
+/* CPU time of this thread for a snapshot that is written to a file in memory and copied to a spare,
+ * s; 0: it failed. */
 double snapshots_seconds(struct simulation *sim);
 
 /* Removes the spare. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The cost of a run: its parts, bytes of its files; and how costs are measured. The linker puts
  * these in between:
- * --wrap: thread_clock phase_clock simulation_step simulation_ledger probes_sample sort_particles
+ * --wrap: thread_clock phase_clock simulation_step probes_sample sort_particles
  */
 #include "app/forecast.h"
 #include "output/probes.h"
@@ -88,13 +88,7 @@ enum err __wrap_sort_particles(struct simulation *s, struct diag *d)
     return __real_sort_particles(s, d);
 }
 
-struct ledger __real_simulation_ledger(struct simulation *s);
-struct ledger __wrap_simulation_ledger(struct simulation *s);
-struct ledger __wrap_simulation_ledger(struct simulation *s)
-{
-    now += clock_step;
-    return __real_simulation_ledger(s);
-}
+static double reading; /* what a reading of probes takes in the second half of the run, s */
 
 void __real_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
                           double *row, double *rate);
@@ -103,7 +97,7 @@ void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int
 void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
                           double *row, double *rate)
 {
-    now += clock_step;
+    now += s->state.time > 0.5 * s->scene->top.end_time ? reading : 0;
     __real_probes_sample(probes, s, file, means, row, rate);
 }
 
@@ -119,36 +113,48 @@ static struct forecast foresee(const char *text, const char *set)
     now = 0;
     steps = 0;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, forecast_run(&f, &session, &o, &diag), diag.text);
-    clock_step = longer = late = tick = sorting = 0;
+    clock_step = longer = late = tick = sorting = reading = 0;
     return f;
 }
 
-/* Steps of all particles; rows of probes and ledger; snapshots; the opening. */
+/* With rows in them. */
+static double seconds_of_steps(const struct forecast *f)
+{
+    return f->seconds - f->files - session.opening;
+}
+
+/* Steps of all particles; rows of probes and ledger; snapshots and checkpoints; the opening. */
 static void test_seconds(void)
 {
     clock_step = 1e-4;
     const struct forecast f = foresee(tiny_case, NULL);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * f.evaluations, 0.02 / f.dt, f.evaluations);
     TEST_ASSERT_TRUE(f.steps == ceil(0.02 / f.dt * (1 - 1e-9)));
-    TEST_ASSERT_TRUE(f.fluid > 0 && f.solid > 0 && f.rows > 0 && f.snapshots > 0);
+    TEST_ASSERT_TRUE(f.fluid > 0 && f.solid > 0 && f.rows > 0 && f.files > 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9 * f.seconds,
                               f.evaluations * 100 * f.fluid + f.substeps * 45 * f.solid + f.rows +
-                                  f.snapshots + session.opening,
+                                  f.files + session.opening,
                               f.seconds);
     check_bytes(&f);
 }
 
-/* By a clock of 1 ms a reading each state takes 2 ms, of itself and of the clock, and a row 1 ms:
- * two readings for each of 20 rows of the ledger; for the 200 of the probes, more than there are
- * steps, one a step. */
-static void test_rows_are_measured(void)
+/* By a clock of 1 ms a reading: five snapshots and a checkpoint. */
+static void test_files_are_measured(void)
 {
     clock_step = 1e-3;
-    const struct forecast f = foresee(tiny_case, NULL);
-    const double steps_of_run = 0.02 / f.dt;
-    TEST_ASSERT_TRUE(steps_of_run < 200);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 80e-3 + 20e-3 + 2e-3 * steps_of_run + 200e-3, f.rows);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5e-3, f.snapshots); /* five, of 1 ms each */
+    assert_near(1e-9, 6e-3, foresee(tiny_case, NULL).files, "s");
+}
+
+/* The most probes that a case may have, each with the most columns, in one file. */
+static void test_widest_rows_are_measured(void)
+{
+    static char text[16384];
+    int at = snprintf(text, sizeof text, "%s", tiny_case);
+    for (int k = 3; k < SCENE_MAX_SECTIONS; k++)
+        at += snprintf(text + at, sizeof text - (size_t)at,
+                       "[probe S%d]\nquantity = stress\nbody = gate\npoint = 0.11, 0.04\n", k);
+    TEST_ASSERT_TRUE(at < (int)sizeof text);
+    TEST_ASSERT_TRUE(foresee(text, NULL).rows > foresee(tiny_case, NULL).rows);
 }
 
 /* By a clock that goes on by 0.1 ms each time it is read: the first 21 steps are not measured; then
@@ -168,9 +174,7 @@ static void test_work_of_some_steps_counts(void)
     clock_step = 1e-4;
     longer = 8e-3;
     const struct forecast f = foresee(tiny_case, NULL);
-    const double each =
-        f.fluid * f.evaluations / f.steps * 100 + f.solid * f.substeps / f.steps * 45;
-    TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, each);
+    TEST_ASSERT_DOUBLE_WITHIN(0.4e-3, 1.1e-3, seconds_of_steps(&f) / f.steps);
 }
 
 /* A column of water that falls on its bed, and rows that take no part of it. */
@@ -190,9 +194,25 @@ static void test_later_steps_count(void)
         late = k * 1e-3;
         const struct forecast f = foresee(COLUMN, NULL);
         assert_near(1e-9, 0.02, f.coarse_dp, "the spacing of the coarse run");
-        each[k] = f.fluid * f.evaluations / f.steps * 200;
+        each[k] = seconds_of_steps(&f) / f.steps;
     }
     assert_near(0.05e-3, 0.5e-3, each[1] - each[0], "s a step");
+}
+
+/* Readings of probes later in the run, too: of 10 ms in its second half, on both sides of each of
+ * 50 rows. */
+static void test_rows_of_later_states_count(void)
+{
+    double rows[2];
+    for (int k = 0; k < 2; k++) {
+        tick = 1e-5;
+        reading = k * 1e-2;
+        rows[k] = foresee(COLUMN "[probe p]\nquantity = front\n"
+                                 "[output]\nprobe_interval = 0.01\nledger_interval = 0.01\n",
+                          NULL)
+                      .rows;
+    }
+    assert_near(0.2, 1, rows[1] - rows[0], "s");
 }
 
 /* Sorts of water that flows, although the trial has none: by a run, each of 1 ms. */
@@ -200,7 +220,7 @@ static void test_sorts_of_the_flow_count(void)
 {
     tick = 2e-5;
     sorting = 1e-3;
-    const struct forecast f = foresee(COLUMN, NULL);
+    const struct forecast f = foresee(COLUMN, "output.ledger_interval=0.1");
     assert_near(1e-9, 0.02, f.coarse_dp, "the spacing of the coarse run");
     const double seconds = f.phase_fraction[PHASE_sort] * f.fluid * f.evaluations * 200;
     struct rig rig = {0};
@@ -223,10 +243,12 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_seconds);
-    RUN_TEST(test_rows_are_measured);
+    RUN_TEST(test_files_are_measured);
+    RUN_TEST(test_widest_rows_are_measured);
     RUN_TEST(test_all_steps_are_measured);
     RUN_TEST(test_work_of_some_steps_counts);
     RUN_TEST(test_later_steps_count);
+    RUN_TEST(test_rows_of_later_states_count);
     RUN_TEST(test_sorts_of_the_flow_count);
     RUN_TEST(test_sorts_without_a_skin);
     return UNITY_END();

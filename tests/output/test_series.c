@@ -107,23 +107,6 @@ static void a_full_disk_is_reported(void)
     series_close(&s);
 }
 
-static void columns_are_counted(void)
-{
-    static char header[2 * SERIES_MAX_COLUMNS + 2];
-    struct series s;
-    memset(header, ',', 2 * SERIES_MAX_COLUMNS);
-    for (int k = 0; k < 2 * SERIES_MAX_COLUMNS; k += 2) header[k] = 'a';
-    header[2 * SERIES_MAX_COLUMNS - 1] = '\0';
-    TEST_ASSERT_EQUAL_INT(ERR_OK, series_create(&s, tiny_folder(), "wide.csv", header, &diag));
-    series_close(&s);
-    header[2 * SERIES_MAX_COLUMNS - 1] = ',';
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, series_create(&s, tiny_folder(), "wider.csv", header, &diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text,
-                                        "wider.csv: would have 257 columns, but at most 256"),
-                                 diag.text);
-    TEST_ASSERT_NOT_EQUAL(0, access(tiny_path("wider.csv"), F_OK));
-}
-
 static void a_link_is_not_written_through(void)
 {
     struct series s;
@@ -135,7 +118,6 @@ static void a_link_is_not_written_through(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(columns_are_counted);
     RUN_TEST(a_link_is_not_written_through);
     RUN_TEST(numbers_read_back_exactly);
     RUN_TEST(rows_are_written);
