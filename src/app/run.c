@@ -8,7 +8,6 @@
 #include "output/report.h"
 #include "output/rows.h"
 #include "output/snapshot.h"
-#include "time/energy.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -4,7 +4,6 @@
 #include "output/checkpoint.h"
 #include "coupling/impulse.h"
 #include "geometry/motion.h"
-#include "time/energy.h"
 
 #include <inttypes.h>
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/rows.h"
-#include "time/energy.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
 #include "geometry/motion.h"
-#include "time/energy.h"
 
 void advance_structure(struct simulation *sim, double dt, double kick)
 {

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "time/energy.h"
 #include "geometry/motion.h"
-#include "time/advance.h"
-
-/* --- energies --- */
+#include "time/simulation.h"
 
 /* Of a section or region: its share of the ledger, and what only the account has. Doubles only. */
 struct energies {
@@ -93,22 +90,44 @@ static void add_bodies(const struct simulation *sim, struct energies *body)
     for (int k = 0; k < sim->rigid.n + sim->beams.n; k++) {
         const struct body_energy e = k < sim->rigid.n ? rigid_energy(&sim->rigid, k, sim->state.dt)
                                                       : beam_energy(&sim->beams, k - sim->rigid.n);
-        struct ledger *const row = &body[k].row;
-        row->kinetic = e.kinetic;
-        row->potential = e.potential;
-        row->elastic = e.elastic;
-        row->momentum_x = e.momentum[0];
-        row->momentum_y = e.momentum[1];
-        row->mass = e.mass;
-        body[k].waiting = e.waiting;
+        body[k] = (struct energies){.row = {.kinetic = e.kinetic,
+                                            .potential = e.potential,
+                                            .elastic = e.elastic,
+                                            .momentum_x = e.momentum[0],
+                                            .momentum_y = e.momentum[1],
+                                            .mass = e.mass},
+                                    .waiting = e.waiting};
     }
 }
+
+/* The energy of dummies, divided among the fluids as their compression energy is: a wall at rest
+ * belongs to no region. */
+static void add_dummies(const struct simulation *sim, struct energies *fluid)
+{
+    double dummies = 0, internal = 0;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n && particles->dens; i++)
+            dummies += sim->fluid.volume[kind][particles->body[i]] *
+                       eos_energy(particles->dens[i], sim->fluid.k.c0);
+    }
+    for (int k = 0; k < sim->scene->n_fluid; k++) internal += fluid[k].row.internal;
+    for (int k = 0; k < sim->scene->n_fluid && internal > 0; k++)
+        fluid[k].dummies = sim->fluid.k.mass * dummies * fluid[k].row.internal / internal;
+}
+
+static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
 
 /* Returns the smallest det F. */
 static double find_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
+    double repulsion[SCENE_MAX_SECTIONS] = {0};
     memset(of, 0, ENERGY_ENTRIES * sizeof *of);
     if (sim->effects & FX_FLUID) add_fluid(sim, of);
+    if (sim->effects & FX_FLUID && keeps_account(sim)) add_dummies(sim, of);
+    if (sim->effects & FX_REPULSION && keeps_account(sim))
+        fluid_repulsion_energy(&sim->fluid, sim->kind, &sim->cells, repulsion);
+    for (int k = 0; k < sim->scene->n_fluid; k++) of[k].repulsion = repulsion[k];
     add_bodies(sim, &of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, 0))]);
     return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
 }
@@ -137,42 +156,12 @@ struct ledger simulation_ledger(struct simulation *sim)
     return row;
 }
 
-/* The energy of dummies, divided among the fluids as their compression energy is: a wall at rest
- * belongs to no region. */
-static void add_dummies(const struct simulation *sim, struct energies *fluid)
-{
-    double dummies = 0, internal = 0;
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
-        for (int64_t i = 0; i < particles->n && particles->dens; i++)
-            dummies += sim->fluid.volume[kind][particles->body[i]] *
-                       eos_energy(particles->dens[i], sim->fluid.k.c0);
-    }
-    for (int k = 0; k < sim->scene->n_fluid; k++) internal += fluid[k].row.internal;
-    for (int k = 0; k < sim->scene->n_fluid && internal > 0; k++)
-        fluid[k].dummies = sim->fluid.k.mass * dummies * fluid[k].row.internal / internal;
-}
-
-/* Also those of the account. */
-static void find_all_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
-{
-    double repulsion[SCENE_MAX_SECTIONS] = {0};
-    struct energies *const fluid = &of[energy_entry(KIND_FLUID, 0)];
-    find_energies(sim, of);
-    if (sim->effects & FX_FLUID) add_dummies(sim, fluid);
-    if (sim->effects & FX_REPULSION)
-        fluid_repulsion_energy(&sim->fluid, sim->kind, &sim->cells, repulsion);
-    for (int k = 0; k < sim->scene->n_fluid; k++) fluid[k].repulsion = repulsion[k];
-}
-
 /* --- work --- */
 
 static struct energy_entry *entry_of(struct simulation *sim, enum kind kind, int section)
 {
     return &sim->state.energy.entry[energy_entry(kind, section)];
 }
-
-static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
 
 void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
 {
@@ -187,8 +176,8 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 void energy_of_evaluation(struct simulation *sim, double dt)
 {
     if (!keeps_account(sim)) return;
-    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid =
-                                                                      &sim->kind[KIND_SOLID];
+    const struct particles *const fluid = &sim->kind[KIND_FLUID];
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_FLUID];
     for (int64_t i = 0; i < fluid->n && external->at; i++)
         entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
@@ -200,10 +189,7 @@ void energy_of_evaluation(struct simulation *sim, double dt)
         const struct moving_wall *const wall = &sim->wall_motion.body[b];
         struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
         const double work = dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
-        if (wall->free)
-            e->given -= work;
-        else
-            e->supplied += work;
+        *(wall->free ? &e->given : &e->supplied) += wall->free ? -work : work;
     }
     for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
         entry_of(sim, KIND_SOLID, solid->body[i])->given +=
@@ -247,33 +233,30 @@ void energy_of_body(struct simulation *sim, int wall, double received, double dr
  * ledger has the potential energy of the value at t = 0. */
 static double gravity_work(struct simulation *sim)
 {
-    double g[2], work = 0;
-    scene_gravity_at(sim->scene, scene_time(sim, sim->state.time - 0.5 * sim->state.dt), g);
-    for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - sim->scene->top.gravity[c]);
-    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const particles =
-                                                                      &sim->kind[KIND_SOLID];
-    for (int64_t i = 0; i < fluid->n; i++) {
-        const double m = particle_mass(&sim->fluid.k, fluid, i);
-        const double done = m * (g[0] * fluid->vx[i] + g[1] * fluid->vy[i]);
-        energy_supply(sim, KIND_FLUID, fluid->body[i], done);
-        work += done;
-    }
-    for (int64_t i = 0; i < particles->n; i++) {
-        const int body = particles->body[i];
-        const double done = sim->scene->solid[body].gravity * particles->free[i] *
-                            sim->solid.body[body].mass *
-                            (g[0] * particles->vx[i] + g[1] * particles->vy[i]);
-        energy_supply(sim, KIND_SOLID, body, done);
-        work += done;
+    const struct scene *const scene = sim->scene;
+    double g[2], sum = 0;
+    scene_gravity_at(scene, scene_time(sim, sim->state.time - 0.5 * sim->state.dt), g);
+    for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - scene->top.gravity[c]);
+    for (int solid = 0; solid < 2; solid++) {
+        const enum kind kind = solid ? KIND_SOLID : KIND_FLUID;
+        const struct particles *const p = &sim->kind[kind];
+        for (int64_t i = 0; i < p->n; i++) {
+            const int b = p->body[i];
+            const double m = solid ? scene->solid[b].gravity * p->free[i] * sim->solid.body[b].mass
+                                   : particle_mass(&sim->fluid.k, p, i);
+            const double work = m * (g[0] * p->vx[i] + g[1] * p->vy[i]);
+            energy_supply(sim, kind, b, work);
+            sum += work;
+        }
     }
     for (int k = 0; k < sim->rigid.n; k++) {
+        const struct rigid_body *const b = &sim->rigid.body[k];
         const double *const v = sim->rigid.state[k].v;
-        const double done = sim->rigid.body[k].given->gravity * sim->rigid.body[k].mass[0] *
-                            (g[0] * v[0] + g[1] * v[1]);
-        energy_supply(sim, KIND_WALL, scene_rigid_wall(sim->scene, k), done);
-        work += done;
+        const double work = b->given->gravity * b->mass[0] * (g[0] * v[0] + g[1] * v[1]);
+        energy_supply(sim, KIND_WALL, scene_rigid_wall(scene, k), work);
+        sum += work;
     }
-    return work;
+    return sum;
 }
 
 /* --- regions: sections that exchange energy with each other and with no others --- */
@@ -298,24 +281,27 @@ static void merge_regions(struct energy_account *account, int one, int other)
         if (region_of(account, k) == second) account->entry[k].region = first;
 }
 
+/* Sections of a kind belong to the region of an entry from now on. */
+static void join(struct simulation *sim, int entry, enum kind kind, int from, int end)
+{
+    for (int k = from; k < end; k++)
+        merge_regions(&sim->state.energy, entry, energy_entry(kind, k));
+}
+
 /* The energy of contact is a single number: all bodies belong together once any have touched. */
 static void join_bodies(struct simulation *sim)
 {
-    const int first = energy_entry(KIND_SOLID, 0);
-    for (int k = first + 1; k < ENERGY_ENTRIES; k++) merge_regions(&sim->state.energy, first, k);
-    for (int k = 0; k < sim->rigid.n; k++)
-        merge_regions(&sim->state.energy, first,
-                      energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, k)));
+    const int first = energy_entry(KIND_SOLID, 0), rigid = scene_rigid_wall(sim->scene, 0);
+    join(sim, first, KIND_SOLID, 1, sim->scene->n_solid);
+    join(sim, first, KIND_WALL, rigid, rigid + sim->rigid.n);
 }
 
 /* Beams are one system of equations, from the start. Rigid bodies from the section `from` on belong
  * to them once a beam has pushed one: the work of these forces is within the region. */
 static void join_beams(struct simulation *sim, int from)
 {
-    const int first = scene_beam_wall(sim->scene, 0);
-    for (int k = from; k < sim->scene->n_wall && sim->beams.n; k++)
-        merge_regions(&sim->state.energy, energy_entry(KIND_WALL, first),
-                      energy_entry(KIND_WALL, k));
+    const int first = energy_entry(KIND_WALL, scene_beam_wall(sim->scene, 0));
+    join(sim, first, KIND_WALL, from, sim->scene->n_wall);
 }
 
 /* Sections whose boxes are within the kernel's reach of each other belong together from now on; all
@@ -348,7 +334,7 @@ void energy_after_step(struct simulation *sim)
     damping_book(&sim->damping, sim->state.dt);
     if (sim->gravity_varies) *work += gravity_work(sim);
     if (!keeps_account(sim)) return;
-    if (sim->effects & FX_OPEN) sim->state.energy.open = open_energy(&sim->open);
+    sim->state.energy.open = open_energy(&sim->open);
     for (int k = 0; k < sim->solid.n_bodies; k++) {
         entry_of(sim, KIND_SOLID, k)->supplied += sim->solid.work_on[k];
         sim->solid.work_on[k] = 0;
@@ -365,25 +351,6 @@ void energy_after_step(struct simulation *sim)
     sim->contact.touched = sim->beams.pushed = false;
 }
 
-/* --- terms --- */
-
-static void find_terms(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
-{
-    const int first_wall = energy_entry(KIND_WALL, 0);
-    for (int k = 0; k < ENERGY_ENTRIES; k++) {
-        const struct energy_entry *const e = &sim->state.energy.entry[k];
-        const double gained = without_potential(&of[k]) + of[k].row.potential - e->supplied;
-        double *const term = of[k].term;
-        const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
-        term[body ? TERM_SOLID : TERM_FLUID] = gained;
-        if (body) term[TERM_FLUID] = e->given;
-        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].waiting;
-        term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
-        of[k].tolerance +=
-            e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
-    }
-}
-
 void energy_begin(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
@@ -392,8 +359,8 @@ void energy_begin(struct simulation *sim)
     memset(account, 0, sizeof *account);
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
     if (!keeps_account(sim)) return;
-    find_all_energies(sim, of);
-    account->open = sim->effects & FX_OPEN ? open_energy(&sim->open) : 0;
+    find_energies(sim, of);
+    account->open = open_energy(&sim->open);
     account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
@@ -416,12 +383,12 @@ void energy_begin(struct simulation *sim)
 
 /* --- the test for gains --- */
 
-/* The term of a region that has gained the largest fraction. */
-static struct energy_gain gain_of_region(struct energy_account *account, int entry,
-                                         const struct energies *region, double driven)
+/* The largest fraction that a region has gained by a term, if none has gained a larger one. */
+static void find_gain_of_region(struct energy_account *account, int entry,
+                                const struct energies *region, double driven,
+                                struct energy_gain *worst)
 {
     struct energy_entry *const at = &account->entry[entry];
-    struct energy_gain worst = {.entry = -1};
     at->lowest_potential = min2(at->lowest_potential, region->row.potential);
     const double active =
         driven + without_potential(region) + region->row.potential - at->lowest_potential;
@@ -437,12 +404,11 @@ static struct energy_gain gain_of_region(struct energy_account *account, int ent
         account->most[t] = max2(account->most[t], gained);
         gained -= region->tolerance;
         const double share = at->available[t] > 0 ? gained / at->available[t] : (double)INFINITY;
-        if (t != TERM_ALL && gained > 0 && share > worst.share)
-            worst = (struct energy_gain){entry, (enum energy_term)t, .share = share,
-                                         .energy = gained, .available = at->available[t]};
+        if (t != TERM_ALL && gained > 0 && share > worst->share)
+            *worst = (struct energy_gain){entry, (enum energy_term)t, .share = share,
+                                          .energy = gained, .available = at->available[t]};
     }
-    worst.all = max2(0, gained / at->available[TERM_ALL]);
-    return worst;
+    if (worst->entry == entry) worst->all = max2(0, gained / at->available[TERM_ALL]);
 }
 
 struct energy_gain energy_find_gain(struct simulation *sim)
@@ -450,24 +416,32 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     struct energy_account *const account = &sim->state.energy;
     struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
     struct energy_gain worst = {.entry = -1};
+    const int first_wall = energy_entry(KIND_WALL, 0);
     /* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it
      * the energy at the start from rest says nothing. */
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
     const double driven = sim->effects & FX_OPEN ? flow * (double)sim->kind[KIND_FLUID].n : 0;
-    find_all_energies(sim, of);
-    find_terms(sim, of);
+    find_energies(sim, of);
     join_neighbours(sim);
     memset(account->now, 0, sizeof account->now);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
-        if (region_of(account, k) < 0) continue;
-        add_energies(&sum[region_of(account, k)], &of[k]);
-        for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += of[k].term[t];
+        const int region = region_of(account, k);
+        if (region < 0) continue;
+        const struct energy_entry *const e = &account->entry[k];
+        double *const term = of[k].term;
+        const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
+        term[body ? TERM_SOLID : TERM_FLUID] =
+            without_potential(&of[k]) + of[k].row.potential - e->supplied;
+        if (body) term[TERM_FLUID] = e->given;
+        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].waiting;
+        term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
+        of[k].tolerance +=
+            e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
+        add_energies(&sum[region], &of[k]);
+        for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += term[t];
     }
-    for (int k = 0; k < ENERGY_ENTRIES; k++) {
-        if (region_of(account, k) != k) continue;
-        const struct energy_gain gain = gain_of_region(account, k, &sum[k], driven);
-        if (gain.share > worst.share) worst = gain;
-    }
+    for (int k = 0; k < ENERGY_ENTRIES; k++)
+        if (region_of(account, k) == k) find_gain_of_region(account, k, &sum[k], driven, &worst);
     return worst;
 }
 
@@ -487,11 +461,9 @@ void energy_test_due(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     if (!keeps_account(sim)) return;
-    if (sim->effects & FX_OPEN) { /* brought in other than by the constraint */
-        const double now = open_energy(&sim->open);
-        energy_supply(sim, KIND_FLUID, 0, now - account->open);
-        account->open = now;
-    }
+    const double open = open_energy(&sim->open);
+    energy_supply(sim, KIND_FLUID, 0, open - account->open); /* other than by the constraint */
+    account->open = open;
     if (!test_is_due(sim)) return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);
@@ -502,12 +474,99 @@ void energy_test_due(struct simulation *sim)
 
 void energy_of_step(struct simulation *sim, double dt)
 {
-    struct energy_account *const account = &sim->state.energy;
+    double *const pending = &sim->state.energy.pending;
     if (test_is_due(sim)) {
-        energy_of_evaluation(sim, account->pending);
-        account->pending = 0;
+        energy_of_evaluation(sim, *pending);
+        *pending = 0;
     }
     energy_test_due(sim);
-    energy_of_evaluation(sim, account->pending + 0.5 * dt);
-    account->pending = 0.5 * dt;
+    energy_of_evaluation(sim, *pending + 0.5 * dt);
+    *pending = 0.5 * dt;
+}
+
+/* --- what is said of a gain, and when the run stops --- */
+
+/* Fraction of its available energy that a region may gain without a warning; the time for which a
+ * gain below a tenth lasts before it counts, s: while a run starts, little energy is available. */
+#define GAIN_WARNING 0.01
+#define GAIN_COUNTS_NOW 0.1
+#define GAIN_LASTS 2.5e-3
+/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy
+ * and is stable; four fifths of what it shows count as gain. An unstable run exceeds any such
+ * fraction. */
+#define GAIN_LIMIT 0.9
+enum { TEXT = 320 };
+
+/* What may help. The work of dummies does not depend on the step: fluid that is resolved better
+ * makes it less. */
+static void write_remedy(const struct simulation *sim, enum energy_term term, char text[TEXT])
+{
+    double half;
+    const struct scene_numerics *const n = &sim->scene->numerics;
+    const char *const key = timestep_shorter(sim, &half);
+    const bool fluid = term == TERM_FLUID, held = n->fixed_step > 0;
+    /* Between bodies that meet the layer of fluid may be too thin. */
+    const bool gap = fluid && sim->effects & FX_CONTACT && sim->contact.near;
+    /* Without weight nothing holds fluid at a wall that moves back. */
+    const bool suction = fluid && !(sim->effects & FX_GRAVITY) && n->suction == SUCTION_OFF;
+    bool paper = false; /* its law has no potential, and gains energy at any step */
+    for (int k = 0; k < sim->scene->n_solid; k++) paper |= sim->scene->solid[k].law == LAW_PAPER;
+    snprintf(text, TEXT, "%snumerics.%s = %.3g%s%s%s%s", fluid ? "a smaller dp or " : "", key, half,
+             gap ? " or a larger gap in [contact]" : "", suction ? " or numerics.suction = on" : "",
+             sim->effects & FX_MULTIRATE && !held ? " or numerics.multirate = off" : "",
+             term == TERM_SOLID && paper ? " or law = neo_hookean or svk" : "");
+}
+
+/* What has the most speed in a region: "[solid gate] at (0.1, 0.2) m", or the region's first
+ * section where it has no particles. */
+static void write_fastest(const struct simulation *sim, int region, char text[TEXT])
+{
+    static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
+    double top = -1, x = 0, y = 0;
+    int fastest = region;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const particles = &sim->kind[kind];
+        for (int64_t i = 0; i < particles->n; i++) {
+            const double speed2 = square(particles->vx[i]) + square(particles->vy[i]);
+            const int own = energy_entry((enum kind)kind, particles->body[i]);
+            if (!(speed2 > top) || sim->state.energy.entry[own].region != region) continue;
+            top = speed2, fastest = own;
+            x = particles->x[i], y = particles->y[i];
+        }
+    }
+    const void *const section =
+        section_at(sim->scene, id[fastest / SCENE_MAX_SECTIONS], fastest % SCENE_MAX_SECTIONS);
+    const int used = snprintf(text, TEXT, "%s", section_title(section).text);
+    if (top >= 0) snprintf(text + used, TEXT - (size_t)used, " at (%.4g, %.4g) m", x, y);
+}
+
+enum err energy_guard(struct simulation *sim, struct diag *d)
+{
+    const struct energy_gain g = sim->gain;
+    const double time = sim->state.time;
+    const char *const source = g.term == TERM_FLUID   ? "the fluid or at its boundaries"
+                               : g.term == TERM_SOLID ? "the solid's stress or time integration"
+                                                      : "the exchange between fluid and structure";
+    char place[TEXT], text[2 * TEXT], remedy[TEXT];
+    sim->gain.found = false;
+    if (g.found && g.share <= GAIN_WARNING) sim->state.gain_since = time;
+    const bool counts = g.share <= GAIN_WARNING || g.share >= GAIN_COUNTS_NOW ||
+                        time - sim->state.gain_since >= GAIN_LASTS;
+    if (!g.found || g.entry < 0 || !counts) return ERR_OK;
+    sim->state.gain = max2(sim->state.gain, g.energy);
+    sim->state.gain_share = max2(sim->state.gain_share, g.share);
+    if (g.share <= GAIN_WARNING) return ERR_OK;
+    write_fastest(sim, g.entry, place);
+    snprintf(text, sizeof text,
+             "%s: the run has gained %.3g J/m of energy that nothing supplied (available: %.3g "
+             "J/m), in %s; fastest: %s",
+             time_text(sim).text, g.energy, g.available, source, place);
+    write_remedy(sim, g.term, remedy);
+    /* A gain at the interface may be less than what the rest loses. */
+    if ((g.term == TERM_INTERFACE ? g.all : g.share) > GAIN_LIMIT)
+        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s may help", text, remedy);
+    if (!sim->guard.warned_energy)
+        diag_warn(d, "%s. The results may be invalid; %s may help", text, remedy);
+    sim->guard.warned_energy = true;
+    return ERR_OK;
 }

@@ -4,7 +4,6 @@
 #include <stdarg.h>
 
 #include "time/advance.h"
-#include "time/energy.h"
 
 /* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h.
  * Steps over the largest step of the fluid. */

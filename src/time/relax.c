@@ -2,7 +2,6 @@
  * The search for a state of rest (T-78) by kinetic damping: where the kinetic energy has passed a
  * maximum, all velocities are set to zero. Its steps are those of a run, with forces at t = 0. */
 #include "time/simulation.h"
-#include "time/energy.h"
 
 static double kinetic_energy(const struct simulation *sim)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: its creation, the order of a step, and its continuation from a checkpoint. */
 #include "time/simulation.h"
-#include "time/energy.h"
 
 static const struct integrator *const integrators[] = {
     [INTEGRATOR_SYMPLECTIC] = &integrator_symplectic,

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-#include "time/energy.h"
 
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
  * one. */

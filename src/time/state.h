@@ -9,7 +9,7 @@
 #include "fluid/open.h"
 #include "solid/contact.h"
 #include "implicit/implicit.h"
-#include "time/energy_account.h"
+#include "time/energy.h"
 
 struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */

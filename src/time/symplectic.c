@@ -4,7 +4,6 @@
  * sides over the whole step. */
 #include "coupling/motion.h"
 #include "time/advance.h"
-#include "time/energy.h"
 
 static void swap_fields(double **a, double **b)
 {
