@@ -213,9 +213,11 @@ static double run_trial(struct stretch *first, struct stretch *whole, double r, 
  * in a run of the same scene at a coarser spacing, which sees the whole of it: water that spreads,
  * bodies that touch. With r times the spacing there are 1/r^2 of the particles and 1/r of the
  * steps, so that r is the cube root of the time of the run over that of the coarse one.
- * Sorts are too rare for a factor: their part of the time is that of the coarse run. The step of a
- * solid alone is known from the trial. Springs of contact, which may come later, are as stiff per
- * depth at any spacing, so that 1/r of the steps are taken while surfaces are near. */
+ * Sorts and contact are too rare for a factor. Sorts take the part of the time that they take in
+ * the coarse run; contact takes 1/r of its part of a solid's time, since a surface has 1/r of the
+ * particles. The step of a solid alone is known from the trial. Springs of contact, which may come
+ * later, are as stiff per depth at any spacing, so that 1/r of the steps are taken while surfaces
+ * are near. */
 static void extend(struct forecast *f, struct stretch *run, const struct stretch *trial,
                    const struct session *session, const struct sphfsi_options *o)
 {
@@ -240,13 +242,15 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
     run->amount[SUBSTEPS] = run->amount[STEPS] * each(trial, SUBSTEPS, STEPS) * (fluid ? near : 1);
     run->amount[EVALUATIONS] = run->amount[STEPS] * each(trial, EVALUATIONS, STEPS);
     for (int k = 0; k < PHASE_COUNT; k++) {
-        const int per = k == PHASE_solid || k == PHASE_contact ? SUBSTEPS
-                        : k == PHASE_output                    ? TIME
-                                                               : STEPS;
+        const int per = k == PHASE_solid ? SUBSTEPS : k == PHASE_output ? TIME : STEPS;
         if (first.amount[k] > 0)
             run->amount[k] = run->amount[per] * each(trial, k, per) * each(&whole, k, per) /
                              each(&first, k, per);
     }
+    run->amount[PHASE_contact] = 0;
+    if (whole.amount[PHASE_solid] > 0)
+        run->amount[PHASE_contact] =
+            run->amount[PHASE_solid] * each(&whole, PHASE_contact, PHASE_solid) / r;
     const double sorts = whole.amount[PHASE_sort], others = seconds_of_steps(&whole) - sorts;
     run->amount[PHASE_sort] = 0;
     if (others > 0) run->amount[PHASE_sort] = seconds_of_steps(run) * sorts / others;

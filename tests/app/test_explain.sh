@@ -37,6 +37,11 @@ says 'cost with up to 2 threads'
 explain --until 1e6
 says 'disk at most [0-9.]* GB'
 
+# Beams that touch after the trial: contact takes a sixth of the run.
+"$sphfsi" --explain cases/beam_on_beam.cfg >"$dir/said" 2>/dev/null || fail "--explain of contact"
+awk '$1 == "contact" && /% of a step/ { part = $2 } END { exit !(part > 8 && part < 25) }' \
+    "$dir/said" || fail "contact is not a sixth of a step: $(grep '% of a step' "$dir/said")"
+
 # A budget lists round spacings, each once, coarsest first, whose time is from a tenth of it to
 # three times.
 "${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||
