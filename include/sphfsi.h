@@ -258,7 +258,7 @@ SPHFSI_API enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *o
 SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
                                                const char *path);
 
-/** Draws the scene at the start as SVG: particles of bodies, names, sizes, clamps, probes. To
+/** Draws the scene at the start as SVG: particles of bodies, names, clamps, probes, a grid. To
  * options->out; NULL: preview-<name of the case>.svg. */
 SPHFSI_API enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options);
 

@@ -22,7 +22,7 @@ static const char usage[] =
     "                    newest one in a run's folder\n"
     "  --quiet           no progress, only warnings, results and how to go on\n"
     "instead of running:\n"
-    "  --preview         draw the scene with names, sizes, clamps and probes: preview-<case "
+    "  --preview         draw the scene with names, clamps, probes and a grid: preview-<case "
     "name>.svg,\n"
     "                    or the file that --out names\n"
     "  --explain         say what would be simulated and what it would cost\n"
