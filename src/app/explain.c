@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * --explain: what would be simulated and what it would cost, as text and as JSON. */
-#include "app/forecast.h"
+#include "app/session.h"
 #include "check/check.h"
 #include "output/report.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "app/forecast.h"
+#include "app/session.h"
 #include "output/checkpoint.h"
 #include "output/rows.h"
 #include "output/snapshot.h"

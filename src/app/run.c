@@ -2,7 +2,6 @@
  * A run of a case: its folder and files, the time loop, restart and fork, and what it says at its
  * end. */
 #include "app/session.h"
-#include "base/run_dir.h"
 #include "check/check.h"
 #include "output/checkpoint.h"
 #include "output/report.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "base/run_dir.h"
+#include "base/files.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * From [beam] sections to nodes and elements, and what output asks of them. */
-#include "beam/contact.h"
-#include "beam/joints.h"
-#include "beam/springs.h"
+#include "beam/beam.h"
 #include "base/segment.h"
-#include "base/elementary.h"
-#include "case/params.h"
 #include "geometry/outline.h"
 
 static const char what[] = "beams";

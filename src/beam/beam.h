@@ -3,9 +3,39 @@
  * (T-103). README.md tells the order of a step. */
 #pragma once
 
-#include "beam/element.h"
 #include "implicit/envelope.h"
 #include "rigid/rigid.h"
+
+/* --- element.c: the element of a geometrically exact beam (Simo and Vu-Quoc 1986) --- */
+
+struct beam_element {
+    int node[2];
+    double between[2];   /* from the first node to the second at the start, m */
+    double length;       /* m */
+    double stiffness[3]; /* EA, GA with T-103c, EI: of the strains below, N/m, N/m and N m */
+    double damping_time; /* s */
+};
+
+/* atan(z)/z. */
+double beam_atan_over(double z);
+
+/* T-103a: stretch and shear at the middle of an element with the displacements and rotations q of
+ * its nodes, and its change of curvature, 1/m. `turn`: cosine and sine of the angle between the
+ * middle's tangent and the x axis. */
+void beam_strain(const struct beam_element *e, const double *const q[2], double strain[3],
+                 double turn[2]);
+
+/* An element at the start of a step: positions of the second node from the first, and strain. */
+struct beam_start {
+    double apart[2], turn[2], strain[3];
+};
+
+/* T-104: the mean force on each node over a step of dt in which the nodes move by d, such that its
+ * work is the change of the elastic energy, plus what is dissipated; and its derivative by d. w:
+ * the mean velocities in the step before, in fluid (T-104d); NULL: none. */
+void beam_force(const struct beam_element *e, const struct beam_start *start,
+                const double *const d[2], const double *const w[2], double dt, double force[2][3],
+                double matrix[6][6]);
 
 /* What a run carries from step to step, for each node: x, y and angle each. Doubles only: saved as
  * such. */
@@ -78,7 +108,7 @@ struct beams {
     int n_springs; /* of the scene */
     struct beam_spring *spring;
     const struct scene *scene;
-    /* In fluid (beam/wet.h): */
+    /* In fluid (beam/wet.c): */
     struct particles *walls;
     struct thin_line **line; /* [n]; NULL: no fluid */
     double *carries; /* [n_nodes] share of the motion that the fluid sees along a beam (T-111a) */
@@ -129,3 +159,96 @@ void beam_section(const struct beams *beams, const struct beam_place *place, dou
 void beam_reaction(const struct beams *beams, int beam, const double about[2], double out[3]);
 
 struct body_energy beam_energy(const struct beams *beams, int beam);
+
+/* --- contact.c: contact without friction: a force that keeps distances (T-106) --- */
+
+enum { BEAM_TOUCHES = 512 }; /* places that may touch at a time */
+
+enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* Finds the places of a step of dt from a time on that may touch, for the displacements of its
+ * first guess. No force acts there yet. */
+void beams_find_touches(struct beams *beams, double time, double dt);
+
+/* Adds the forces of contact to those of the nodes (`touch` of struct beam_step). */
+void beams_add_touches(struct beams *beams);
+
+/* Whether the present displacements keep all distances. */
+bool beams_keep_apart(const struct beams *beams);
+
+/* Adds to `unknown`, the correction without a change of the forces, what they change. The matrix
+ * has its factors. false: there are no such forces, as of a matrix that is not positive. */
+bool beams_correct_touches(struct beams *beams);
+
+/* After the step: the work of walls that push, and the forces on rigid bodies. */
+void beams_finish_touches(struct beams *beams, double time, double dt);
+
+/* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. Solids and
+ * beams have no contact. */
+int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,
+                         int *beam);
+
+/* --- joints.c: clamps and hinges on rigid bodies: their forces are unknowns (T-107) --- */
+
+enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* Of the whole step from a time on, which follows as one part or several: the motion of the bodies
+ * without the beams; after it, what they have had. */
+void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times);
+void beams_return_bodies(struct beams *beams, double dt);
+
+/* A part dt of the step: velocities that the joints allow, and no forces yet. */
+void beams_begin_joints(struct beams *beams, double time, double dt);
+
+/* Adds the forces of the joints to those of the nodes (`touch` of struct beam_step). */
+void beams_add_joints(struct beams *beams);
+
+/* Whether the present displacements of nodes and bodies agree. */
+bool beams_stay_joined(const struct beams *beams);
+
+/* Changes forces and bodies, and adds to `unknown`, the correction without a change of the forces,
+ * what they change. The matrix has its factors. */
+void beams_correct_joints(struct beams *beams);
+
+/* A displacement of the nodes by forces without the bodies, of the last correction: adds what the
+ * joints change. */
+void beams_resist_joints(const struct beams *beams, double *unknown);
+
+/* After a part of the step. */
+void beams_finish_joints(struct beams *beams, double dt);
+
+/* --- springs.c: springs and mooring lines from a beam to a place (T-108) --- */
+
+/* Adds their forces for the present displacements to `touch` of struct beam_step, and the
+ * derivative to the matrix. */
+void beams_add_springs(struct beams *beams, double dt);
+
+/* Adds half of their stiffnesses to the matrix, as beams and springs are at the start; lines that
+ * only pull as if they were taut. */
+void beams_stiffen(struct beams *beams);
+
+/* --- for output --- */
+
+/* Energy of the springs of a beam, J/m. */
+double beam_spring_energy(const struct beams *beams, int beam);
+
+/* The force of a [spring] at its end `to`; false: it is not of a beam. */
+bool beam_spring_force(const struct beams *beams, int spring, double force[2]);
+
+/* --- wet.c: fluid on both sides: each beam is a thin line with its nodes --- */
+
+/* Ties the beams to their lines. `ahead`, `alternates`: as of the integrator (time/state.h). */
+enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *lines,
+                          struct particles *walls, double ahead, bool alternates, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Sets the lines and their dummies to where the beams are `since` after the last step. Returns the
+ * largest displacement of a dummy, m. */
+double beams_place(struct beams *beams, double since);
+
+/* T-105: the fluid's force on the nodes and its resistance, for a step. */
+void beams_find_fluid(struct beams *beams, const struct beam_times *times);
+
+/* After the step: the impulse and pressure that the fluid has still to receive, the motion that it
+ * uses, and its work. */
+void beams_return_impulse(struct beams *beams, const struct beam_times *times);

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/contact.h"
-#include "beam/joints.h"
-#include "case/params.h"
+#include "beam/beam.h"
 #include "base/segment.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/element.h"
-#include "base/elementary.h"
+#include "beam/beam.h"
 
 static double cross_product(const double a[2], const double b[2])
 {

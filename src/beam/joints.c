@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/joints.h"
+#include "beam/beam.h"
 #include "base/cholesky.h"
-#include "base/elementary.h"
 #include "rigid/forces.h"
 
 /* Of the particle spacing: a distance that counts as none. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/springs.h"
-#include "base/elementary.h"
+#include "beam/beam.h"
 
 /* The vector from the end in place to a displaced node; returns its length. */
 static double reach_of(const struct beams *beams, const struct beam_spring *s, const double x[2],

@@ -1,10 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of beams (T-104): the midpoint rule with forces of which the work is exactly the
  * change of energy, solved by Newton's method. */
-#include "beam/contact.h"
-#include "beam/joints.h"
-#include "beam/springs.h"
-#include "beam/wet.h"
+#include "beam/beam.h"
 #include "geometry/motion.h"
 
 #include <float.h>

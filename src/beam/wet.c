@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/wet.h"
-#include "particles/kernel.h"
+#include "beam/beam.h"
 
 static double impedance(const struct beams *beams) { return beams->scene->rho0 * beams->scene->c0; }
 

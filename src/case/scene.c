@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Queries on a scene: sections by name, places for messages, files relative to the case. */
-#include "case/scene.h"
 #include "base/elementary.h"
 #include "case/params.h"
 

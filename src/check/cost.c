@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Steps that are unstable, and settings that make a run slow. */
 #include "check/check.h"
-#include "coupling/bounds.h"
 
 /* The largest cfl of an integrator is that up to which a falling column of water was found stable
  * (tests/stability/column.cfg); the analysis in docs/theory.md gives the same for leapfrog.

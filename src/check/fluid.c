@@ -2,7 +2,6 @@
  * Fluid that is probably a mistake: a tank without a bottom, water without the pressure of its
  * weight, a surface below the water, speeds near that of sound, probes where there is no fluid. */
 #include "check/check.h"
-#include "geometry/motion.h"
 
 static double dot(const double a[2], double x, double y) { return a[0] * x + a[1] * y; }
 

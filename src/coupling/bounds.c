@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Bounds of the time step that the exchange sets: what one side does, the other side follows a step
  * later. */
-#include "coupling/bounds.h"
-#include "coupling/motion.h"
+#include "coupling/coupling.h"
 
 /* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).
  * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The order of the exchange in a step of the fluid. */
 #include "coupling/coupling.h"
-#include "coupling/impulse.h"
-#include "coupling/motion.h"
 #include "implicit/implicit.h"
 
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest)

@@ -49,3 +49,74 @@ void coupling_predict(struct coupling *coupling, double dt);
 /* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
  * `last` is the step before. Returns the largest displacement of a particle, m. */
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
+
+/* --- motion.c: velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
+
+/* Time over which the acceleration is averaged, s: sound crosses h in it, and the fluid cannot
+ * follow anything faster. The acceleration fed back by Eq. 19 contains oscillations of single
+ * particles and acts on the fluid's force a step late. Without a mean the gate became
+ * unstable: within 400 steps with sub-steps, within 4000 at a single rate. */
+SPHFSI_INLINE double averaging_time(const struct coupling *coupling)
+{
+    return coupling->fluid->k.h / coupling->fluid->k.c0;
+}
+
+/* Age of that acceleration in steps, beyond the age due to averaging. It is the mean over a
+ * step, half a step old at its end, and half a step older at the corrector of `symplectic`. */
+SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
+{
+    return 0.5 + coupling->ahead;
+}
+
+/* Time over which the velocity is extrapolated, in half steps (T-35): from the middle of a
+ * step to its end, and to the corrector half a step later. At a single rate `symplectic`
+ * extrapolates nothing. */
+SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
+{
+    return coupling->substeps ? 1 + 2 * coupling->ahead : 1;
+}
+
+/* Averaging time after a step of dt, s: reduced by that age, to a quarter at least. */
+SPHFSI_INLINE double reduced_averaging_time(const struct coupling *coupling, double dt)
+{
+    const double time = averaging_time(coupling);
+    return max2(0.25 * time, time - acceleration_age(coupling) * dt);
+}
+
+/* T-35: after sub-steps in a step of dt. */
+void motion_after_substeps(struct coupling *coupling, double dt);
+
+/* T-35, with sub-steps: position and velocity `half` ahead. */
+void motion_ahead(struct coupling *coupling, double half);
+
+/* Single rate: position and velocity of the structure; a share `weight` of the present acceleration
+ * enters the mean. */
+void motion_at_single_rate(struct coupling *coupling, double weight);
+
+/* --- impulse.c: impedance of the fluid in sub-steps, and the impulse (T-35a to T-35e) --- */
+
+/* Before sub-steps of dt, 0: an implicit step of any length: the wetted normals. Afterwards: the
+ * impulse of the sub-steps, and the pressure that gives it to the fluid. */
+void impulse_begin(struct coupling *coupling, double dt);
+void impulse_end(struct coupling *coupling);
+
+/* A kick and drift of sub-steps with T-35a. */
+solid_kick impedance_kick;
+
+/* T-35b: after an evaluation whose rates act for `kick`. */
+void impulse_return(struct coupling *coupling, double kick);
+
+/* T-35e: the exchange time follows the steps, here one of dt. */
+void impulse_set_time(struct coupling *coupling, double dt);
+
+/* Particle i and the fluid have no impulse to exchange. */
+void impulse_clear(struct particles *particles, int64_t i);
+
+/* --- bounds.c: bounds of the time step that the exchange sets --- */
+
+/* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
+double coupling_added_mass_step(const struct coupling *coupling, int *lightest);
+
+/* T-35g: largest step with the viscous drag at the corners of structures that fluid sticks to,
+ * s; INFINITY without any. */
+double coupling_drag_step(const struct coupling *coupling);

@@ -2,8 +2,7 @@
  * The pressure at a moving surface changes by rho0 c0 times its velocity immediately; sound spreads
  * it later. As a constant force over the sub-steps this pressure acts a step late. Oscillations
  * with periods between 4/3 and 4 steps then gain energy. */
-#include "coupling/impulse.h"
-#include "solid/loads.h"
+#include "coupling/coupling.h"
 
 /* T-35f: fluid beside a body that is thinner than two of its spacings receives impulses of both
  * sides. */

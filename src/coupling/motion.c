@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The motion of a structure that the fluid uses. */
-#include "coupling/motion.h"
+#include "coupling/coupling.h"
 
 /* T-35: weight of the last step in the mean that extrapolates the velocity. With 1/4 and more the
  * motion of some light bodies grows by itself. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fluid/wall_motion.h"
-#include "case/params.h"
+#include "fluid/fluid.h"
 #include "geometry/motion.h"
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,

@@ -2,7 +2,6 @@
  * Hinges within implicit steps (T-90a): their forces are unknowns beside the displacements. */
 #include "implicit/implicit.h"
 #include "base/cholesky.h"
-#include "solid/hinges.h"
 
 /* Adds the forces of all hinges to the unknowns of their particles. */
 static void add_forces(const struct implicit *implicit, const struct hinges *hinges,

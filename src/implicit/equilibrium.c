@@ -3,8 +3,6 @@
  * part of the forces of the start is left out at first: load steps. */
 #include "implicit/implicit.h"
 #include "solid/contact.h"
-#include "solid/hinges.h"
-#include "solid/loads.h"
 
 /* Of the residual over the largest force of a particle: it is enough, and it is as good as none. */
 #define TOLERANCE 1e-7

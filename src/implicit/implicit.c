@@ -6,8 +6,6 @@
 #include <float.h>
 
 #include "implicit/stress.h"
-#include "solid/hinges.h"
-#include "solid/loads.h"
 
 /* A matrix is replaced when a correction with it reduces the residual less than by this factor. */
 #define SLOW 0.5

@@ -4,7 +4,6 @@
 
 #include "base/box2.h"
 #include "implicit/implicit.h"
-#include "solid/loads.h"
 
 static const char what[] = "matrix of the solid";
 

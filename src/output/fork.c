@@ -2,8 +2,6 @@
  * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on.
  */
 #include "output/checkpoint.h"
-#include "coupling/impulse.h"
-#include "geometry/motion.h"
 
 #include <inttypes.h>
 

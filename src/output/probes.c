@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * From [probe] sections to columns of files, and the values in them. */
 #include "output/probes.h"
-#include "beam/springs.h"
-#include "geometry/motion.h"
 
 /* Place of the k-th particle from the probe in units of the reach, and its weight. Any positive one
  * reproduces linear fields; this one is smooth and vanishes at the reach. */

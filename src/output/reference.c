@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "output/reference.h"
+#include "output/report.h"
 #include "base/csv.h"
 #include "base/files.h"
 #include "case/case.h"

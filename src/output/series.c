@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "output/series.h"
+#include "output/rows.h"
 #include "base/csv.h"
-#include "expr/expr.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "rigid/forces.h"
-#include "case/params.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"
 

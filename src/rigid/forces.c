@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "rigid/forces.h"
-#include "case/params.h"
 #include "base/cholesky.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 
 /* --- hinges and guides --- */

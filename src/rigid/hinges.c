@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Hinges between rigid bodies, and what acts in any hinge: spring, damper, friction, drive. */
 #include "rigid/forces.h"
-#include "case/params.h"
-#include "base/elementary.h"
 #include "geometry/motion.h"
 
 /* A hinge of a body on another one, a wall or a place. */

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "rigid/rigid.h"
 #include "geometry/motion.h"
 #include "rigid/forces.h"
 

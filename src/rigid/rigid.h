@@ -3,7 +3,7 @@
  * and the angle. README.md tells the order of a step. */
 #pragma once
 
-#include "fluid/wall_motion.h"
+#include "fluid/fluid.h"
 
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
 struct rigid_state {
@@ -95,7 +95,7 @@ void rigid_push(struct rigid *rigid, int k, const struct motion_state *m, const 
 /* The force of this time acts for dt: the published motion changes. */
 void rigid_kick(struct rigid *rigid, double time, double dt);
 
-/* --- beams on bodies, also between these two (beam/joints.h) --- */
+/* --- beams on bodies, also between these two (beam/joints.c) --- */
 
 /* Where a body is at the start of a step of dt, its velocity there, and its mean velocity in the
  * step without more forces. */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/contact.h"
-#include "case/params.h"
-#include "base/elementary.h"
 
 /* --- potential of a pair --- */
 

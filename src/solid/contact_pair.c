@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The distance and the law of a point and an edge, and the list of near ones. */
 #include "solid/contact.h"
-#include "case/params.h"
-#include "base/box2.h"
 #include "base/segment.h"
-#include "geometry/motion.h"
-#include "particles/kernel.h"
 
 /* --- distance --- */
 

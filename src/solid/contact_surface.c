@@ -2,11 +2,8 @@
  * Surfaces of solids and walls as lines through their outermost particles: the alpha shape of each
  * group (Edelsbrunner, Kirkpatrick and Seidel 1983). */
 #include "solid/contact.h"
-#include "base/elementary.h"
 #include "base/segment.h"
 #include "geometry/outline.h"
-#include "particles/kernel.h"
-#include "solid/hinges.h"
 
 /* Radius of the circle that rolls over the surface, in spacings. Four particles of a lattice cell
  * lie on a circle of 0.71, and a circle below 1 enters a slit of one missing row. Between these

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "solid/hinges.h"
+#include "solid/solid.h"
 #include "case/params.h"
 #include "base/cholesky.h"
-#include "geometry/motion.h"
 #include "particles/kernel.h"
 
 /* --- start --- */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "solid/loads.h"
+#include "solid/solid.h"
 #include "geometry/sampling.h"
 
 /* --- start --- */

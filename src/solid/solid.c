@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "solid/solid.h"
-#include "base/box2.h"
 #include "solid/contact.h"
-#include "solid/hinges.h"
-#include "solid/loads.h"
-#include "case/effects.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-#include "geometry/motion.h"
 
 void advance_structure(struct simulation *sim, double dt, double kick)
 {

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "geometry/motion.h"
 #include "time/simulation.h"
 
 /* Of a section or region: its share of the ledger, and what only the account has. Doubles only. */

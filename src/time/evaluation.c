@@ -4,9 +4,6 @@
 
 #include <float.h>
 
-#include "beam/wet.h"
-#include "geometry/motion.h"
-
 void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "beam/contact.h"
 
 #include <stdarg.h>
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/advance.h"
-#include "beam/wet.h"
-#include "solid/hinges.h"
-#include "solid/loads.h"
 
 static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_id, struct diag *d)
 {

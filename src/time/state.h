@@ -5,7 +5,6 @@
 
 #include "beam/beam.h"
 #include "coupling/coupling.h"
-#include "fluid/damping.h"
 #include "fluid/open.h"
 #include "solid/contact.h"
 #include "implicit/implicit.h"

@@ -2,7 +2,6 @@
  * Symplectic predictor-corrector (Eqs. 22-24) of the paper: two evaluations a step. With solid
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
-#include "coupling/motion.h"
 #include "time/advance.h"
 
 static void swap_fields(double **a, double **b)

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include "coupling/bounds.h"
 #include "time/advance.h"
 
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven

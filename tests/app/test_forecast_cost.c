@@ -3,7 +3,7 @@
  * these in between:
  * --wrap: thread_clock phase_clock simulation_step probes_sample sort_particles
  */
-#include "app/forecast.h"
+#include "app/session.h"
 #include "output/probes.h"
 #include "time/advance.h"
 #include "time/energy.h"

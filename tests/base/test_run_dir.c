@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The folder of a run: never overwritten, locked while a run lives, files whole or not at all. */
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "tiny.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * Springs and mooring lines of beams: frequency, energy through large motions and through slack,
  * damping, the force that a probe has, and input that is refused. */
 #include "rig.h"
-#include "beam/springs.h"
+#include "beam/beam.h"
 #include "geometry/load.h"
 #include "time/energy.h"
 #include "unity.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The impedance of the fluid within a structure's sub-steps, and the impulse (T-35a, T-35b). */
-#include "coupling/impulse.h"
+#include "coupling/coupling.h"
 #include "time/energy.h"
 #include "time/advance.h"
 #include "rig.h"

@@ -5,7 +5,7 @@
 #include "time/energy.h"
 #include "unity.h"
 
-#include "fluid/lines.h"
+#include "fluid/fluid.h"
 
 #include <math.h>
 

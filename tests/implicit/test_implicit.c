@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Implicit steps of solids (T-90 to T-93): the factors and the tangent, what a step conserves, the
  * period, and the work of loads and clamps. */
-#include "solid/hinges.h"
+#include "solid/solid.h"
 #include "rig.h"
 #include "implicit/implicit.h"
 #include "implicit/stress.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Comparison of probes with the references that a case names: by hand-made rows. */
-#include "output/reference.h"
+#include "output/report.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * CSV series: numbers that lose nothing, rows that a restart keeps or drops. */
-#include "output/series.h"
+#include "output/rows.h"
 #include "base/csv.h"
 #include "tiny.h"
 #include "unity.h"

@@ -2,8 +2,8 @@
  * Loads and moving clamps: by hand, their work, exact stretches, and that nothing changes without
  * them. */
 #include "output/checkpoint.h"
-#include "coupling/impulse.h"
-#include "solid/loads.h"
+#include "coupling/coupling.h"
+#include "solid/solid.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

@@ -6,8 +6,7 @@
 
 #include "rig.h"
 #include "time/energy.h"
-#include "coupling/motion.h"
-#include "coupling/bounds.h"
+#include "coupling/coupling.h"
 #include "time/advance.h"
 #include "unity.h"
 

@@ -3,8 +3,8 @@
 #include "fuzz.h"
 
 #include "output/checkpoint.h"
-#include "output/reference.h"
-#include "output/series.h"
+#include "output/report.h"
+#include "output/rows.h"
 #include "expr/expr.h"
 #include "case/scene.h"
 #include "geometry/load.h"

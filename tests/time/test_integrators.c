@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One step of each integrator against Eqs. 22-27 written out, with the rates taken from the sweeps;
  * and motions that the schemes hold exactly. */
-#include "coupling/motion.h"
+#include "coupling/coupling.h"
 #include "time/advance.h"
 
 #include "rig.h"

@@ -3,7 +3,7 @@
  * bound is the one that matters: stable below, unstable above. */
 #include "check/check.h"
 #include "rig.h"
-#include "coupling/bounds.h"
+#include "coupling/coupling.h"
 #include "time/energy.h"
 #include "unity.h"
 
