@@ -87,7 +87,6 @@ def run_flow(scene, scheme, ratio):
 
 
 LAME = (YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON)), YOUNG / (2 + 2 * POISSON))
-SPEED = math.sqrt(YOUNG / DENSITY)
 DIRECTION = np.array([1.0, -0.5])
 
 

@@ -86,9 +86,6 @@ class Study:
     def base(self, case):
         return [p for p in self.of(case, "base") if finished(p)]
 
-    def base_at(self, case, level):
-        return next((p for p in self.base(case) if p["level"] == level), None)
-
     def error(self, p):
         """The main error of a point, None where there is none."""
         return p.get("errors", {}).get(main_error(self.cases[p["case"]])) if finished(p) else None
@@ -117,7 +114,7 @@ class Study:
 
     def ratios(self, p, error):
         """Error and cost over those of the defaults at the same resolution; None where unknown."""
-        base = self.base_at(p["case"], p["level"])
+        base = next((b for b in self.base(p["case"]) if b["level"] == p["level"]), None)
         if not base or not finished(p) or not p["errors"].get(error) or \
             not base["errors"].get(error):
             return None
@@ -211,10 +208,6 @@ def knob_rows(study, case, error):
                    all(finished(p) for p in points), any(study.crosses(p, error) for p in points))
 
 
-def gain_text(gain):
-    return "-" if not gain else "over 1000" if gain > 1000 else f"{gain:.3g}"
-
-
 def knob_table(study, case):
     entry = study.cases[case]
     rows = sorted(knob_rows(study, case, main_error(entry)), key=lambda r: -r[0])
@@ -223,7 +216,8 @@ def knob_table(study, case):
                 for p in study.of(case) if p["dp"]}
     head = [f"error / cost, {fineness.get(k, f'level {k}')}" for k in levels]
     return table(["setting", *head, "gain"], [
-        [study.label(k, v)] + [cells.get(level, "") for level in levels] + [gain_text(g)]
+        [study.label(k, v)] + [cells.get(level, "") for level in levels] +
+        ["-" if not g else "over 1000" if g > 1000 else f"{g:.3g}"]
         for g, k, v, cells, *_ in rows])
 
 
