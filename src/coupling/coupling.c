@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The order of the exchange in a step of the fluid. */
+ * The order of the exchange in a step of the fluid, the motion of structures that the fluid uses,
+ * and bounds of the time step: what one side does, the other side follows a step later. */
 #include "coupling/coupling.h"
 #include "implicit/implicit.h"
 
@@ -63,11 +64,67 @@ static void extrapolate_force(struct coupling *coupling, double dt, double kick,
     }
 }
 
+/* --- the motion that the fluid uses --- */
+
+/* T-35: weight of the last step in the mean that extrapolates the velocity. With 1/4 and more the
+ * motion of some light bodies grows by itself. */
+#define RECENT 0.2
+
+/* T-35: after sub-steps in a step of dt. */
+static void move_after_substeps(struct coupling *coupling, double dt)
+{
+    struct particles *const particles = coupling->particles;
+    const double per_dt = 1 / dt, half = 0.5 * dt,
+                 weight = dt / (dt + reduced_averaging_time(coupling, dt));
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double ax = (particles->vx[i] - particles->vx0[i]) * per_dt;
+        const double ay = (particles->vy[i] - particles->vy0[i]) * per_dt;
+        particles->ax[i] += weight * (ax - particles->ax[i]);
+        particles->ay[i] += weight * (ay - particles->ay[i]);
+        particles->recent_ax[i] += RECENT * (ax - particles->recent_ax[i]);
+        particles->recent_ay[i] += RECENT * (ay - particles->recent_ay[i]);
+        particles->wx[i] =
+            (particles->ux[i] - particles->x0[i]) * per_dt + half * particles->recent_ax[i];
+        particles->wy[i] =
+            (particles->uy[i] - particles->y0[i]) * per_dt + half * particles->recent_ay[i];
+    }
+}
+
+/* T-35, with sub-steps: position and velocity `half` ahead. */
+static void move_ahead(struct coupling *coupling, double half)
+{
+    struct particles *const particles = coupling->particles;
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < particles->n; i++) {
+        const double ax = half * particles->recent_ax[i], ay = half * particles->recent_ay[i];
+        particles->x[i] = particles->X[i] + particles->ux[i] + half * (particles->wx[i] + 0.5 * ax);
+        particles->y[i] = particles->Y[i] + particles->uy[i] + half * (particles->wy[i] + 0.5 * ay);
+        particles->wx[i] += ax;
+        particles->wy[i] += ay;
+    }
+}
+
+void motion_at_single_rate(struct coupling *coupling, double weight)
+{
+    struct particles *const particles = coupling->particles;
+    solid_set_positions(particles);
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->wx[i] = particles->vx[i];
+        particles->wy[i] = particles->vy[i];
+        particles->ax[i] += weight * (particles->sx[i] - particles->ax[i]);
+        particles->ay[i] += weight * (particles->sy[i] - particles->ay[i]);
+    }
+}
+
+/* --- a step of the fluid --- */
+
 void coupling_predict(struct coupling *coupling, double dt)
 {
     if (coupling->impedance > 0)
         impulse_set_time(coupling, dt); /* for the force of the corrector */
-    motion_ahead(coupling, coupling->ahead * dt);
+    move_ahead(coupling, coupling->ahead * dt);
 }
 
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last)
@@ -91,6 +148,47 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     implicit_advance(coupling->solid, particles, dt / n, n, coupling->centred);
     if (impedance) impulse_end(coupling);
     const double moved = solid_set_positions(particles);
-    motion_after_substeps(coupling, dt);
+    move_after_substeps(coupling, dt);
     return moved;
+}
+
+/* --- bounds of the time step --- */
+
+/* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).
+ * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */
+#define ADDED_MASS 2
+
+/* T-35d: the fluid's density over that of a body, which has less mass where it is thinner than the
+ * layers of fluid on both sides. */
+static double added_mass(const struct coupling *coupling, const struct solid_body *body)
+{
+    const double layers = 2 * coupling->scene->top.dp;
+    return coupling->scene->rho0 / body->density * max2(1, layers / body->thickness);
+}
+
+double coupling_added_mass_step(const struct coupling *coupling, int *lightest)
+{
+    const struct solid_body *const body = coupling->solid->body;
+    *lightest = 0;
+    for (int k = 1; k < coupling->solid->n_bodies; k++)
+        if (added_mass(coupling, &body[k]) > added_mass(coupling, &body[*lightest])) *lightest = k;
+    const double b = 2 / (1 + ADDED_MASS * added_mass(coupling, &body[*lightest]));
+    return averaging_time(coupling) * b /
+           ((1 + (acceleration_age(coupling) - 1) * b) * extrapolated_halves(coupling));
+}
+
+/* Viscosity stops the particles at the corner of a structure at a rate that is held over a
+ * step of the fluid. */
+double coupling_drag_step(const struct coupling *coupling)
+{
+    const struct scene *const scene = coupling->scene;
+    const struct fluid_constants *const fluid = &coupling->fluid->k;
+    double rate = 0;
+    for (int k = 0; k < coupling->solid->n_bodies; k++) {
+        if (scene->solid[k].slip != SLIP_NONE) continue;
+        const double finer = scene->top.dp / scene_solid_dp(scene, k);
+        rate = max2(rate, 8.6 * finer * fluid->model->laminar_viscosity * scene->rho0 /
+                              (square(fluid->h) * coupling->solid->body[k].density));
+    }
+    return rate > 0 ? 0.9 / (2 * (1 + extrapolated_halves(coupling)) * rate) : (double)INFINITY;
 }

@@ -50,7 +50,7 @@ void coupling_predict(struct coupling *coupling, double dt);
  * `last` is the step before. Returns the largest displacement of a particle, m. */
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
 
-/* --- motion.c: velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
+/* --- velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
 
 /* Time over which the acceleration is averaged, s: sound crosses h in it, and the fluid cannot
  * follow anything faster. The acceleration fed back by Eq. 19 contains oscillations of single
@@ -83,12 +83,6 @@ SPHFSI_INLINE double reduced_averaging_time(const struct coupling *coupling, dou
     return max2(0.25 * time, time - acceleration_age(coupling) * dt);
 }
 
-/* T-35: after sub-steps in a step of dt. */
-void motion_after_substeps(struct coupling *coupling, double dt);
-
-/* T-35, with sub-steps: position and velocity `half` ahead. */
-void motion_ahead(struct coupling *coupling, double half);
-
 /* Single rate: position and velocity of the structure; a share `weight` of the present acceleration
  * enters the mean. */
 void motion_at_single_rate(struct coupling *coupling, double weight);
@@ -112,7 +106,7 @@ void impulse_set_time(struct coupling *coupling, double dt);
 /* Particle i and the fluid have no impulse to exchange. */
 void impulse_clear(struct particles *particles, int64_t i);
 
-/* --- bounds.c: bounds of the time step that the exchange sets --- */
+/* --- bounds of the time step that the exchange sets --- */
 
 /* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
 double coupling_added_mass_step(const struct coupling *coupling, int *lightest);

@@ -95,17 +95,14 @@ enum err curve_read(struct curve *curve, const char *path, int column, size_t sp
                     : diag_fail(d, ERR_MEMORY, "%s: no memory for its column %d", path, column);
 }
 
-static double at_time(const struct curve *curve, double t)
+/* `row` ends the interval of t; times ascend from call to call. */
+static double at_time(const struct curve *curve, double t, int *row)
 {
-    if (curve->n < 2) return curve->value[0];
-    int low = 0, k = curve->n - 1; /* t is in the interval that ends at row k */
-    while (k - low > 1) {
-        const int middle = (low + k) / 2;
-        *(curve->t[middle] < t ? &low : &k) = middle;
-    }
-    const double span = curve->t[k] - curve->t[k - 1];
-    const double fraction = span > 0 ? (t - curve->t[k - 1]) / span : 0;
-    return curve->value[k - 1] + fraction * (curve->value[k] - curve->value[k - 1]);
+    while (*row < curve->n - 1 && curve->t[*row] < t) ++*row;
+    const int before = *row > 0 ? *row - 1 : 0;
+    const double span = curve->t[*row] - curve->t[before];
+    const double fraction = span > 0 ? (t - curve->t[before]) / span : 0;
+    return curve->value[before] + fraction * (curve->value[*row] - curve->value[before]);
 }
 
 /* The first local extremum within 0.5 % of the largest magnitude, as in
@@ -152,8 +149,8 @@ static void compare(struct reference *r, const struct curve *curve, struct curve
     reference_curve(r, curve, from, until, expected);
     find_peak(curve, from, until, &c->peak, &c->peak_time);
     find_peak(expected, from, until, &c->peak_reference, &c->peak_time_reference);
-    for (int k = 0; k < expected->n; k++) {
-        const double probe = at_time(curve, expected->t[k]), off = probe - expected->value[k];
+    for (int k = 0, row = curve->n > 1; k < expected->n; k++) {
+        const double probe = at_time(curve, expected->t[k], &row), off = probe - expected->value[k];
         c->rms += off * off / expected->n;
         c->mean += off / expected->n;
         c->probe_mean += probe / expected->n;
@@ -189,24 +186,18 @@ void references_write(struct json *j, const struct references *r)
         json_open(j, from->common.name, '{');
         json_text(j, "probe", from->probe);
         json_text(j, "label", from->label);
-        const struct {
-            const char *key;
-            double value;
-        } result[] = {
-            {"rms", c->rms},
-            {"rms_relative", c->scale > 0 ? c->rms / c->scale : (double)NAN},
-            {"largest", c->largest},
-            {"mean", c->mean},
-            {"peak", c->peak},
-            {"peak_time", c->peak_time},
-            {"peak_reference", c->peak_reference},
-            {"peak_time_reference", c->peak_time_reference},
-            {"peak_error", c->peak - c->peak_reference},
-            {"peak_time_error", c->peak_time - c->peak_time_reference},
-        };
+        const double known = c->points > 0 ? 1 : (double)NAN;
         json_integer(j, "points", c->points);
-        for (size_t i = 0; i < COUNT_OF(result); i++)
-            json_number(j, result[i].key, c->points > 0 ? result[i].value : (double)NAN);
+        json_number(j, "rms", known * c->rms);
+        json_number(j, "rms_relative", c->scale > 0 ? known * c->rms / c->scale : (double)NAN);
+        json_number(j, "largest", known * c->largest);
+        json_number(j, "mean", known * c->mean);
+        json_number(j, "peak", known * c->peak);
+        json_number(j, "peak_time", known * c->peak_time);
+        json_number(j, "peak_reference", known * c->peak_reference);
+        json_number(j, "peak_time_reference", known * c->peak_time_reference);
+        json_number(j, "peak_error", known * (c->peak - c->peak_reference));
+        json_number(j, "peak_time_error", known * (c->peak_time - c->peak_time_reference));
         json_close(j, '}');
     }
     json_close(j, '}');

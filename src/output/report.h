@@ -89,9 +89,5 @@ void report_parameters(struct json *j, const struct scene *scene);
 void report_effects(struct json *j, const struct simulation *sim);
 void report_derived(struct json *j, const struct scene *scene);
 
-/* By column of each force, reaction and surface pressure, whose files are in the folder. */
-enum err loads_write(struct json *j, const char *folder, const struct probes *probes,
-                     const struct scene *scene, struct diag *d) SPHFSI_CHECKED;
-
 /* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *sim, const struct record *r);
