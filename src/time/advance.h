@@ -191,6 +191,8 @@ enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECK
 /* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
  * cell. */
 void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d);
+/* After a sorting: of bodies of which no particle is in a cell. */
+void guards_warn_of_leaving(struct simulation *sim, struct diag *d);
 
 /* Whether surfaces in contact are pressed harder than the modulus of contact. */
 bool guards_contact_hard(const struct simulation *sim);

@@ -412,6 +412,44 @@ void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct dia
               particles->y[first]);
 }
 
+/* The side of the domain that a point is furthest beyond. */
+static const char *side_beyond(const struct scene *scene, const double at[2])
+{
+    static const char *const names[2][2] = {{"left", "right"}, {"lower", "upper"}};
+    const char *side = "";
+    double furthest = -(double)INFINITY;
+    for (int k = 0; k < 4; k++) {
+        const int c = k / 2;
+        const double beyond =
+            k % 2 ? at[c] - scene->domain_upper[c] : scene->domain_lower[c] - at[c];
+        if (scene_periodic(scene, c) || !(beyond > furthest)) continue;
+        furthest = beyond;
+        side = names[c][k % 2];
+    }
+    return side;
+}
+
+/* Driven walls may leave, as lifted gates do. */
+void guards_warn_of_leaving(struct simulation *sim, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct particles *const p = &sim->kind[kind];
+        for (int64_t first = 0, end = 0; first < p->n; first = end) {
+            const int body = p->body[first];
+            bool inside = kind == KIND_WALL && body < scene_rigid_wall(scene, 0);
+            for (; end < p->n && p->body[end] == body; end++) inside |= p->cell[end] >= 0;
+            if (inside) continue;
+            warn_once(sim, &sim->guard.warned_left[energy_entry((enum kind)kind, body)], d,
+                      "%s has left the domain by its %s side, and takes no part in the flow from "
+                      "then on unless it comes back; a larger [domain] keeps it",
+                      section_title(kind == KIND_SOLID ? &scene->solid[body].common
+                                                       : &scene->wall[body].common).text,
+                      side_beyond(scene, (double[]){p->x[first], p->y[first]}));
+        }
+    }
+}
+
 /* --- fluid inside a wall or a solid: at the places of the body's own particles --- */
 
 /* Distance from a particle of a body, in spacings, below which a fluid particle is inside. Fluid at

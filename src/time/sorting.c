@@ -52,6 +52,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     else if (sim->effects & FX_MOTION)
         wall_motion_sort(&sim->wall_motion, &sim->cells, &sim->kind[KIND_WALL]);
     if (sim->effects & FX_COUPLING) cells_sort(&sim->cells, KIND_SOLID, solid);
+    if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) guards_warn_of_leaving(sim, d);
     fluid_find_near(&sim->fluid, &sim->cells);
     sim->state.sorts++;
     const int32_t fullest = fluid_fullest_cell(&sim->cells);
