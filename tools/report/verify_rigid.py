@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Rigid bodies, waves and damping zones against theory (make verify-rigid, minutes on one core): a
-cylinder that heaves, a box that rolls, a wedge that enters water, waves of a piston that leave, a
-floating box, a body as dense as water.
+cylinder that heaves, a box that rolls, a wedge and a cylinder that enter water, waves of a piston
+that leave, a floating box, a body as dense as water.
 
 The scenes are cases/verify/rigid_*.cfg and wave_piston.cfg, and the template floating_box. The
 figures are kept in docs/results/rigid_verification.json."""
@@ -54,6 +54,21 @@ def measure_wedge(runs):
     return [("force, % too large", 100 * ((force @ t) / (t @ t) / 14.139 - 1), 3),
             ("its scatter, % of the last force", 100 * np.std(force / (14.139 * t[-1])
                                                               - t / t[-1]), None)]
+
+
+def measure_fall(runs):
+    """Depth over the diameter, against t sqrt(g/D)."""
+    p, ratio, rows = runs[0].table(), runs[0].constants["ratio"], []
+    time = p["time_s"] * math.sqrt(9.81 / 0.11)
+    depth = (p["cylinder_cy_m"][0] - p["cylinder_cy_m"]) / 0.11
+    for measured, words, limit in ((0, "theory", 5), (1, "the experiment", None)):
+        at, wanted = np.array([row[2:] for row in reference("rigid_fall.csv").T
+                               if list(row[:2]) == [ratio, measured] and row[2] < time[-1]]).T
+        away = 100 * (np.interp(at, time, depth) - wanted)
+        rows += [(f"depth, most that it exceeds {words}, % of the diameter",
+                  away[np.argmax(abs(away))], limit),
+                 ("the same, root of the mean square", math.sqrt((away**2).mean()), None)]
+    return rows
 
 
 def zone_reflection(kd, length, rate, power=2):
@@ -146,6 +161,9 @@ SCENES = {
     "roll of a box, 20 spacings in its width": ("rigid_roll", [[]], measure_roll),
     **{f"wedge, {n} spacings in the last depth":
        ("rigid_wedge", [[f"across={n}"]], measure_wedge) for n in (10, 20)},
+    **{f"cylinder that falls, {words} buoyant, {n} spacings in its diameter":
+       ("rigid_fall", [[f"across={n}", f"ratio={ratio}"]], measure_fall)
+       for words, ratio in (("half", 0.5), ("neutrally", 1)) for n in (20, 40)},
     **{f"waves of a {maker}, kd = {kd:g}, {n} spacings in the depth":
        ("wave_piston", [[f"across={n}", f"kd={kd}", f"steep={steep}",
                          f"flap={int(maker == 'flap')}"]], measure_waves)
