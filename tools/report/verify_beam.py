@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: MIT
 """Beams against theory, solids and the benchmark of Turek and Hron (make verify-beam, half an hour
 on one core): large deflection, frequencies, energy; frequencies in water of a plate with water on
-one side or both; a plate that floats on waves; the elastic gate, the baffle and the bar in a
-channel as beams.
+one side or both; a plate that floats on waves; an elastic wedge that enters water; the elastic
+gate, the baffle and the bar in a channel as beams.
 
-The scenes are texts in this tool, cases/verify/floating_plate.cfg, and cases/gate.cfg,
-wet_baffle.cfg and turek_hron with a beam for their solid. The figures are kept in
+The scenes are texts in this tool, floating_plate.cfg and elastic_wedge.cfg of cases/verify, and
+cases/gate.cfg, wet_baffle.cfg and turek_hron with a beam for their solid. The figures are kept in
 docs/results/beam_verification.json."""
 import math
 import re
 import sys
 
 from common import COLOURS, IMAGES, OUT, ROOT, load, np, plt, run_figures, run_tool
+from metrics import reference
 from palette import save
 from sphfsi.waves import separate
 from turek_hron import REFERENCE, columns, period, summary
@@ -130,14 +131,10 @@ def elastica():
                       "history = min(t/5, 1)\n[numerics]\nfixed_step = 0.1", 1, 1)
 
     def measure(runs):
-        rows = []
-        for (force, known), run in zip(TABLE.items(), runs):
-            p = run.table()
-            for what, wanted, found in zip(("deflection", "shortening"), known,
-                                           (-p["p_dy_m"][-1], -p["p_dx_m"][-1])):
-                rows.append((f"{what}, P L^2/EI = {force}, % too large",
-                             100 * (found / wanted - 1), 0.3))
-        return rows
+        return [(f"{what}, P L^2/EI = {force}, % too large",
+                 100 * (-run.table()[f"p_d{axis}_m"][-1] / wanted - 1), 0.3)
+                for (force, known), run in zip(TABLE.items(), runs)
+                for what, axis, wanted in zip(("deflection", "shortening"), "yx", known)]
     return text, [[f"load f.force=0,-{force}"] for force in TABLE], measure
 
 
@@ -203,6 +200,7 @@ TALL = "shape = polyline: 0, 1.4*H; 0, {0}\nshape = polyline: 1, {0}; 1, 1.4*H"
 CUP = "shape = polyline: 0, {0}; 0, {0} - H; 1, {0} - H; 1, {0}"
 SECTION = "thickness = plate\nyoung = 12*EI/plate^3\ndensity = 1000*ratio"
 ON_BEAM = "shape = box 0.01, -1, 0.99, 1\ntraction = 0, {}force*sin(2*pi*x)" + SHAKE
+SIDES = {1: "one side wet", 2: "both sides wet"}
 DENSITIES, THICKNESSES = (0.01, 1, 10), (0.05, 0.2, 1, 4)
 
 
@@ -258,12 +256,10 @@ POINTS = [(thick, ratio) for thick in THICKNESSES for ratio in DENSITIES]
 
 def wet(sides, points=tuple(POINTS)):
     def measure(runs):
-        rows = []
-        for (thick, ratio), run in zip(points, runs):
-            wanted = theory(sides, thick, ratio)[0]
-            rows.append((f"frequency, thickness {thick:g} dp, density ratio {ratio:g}, % too high",
-                         100 * (found_frequency(run, wanted) / wanted - 1), 2))
-        return rows
+        wanted = [theory(sides, *point)[0] for point in points]
+        return [(f"frequency, thickness {thick:g} dp, density ratio {ratio:g}, % too high",
+                 100 * (found_frequency(run, f) / f - 1), 2)
+                for (thick, ratio), run, f in zip(points, runs, wanted)]
     return wet_text(sides, False), [[f"thick={thick}", f"ratio={ratio}"]
                                     for thick, ratio in points], measure
 
@@ -275,21 +271,16 @@ def solid_wet():
 
     def measure(runs, dry):
         own = found_frequency(dry, theory(2, 2, 1)[1]) / theory(2, 2, 1)[1]
-        rows = [("frequency in vacuum, % too high", 100 * (own - 1), None)]
-        for (sides, ratio), run in zip(points, runs):
-            wanted = theory(sides, 2, ratio)[0]
-            rows.append((f"frequency over that in vacuum, {SIDES[sides]}, density ratio {ratio:g}, "
-                         "% too high",
-                         100 * (found_frequency(run, wanted) / wanted / own - 1), 2))
-        return rows
+        wanted = [theory(sides, 2, ratio)[0] for sides, ratio in points]
+        return [("frequency in vacuum, % too high", 100 * (own - 1), None),
+                *((f"frequency over that in vacuum, {SIDES[sides]}, density ratio {ratio:g}, "
+                   "% too high", 100 * (found_frequency(run, f) / f / own - 1), 2)
+                  for (sides, ratio), run, f in zip(points, runs, wanted))]
     vacuum = re.sub(r"(?s)\[fluid w\].*?(?=\[wall)", "", wet_text(2, True))
     return ([*(wet_text(sides, True) for sides, _ in points), vacuum],
             [*(["dp=1/40", "thick=2", f"ratio={ratio}"] for _, ratio in points),
              ["dp=1/40", "thick=2"]],
             lambda runs: measure(runs[:-1], runs[-1]))
-
-
-SIDES = {1: "one side wet", 2: "both sides wet"}
 
 
 # --- on waves ---
@@ -318,6 +309,19 @@ def floating(runs):
                      abs(theory.elevation(n / 4 * length))))
     return [(f"{what}, {wanted:.3f} of the incident by theory, % too large",
              float(100 * (found / wanted - 1)), 5) for what, found, wanted in rows]
+
+
+# --- that enters water ---
+def slam(runs):
+    """Of a plate of cases/verify/elastic_wedge.cfg, against Wagner's theory, from the touch on."""
+    p, (time, bent, _, impulse) = runs[0].table(), reference("elastic_wedge.csv")
+    t, force = p["time_s"], p["water_fy_N_per_m"]
+    found = (p["middle_dy_m"] + 30 * t,
+             np.append(0, np.cumsum(np.diff(t) * (force[1:] + force[:-1]) / 2)))
+    return [(f"{what} at {1e3 * at:g} ms, % too large", float(100 * (
+                np.interp(at + 4 * runs[0].dp / 30, t, own) / np.interp(at, time, wanted) - 1)), 10)
+            for what, own, wanted in zip(("deflection", "impulse"), found, (bent, impulse))
+            for at in (1.2e-3, 2.2e-3)]
 
 
 # --- cases of solids, with a beam for them ---
@@ -387,12 +391,13 @@ SCENES = {
     **{f"plate in a basin, {SIDES[sides]}": wet(sides) for sides in SIDES},
     "solid in a basin, 4 spacings thick": solid_wet(),
     "plate on waves, 32 spacings in the depth": ("floating_plate", [["across=32"]], floating),
-    "gate, dp = 5 mm": (GATE, [["dp=5 mm", "wall=20 mm"]], peak(43.6, 1494)),
-    "gate, dp = 5 mm, h_over_dp = 1.5":
-    (GATE, [["dp=5 mm", "wall=20 mm", "numerics.h_over_dp=1.5"]], peak(43.6, 1494)),
-    "baffle, dp = 7 mm": (BAFFLE, [["dp=7 mm"]], peak(30.7, 657)),
-    "baffle, dp = 7 mm, h_over_dp = 1.5":
-    (BAFFLE, [["dp=7 mm", "numerics.h_over_dp=1.5"]], peak(30.7, 657)),
+    **{f"elastic wedge, {n} spacings in a plate": ("elastic_wedge", [[f"across={n}"]], slam)
+       for n in (60, 120)},
+    **{name + (", h_over_dp = 1.5" if more else ""): (text, [[*sets, *more]], measure)
+       for name, text, sets, measure in (
+           ("gate, dp = 5 mm", GATE, ["dp=5 mm", "wall=20 mm"], peak(43.6, 1494)),
+           ("baffle, dp = 7 mm", BAFFLE, ["dp=7 mm"], peak(30.7, 657)))
+       for more in ([], ["numerics.h_over_dp=1.5"])},
     "FSI1, 10 spacings across": bar("fsi1", 1000, "bar.mass_damping=40", "end_time=20 s"),
     "FSI2, 10 spacings across": bar("fsi2", 10000, "start=1.2", "ramp=0.3 s", "end_time=9 s")}
 

@@ -224,8 +224,6 @@ def impact_of(limit):
 
 # Medians of Lobovsky et al. 2014, Pa s, s, s, Pa; second-hand.
 IMPACT = {"impulse": 1274, "before": 0.007, "after": 0.104, "peak": 18569}
-
-
 # Later peaks at 3, 30 and 80 mm over rho g H, t sqrt(g/H) of each: Lobovsky et al. 2014, H = 0.3 m,
 # one run, read from the curves that PySPH's examples/db_exp_data.py has.
 LATER = {"P1": (0.909, 5.97), "P3": (0.927, 5.95), "P4": (0.827, 5.99)}
@@ -286,28 +284,22 @@ def measure_free_front(runs):
     """The path of the front against potential flow (cases/reference/dam_break_potential.py), whose
     time begins with the release, as in the runs, of which each is finer than the one before."""
     time, place = reference("dam_break_front_potential.csv")
-    H, largest, means, rows = 0.6, [], [], []
+    H, means, rows = 0.6, [], []
     for run in runs:
-        p = run.table("probes.csv")
+        p, ratio = run.table("probes.csv"), round(H / run.dp)
         front = p[[c for c in p if c.startswith("front")][0]] / H
         off = 100 * (np.interp(time, p["time_s"] * math.sqrt(G / H), front) / place - 1)
-        largest.append(float(max(off, key=abs)))
         means.append(float(np.mean(abs(off))))
-    for run, off in zip(runs, largest):
-        ratio = round(H / run.dp)
-        rows.append((f"H/dp = {ratio}: front, largest deviation from potential flow, %", off,
-                     5 if ratio == 40 else None))
+        rows.append((f"H/dp = {ratio}: front, largest deviation from potential flow, %",
+                     float(max(off, key=abs)), 5 if ratio == 40 else None))
     order = math.log(means[0] / means[-1]) / math.log(runs[0].dp / runs[-1].dp)
     return [*rows, ("order of its mean deviation", order, None)]
 
 
 def measure_opening(runs):
     """The same opening with 4 and with 16 particles across."""
-    through = []
-    for run in runs:
-        p = run.table("probes.csv")
-        flux = [c for c in p if c.startswith("out")][0]
-        through.append(1e3 * float(np.trapezoid(p[flux], p["time_s"])))
+    through = [1e3 * float(np.trapezoid(*(p[c] for c in p if c.startswith("out")), p["time_s"]))
+               for p in (run.table("probes.csv") for run in runs)]
     return [("water let through in 0.4 s, 4 across, 1e-3 m^2", through[0], None),
             ("the same, 16 across, 1e-3 m^2", through[1], None),
             ("4 across against 16, % more", 100 * (through[0] / through[1] - 1), 3)]
@@ -339,7 +331,7 @@ def measure_baffle(runs):
     half, rows, tips, foot = len(runs) // 2, [], largest("tip_dx_m"), largest("foot_mz_Nm_per_m")
     for words, part, limit in (("4 across", slice(0, half), 3),
                                ("8 across", slice(half, None), 1.5)):
-        tip = np.array([1e3 * each for each in tips[part]])
+        tip = 1e3 * np.array(tips[part])
         rows += [(f"{words}: largest tip displacement, mean of {half}, mm", float(tip.mean()),
                   None),
                  (f"{words}: the same, % more than converged ({BAFFLE_TIP} mm)",
@@ -367,11 +359,9 @@ def measure_baffle(runs):
 
 def measure_turned(runs):
     """The first run is not turned."""
-    tips, pressures = [], []
-    for run in runs:
-        p = run.table("probes.csv")
-        tips.append(1e3 * float(np.hypot(p["tip_dx_m"], p["tip_dy_m"]).max()))
-        pressures.append(float(p["foot_p_Pa"].mean()))
+    tables = [run.table("probes.csv") for run in runs]
+    tips = [1e3 * float(np.hypot(p["tip_dx_m"], p["tip_dy_m"]).max()) for p in tables]
+    pressures = [float(p["foot_p_Pa"].mean()) for p in tables]
     rows = [("not turned: largest tip displacement, mm", tips[0], None)]
     for angle, tip, pressure in zip((15, 30, 45), tips[1:], pressures[1:]):
         rows += [(f"{angle} degrees: tip displacement, % more", 100 * (tip / tips[0] - 1), 1),

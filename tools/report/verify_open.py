@@ -151,12 +151,11 @@ def vortex(ratio):
 
 # name: case, settings of each run, how they are measured
 SCENES = {"vortex, 30 spacings over the channel": vortex(30), "vortex, 60 spacings": vortex(60),
-          "weir, 10 spacings high": ("open_weir", [["ratio=10"]], measure_weir),
-          "weir, 20 spacings high": ("open_weir", [["ratio=20"]], measure_weir),
-          "reversal, 20 spacings across": ("open_reversal", [["ratio=20"]], measure_reversal),
-          "reversal, 40 spacings across": ("open_reversal", [["ratio=40"]], measure_reversal),
-          "jet, 10 spacings across": ("open_jet", [["across=10"]], measure_jet),
-          "jet, 20 spacings across": ("open_jet", [["across=20"]], measure_jet),
+          **{f"{name}, {n} spacings {way}": (f"open_{name}", [[f"{key}={n}"]], measure)
+             for name, way, key, measure, sizes in (
+                 ("weir", "high", "ratio", measure_weir, (10, 20)),
+                 ("reversal", "across", "ratio", measure_reversal, (20, 40)),
+                 ("jet", "across", "across", measure_jet, (10, 20))) for n in sizes},
           **{f"cylinder, Re = {reynolds}, {across} spacings across": cylinder(reynolds, across)
              for reynolds in (20, 100, 200) for across in (10, 20, 40)}}
 
