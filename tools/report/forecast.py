@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Holds what --explain foresees against what runs take: steps, and time of the program from its
 start to its end, of the shipped cases, the templates, the elastica and FSI2. Each is cut short by
---until so that it takes about as long as --seconds says. Forecasts and runs take turns, and medians
-are compared: CPU time on one thread, which other programs disturb little; wall time on more.
+--until so that it takes about as long as --seconds says. Forecasts and runs take turns, and all
+cases do, so that a slow minute of the machine counts once for a case. Medians are compared: CPU
+time on one thread, which other programs disturb little; wall time on more.
 
 Writes docs/results/forecast.json, one run a line, and the accuracy report, which shows it. A case
 that fails is shown as that. Examples, on an idle machine:
@@ -33,9 +34,9 @@ def arguments():
     parser = options(__doc__)
     parser.add_argument("cases", nargs="*", default=["gate"] if QUICK else [],
                         help="beginnings of names; all without")
-    parser.add_argument("--seconds", type=float, default=1 if QUICK else 2.5,
+    parser.add_argument("--seconds", type=float, default=1 if QUICK else 2,
                         help="aimed at for a run, as foreseen")
-    parser.add_argument("--runs", type=int, default=1 if QUICK else 3,
+    parser.add_argument("--runs", type=int, default=1 if QUICK else 7,
                         help="forecasts and runs of each case")
     parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
     return parser.parse_args()
@@ -80,23 +81,24 @@ def median(found):
             statistics.median(one[key] for one in found) for key, value in found[-1].items()}
 
 
-def compare(case, threads, seconds, runs):
+def begin(case, threads, seconds):
+    """A row without its measurements: until when the case runs."""
     row = {"case": name_of(case), "threads": threads}
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            end = end_time(case)
-            whole = foreseen(case, threads, [])
-            until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
-            more = ["--until", repr(until)] if until < end else []
-            pairs = [(foreseen(case, threads, more),
-                      taken(case, threads, more, Path(folder) / f"run{k}")) for k in range(runs)]
-            row.update(end=end, until=until, whole=whole["seconds"],
-                       foreseen=median([one for one, _ in pairs]),
-                       taken=median([one for _, one in pairs]),
-                       each=[[one["seconds"], two["cpu"], two["seconds"]] for one, two in pairs])
-        except (BadFile, OSError, KeyError, ValueError) as problem:
-            row["failed"] = str(problem)
+    try:
+        end, whole = end_time(case), foreseen(case, threads, [])
+        until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
+        row.update(end=end, until=until, whole=whole["seconds"])
+    except (BadFile, OSError, KeyError, ValueError) as problem:
+        row["failed"] = str(problem)
     return row
+
+
+def measure(case, row):
+    """A forecast and a run."""
+    more = ["--until", repr(row["until"])] if row["until"] < row["end"] else []
+    with tempfile.TemporaryDirectory() as folder:
+        return (foreseen(case, row["threads"], more),
+                taken(case, row["threads"], more, Path(folder) / "run"))
 
 
 def main():
@@ -106,13 +108,23 @@ def main():
              if not args.cases or name_of(case).startswith(tuple(args.cases))]
     if not cases:
         raise BadFile(f"no case of {', '.join(CASES)} begins with {' or '.join(args.cases)}")
-    rows = []
-    for case in cases:
-        for threads in all_threads:
-            rows.append(compare(case, threads, args.seconds, args.runs))
-            print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
+    rows = [(case, begin(case, threads, args.seconds), [])
+            for case in cases for threads in all_threads]
+    for _ in range(args.runs):
+        for case, row, pairs in rows:
+            try:
+                pairs += [measure(case, row)] if "failed" not in row else []
+            except (BadFile, OSError, KeyError, ValueError) as problem:
+                row["failed"] = str(problem)
+    for _, row, pairs in rows:
+        if "failed" not in row:
+            row.update(foreseen=median([one for one, _ in pairs]),
+                       taken=median([one for _, one in pairs]),
+                       each=[[one["seconds"], two["cpu"], two["seconds"]] for one, two in pairs])
+        print("  ".join(map(str, forecast_cells(row))), flush=True)
     store_rows(OUT / "forecast.json", {"machine": machine(), "seconds": args.seconds,
-                                     "runs": args.runs}, "rows", rows)
+                                     "runs": args.runs}, "rows",
+               [row for _, row, _ in rows])
     print(f"written {OUT / 'forecast.json'}")
     results = OUT / "accuracy.json"
     return study_report.write(results, OUT) if results.exists() else 0
