@@ -41,8 +41,6 @@ static long fail_countdown = -1;
 
 void arena_fail_after(long n) { fail_countdown = n; }
 
-static bool failure_injected(void) { return fail_countdown >= 0 && fail_countdown-- == 0; }
-
 /* Zeroes the memory in parallel, split among the threads as in a static loop: on NUMA machines
  * the system places a page near the core that first touches it. */
 static void first_touch(unsigned char *raw, size_t bytes)
@@ -78,8 +76,9 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
     const size_t stagger = a->pieces++ * STAGGER_STEP % STAGGER_RANGE;
     const size_t total = want + overhead + stagger;
     const size_t align = total >= 2 * (size_t)LARGE_PAGE ? LARGE_PAGE : ARENA_ALIGN;
+    const bool injected = fail_countdown >= 0 && fail_countdown-- == 0;
     unsigned char *const raw =
-        failure_injected() ? NULL : aligned_alloc(align, (total + align - 1) / align * align);
+        injected ? NULL : aligned_alloc(align, (total + align - 1) / align * align);
     if (!raw) {
         diag_fail(d, ERR_MEMORY, "%s: no memory for %zu bytes (%zu in use)", what, want, a->bytes);
         return NULL;

@@ -8,12 +8,6 @@ static const char what[] = "beams";
 
 /* --- lines --- */
 
-static bool is_closed(const struct shape *line)
-{
-    const double *const first = line->pt[0], *const last = line->pt[line->n - 1];
-    return line->n > 3 && first[0] == last[0] && first[1] == last[1];
-}
-
 static void count_elements(struct beams *beams)
 {
     for (int k = 0; k < beams->n; k++) {
@@ -25,7 +19,9 @@ static void count_elements(struct beams *beams)
             beams->n_elements +=
                 scene_beam_parts(beams->scene, b->given, line->pt[s], line->pt[s + 1]);
         b->end_element = beams->n_elements;
-        beams->n_nodes += b->end_element - b->first_element + !is_closed(line);
+        const double *const first = line->pt[0], *const last = line->pt[line->n - 1];
+        const bool closed = line->n > 3 && first[0] == last[0] && first[1] == last[1];
+        beams->n_nodes += b->end_element - b->first_element + !closed;
         b->end_node = beams->n_nodes;
     }
 }
@@ -99,12 +95,6 @@ static void place_nodes(struct beams *beams)
 }
 
 /* --- clamps, hinges, loads, springs --- */
-
-static int mover_of(const struct scene *scene, const struct scene_beam *beam, const char *other)
-{
-    const int wall = *other ? scene_find(scene, SECTION_wall, other) : -1;
-    return scene_find(scene, SECTION_motion, wall >= 0 ? scene->wall[wall].motion : beam->motion);
-}
 
 /* Joined nodes have the unknowns of the last one of their chain: that of component c. */
 static struct beam_node *owner_of(const struct beams *beams, int k, int c)
@@ -185,17 +175,13 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
         node->pivots = turns;
         node->line = at->line;
         if (body >= 0) continue;
-        node->mover = mover_of(beams->scene, given, at->other);
+        const int wall = scene_find(beams->scene, SECTION_wall, at->other);
+        node->mover = wall >= 0 ? scene_wall_motion(beams->scene, wall)
+                                : scene_find(beams->scene, SECTION_motion, given->motion);
         TRY(refuse_other_motion(beams, &before, node, d));
         for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
     }
     return ERR_OK;
-}
-
-static bool is_loaded(const struct outlines *o, const struct beam_node *node, double dp)
-{
-    /* An edge counts as in the sampling of bodies. */
-    return outlines_find(o, node->X[0] + 1e-6 * dp, node->X[1] + 0.618e-6 * dp) >= 0;
 }
 
 static enum err find_load(struct beams *beams, int section, struct arena *temp, struct diag *d)
@@ -208,7 +194,10 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
     if (beam < 0) return ERR_OK;
     TRY(outlines_of(&o, scene, &from->shape, temp, d));
     for (int k = beams->beam[beam].first_node; k < beams->beam[beam].end_node; k++) {
-        if (!is_loaded(&o, &beams->node[k], scene->top.dp)) continue;
+        /* An edge counts as in the sampling of bodies. */
+        const double x = beams->node[k].X[0] + 1e-6 * scene->top.dp,
+                     y = beams->node[k].X[1] + 0.618e-6 * scene->top.dp;
+        if (outlines_find(&o, x, y) < 0) continue;
         beams->load[beams->n_loads++] =
             (struct beam_load){.section = section, .node = k, .length = beams->node[k].length};
         length += beams->node[k].length;

@@ -290,8 +290,7 @@ void beams_find_touches(struct beams *beams, double time, double dt)
     struct beam_contact *const contact = beams->contact;
     const struct scene *const scene = beams->scene;
     for (int w = 0; w < contact->n_walls; w++) {
-        const char *const motion = scene->wall[w].motion;
-        const int mover = motion[0] ? scene_find(scene, SECTION_motion, motion) : -1;
+        const int mover = scene_wall_motion(scene, w);
         contact->begin[w] = motion_at(scene, mover, time);
         contact->end[w] = motion_at(scene, mover, time + dt);
     }

@@ -18,6 +18,11 @@ int scene_find(const struct scene *scene, enum section_id id, const char *name)
     return -1;
 }
 
+int scene_wall_motion(const struct scene *scene, int wall)
+{
+    return wall < 0 ? -1 : scene_find(scene, SECTION_motion, scene->wall[wall].motion);
+}
+
 bool scene_motion_turns(const struct scene_motion *motion)
 {
     return motion->kind == MOTION_ROTATION || motion->turn.e[0];

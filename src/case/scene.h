@@ -310,6 +310,9 @@ double scene_open_flow(const struct scene_open *o, double time);
  * equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
+/* The motion of a wall; -1: none, also of wall -1. */
+int scene_wall_motion(const struct scene *scene, int wall);
+
 /* Prescribed motion: displacement from the initial position, velocity and acceleration at a time;
  * and the angle about a centre with its first two derivatives. */
 struct motion_state {

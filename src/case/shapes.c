@@ -69,11 +69,6 @@ static double cross(const double a[2], const double b[2], const double c[2])
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
-static bool edges_cross(const double a[2], const double b[2], const double c[2], const double d[2])
-{
-    return cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0;
-}
-
 static enum err check_polygon(struct reader *r, const struct shape *shape)
 {
     const int n = shape->n;
@@ -86,9 +81,12 @@ static enum err check_polygon(struct reader *r, const struct shape *shape)
     if (fabs(area) <= 1e-12 * size * size)
         return bad_value(r, "the polygon has no area; check its points");
     for (int i = 0; i < n; i++)
-        for (int j = i + 2; j < n; j++)
-            if (edges_cross(shape->pt[i], shape->pt[i + 1], shape->pt[j], shape->pt[(j + 1) % n]))
+        for (int j = i + 2; j < n; j++) {
+            const double *const a = shape->pt[i], *const b = shape->pt[i + 1],
+                                *const c = shape->pt[j], *const d = shape->pt[(j + 1) % n];
+            if (cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0)
                 return bad_value(r, "edges %d and %d of the polygon cross", i + 1, j + 1);
+        }
     return ERR_OK;
 }
 

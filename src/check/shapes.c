@@ -10,11 +10,6 @@ static double cells_to(const struct region *region, int c, double x)
     return (x - region->lattice.origin[c]) / region->lattice.spacing[c];
 }
 
-static bool on_lattice(double cells)
-{
-    return fabs(cells - round(cells)) <= 1e-6 * max2(1, 1e-6 * fabs(cells));
-}
-
 /* An edge along an axis of the lattice that lies between its lines; in the axes of the lattice.
  * `warned`: of one along each axis. */
 static void warn_of_edge(struct check *check, const struct region *region, int line,
@@ -24,7 +19,8 @@ static void warn_of_edge(struct check *check, const struct region *region, int l
     const double dp = l->dp, round_off = l->angle == 0 ? 0 : 1e-9 * dp;
     const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
     const double cells = cells_to(region, c, a[c]);
-    if (fabs(a[c] - b[c]) > round_off || on_lattice(cells) || warned[c]) return;
+    const bool fits = fabs(cells - round(cells)) <= 1e-6 * max2(1, 1e-6 * fabs(cells));
+    if (fabs(a[c] - b[c]) > round_off || fits || warned[c]) return;
     const double fit = l->origin[c] + round(cells) * l->spacing[c];
     check->scene->off_lattice = warned[c] = true;
     if (l->angle == 0)
@@ -56,15 +52,6 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
     }
 }
 
-/* Whether fluid lies within a spacing and a half of an edge's middle. */
-static bool is_wet(const struct check *check, const struct scene_lattice *l, const double a[2],
-                   const double b[2])
-{
-    double at[2];
-    place_of_lattice(l, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), at);
-    return point_at(check, at, 1.5 * l->dp, POINT_FLUID) >= 0;
-}
-
 /* A wet face of a body between the lines of the fluid's lattice leaves a gap, into which fluid that
  * starts under pressure expands, and gains energy. Fluid beside faces in other directions is
  * packed. Beside water that rests under its own weight this gain is below 2e-4 of the available
@@ -79,10 +66,14 @@ static void warn_of_wet_faces(struct check *check, const struct region *region)
     for (int k = 0; pressed && k < region->add.n && face.lattice.angle == region->lattice.angle;
          k++) {
         const struct outline *const o = &region->add.item[k];
-        for (int j = 0; j < o->n; j++)
-            if (is_wet(check, &face.lattice, o->pt[j], o->pt[(j + 1) % o->n]))
-                warn_of_edge(check, &face, region->list->item[region->add.shape[k]].line, o->pt[j],
-                             o->pt[(j + 1) % o->n], warned);
+        const int line = region->list->item[region->add.shape[k]].line;
+        for (int j = 0; j < o->n; j++) {
+            const double *const a = o->pt[j], *const b = o->pt[(j + 1) % o->n];
+            double at[2];
+            place_of_lattice(&face.lattice, 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), at);
+            if (point_at(check, at, 1.5 * face.lattice.dp, POINT_FLUID) >= 0)
+                warn_of_edge(check, &face, line, a, b, warned);
+        }
     }
 }
 

@@ -8,9 +8,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     m->never_skip = scene->test.never_skip;
     TRY(arena_array(a, &m->body, scene->n_wall, "moving walls", d));
     for (int k = 0; k < scene->n_wall; k++) {
-        const int motion = scene->wall[k].motion[0]
-                               ? scene_find(scene, SECTION_motion, scene->wall[k].motion)
-                               : -1;
+        const int motion = scene_wall_motion(scene, k);
         if (motion < 0 && k < scene_beam_wall(scene, 0)) continue;
         int64_t first = 0;
         while (first < walls->n && walls->body[first] != k) first++;

@@ -16,7 +16,7 @@ static struct box2 box_of(const struct scene *scene, int kind, int body)
 static void include_motion(const struct scene *scene, int wall, struct box2 *box)
 {
     enum { TIMES = 257 };
-    const int motion = scene_find(scene, SECTION_motion, scene->wall[wall].motion);
+    const int motion = scene_wall_motion(scene, wall);
     if (motion < 0) return;
     const struct box2 start = box_of(scene, KIND_WALL, wall);
     for (int k = 0; k < TIMES && start.low[0] <= start.high[0]; k++) {

@@ -30,11 +30,6 @@ bool geometry_covers_strictly(const struct region *region, double x, double y)
     return true;
 }
 
-static int motion_of(const struct scene *scene, const struct region *wall)
-{
-    return scene_find(scene, SECTION_motion, scene->wall[wall->body].motion);
-}
-
 /* Whether particle k may lie in another region: a clamped one in a wall, one of a wall in a clamp
  * or in a wall that moves with it. */
 static bool may_lie_in(const struct sampler *sampler, const struct samples *samples, int64_t k,
@@ -45,7 +40,8 @@ static bool may_lie_in(const struct sampler *sampler, const struct samples *samp
     if (its->kind == KIND_WALL && mine->kind == KIND_SOLID) return samples->clamped[k];
     if (mine->kind != KIND_WALL || its->kind == KIND_FLUID) return false;
     if (its->kind == KIND_WALL)
-        return motion_of(sampler->scene, mine) == motion_of(sampler->scene, its);
+        return scene_wall_motion(sampler->scene, mine->body) ==
+               scene_wall_motion(sampler->scene, its->body);
     geometry_place(its, samples->x[k], samples->y[k], at);
     return outlines_find(&its->clamps, at[0], at[1]) >= 0;
 }

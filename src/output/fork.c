@@ -31,7 +31,7 @@ static enum err fork_walls(struct simulation *sim, struct diag *d)
             continue;
         }
         if (i == 0 || particles->body[i] != particles->body[i - 1])
-            m = motion_at(sim->scene, scene_find(sim->scene, SECTION_motion, w->motion),
+            m = motion_at(sim->scene, scene_wall_motion(sim->scene, particles->body[i]),
                           simulation_time(sim));
         const struct motion_point to = motion_of_point(&m, particles->X[i], particles->Y[i]);
         TRY(check_jump(sim, "a particle of [wall", w->common.name, w->motion,

@@ -114,7 +114,7 @@ static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp
 {
     const struct probe_body on = find_body(sim->scene, sp->on);
     if (on.kind == KIND_WALL) {
-        probe->motion = scene_find(sim->scene, SECTION_motion, sim->scene->wall[on.body].motion);
+        probe->motion = scene_wall_motion(sim->scene, on.body);
         return ERR_OK;
     }
     probe->body = on.body;

@@ -124,12 +124,6 @@ static int32_t cell_of(const struct cells *cells, double x, double y)
     return (int32_t)fy * cells->nx + (int32_t)fx;
 }
 
-static uint32_t key_of(const struct cells *cells, int32_t cell)
-{
-    if (cell == OUTSIDE) return OUTSIDE_KEY;
-    return morton_key((uint32_t)cell_x(cells, cell), (uint32_t)cell_y(cells, cell));
-}
-
 /* Significant bits of the keys in use, and one more so that OUTSIDE_KEY stays last. */
 static int key_bits(const struct cells *cells)
 {
@@ -256,8 +250,12 @@ static const int32_t *sort_by_cell(struct cells *cells, const struct cell_list *
 {
     int32_t *const order = list->order ? list->order : cells->permutation;
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < particles->n; k++)
-        cells->pair_a[k] = (uint64_t)key_of(cells, particles->cell[k]) << 32 | (uint64_t)k;
+    for (int64_t k = 0; k < particles->n; k++) {
+        const int32_t at = particles->cell[k];
+        const uint32_t x = (uint32_t)cell_x(cells, at), y = (uint32_t)cell_y(cells, at);
+        const uint32_t key = at == OUTSIDE ? OUTSIDE_KEY : morton_key(x, y);
+        cells->pair_a[k] = (uint64_t)key << 32 | (uint64_t)k;
+    }
     const uint64_t *const sorted = sort_pairs(cells, particles->n, particles);
 #pragma omp parallel for schedule(static)
     for (int64_t k = 0; k < particles->n; k++) order[k] = (int32_t)(uint32_t)sorted[k];

@@ -180,8 +180,7 @@ static enum err shape_create(struct rigid *rigid, int w, struct arena *a, struct
     struct rigid_shape *const s = &rigid->contact->shape[w];
     TRY(body_outlines_of(&s->of, scene, &scene->wall[w].shape, &scene->wall[w].minus, a, d));
     s->rigid = w < scene_rigid_wall(scene, 0) ? -1 : w - scene_rigid_wall(scene, 0);
-    s->motion =
-        scene->wall[w].motion[0] ? scene_find(scene, SECTION_motion, scene->wall[w].motion) : -1;
+    s->motion = scene_wall_motion(scene, w);
     for (int j = 0; j < s->of.add.n; j++) rigid->contact->most += 4 * (s->of.add.item[j].n + 4);
     for (int j = 0; j < s->of.minus.n; j++) rigid->contact->most += 4 * s->of.minus.item[j].n;
     return ERR_OK;

@@ -12,11 +12,6 @@ struct rigid_hinge {
     double end_angle, end_rate; /* of the first after the step, if driven */
 };
 
-static int motion_named(const struct scene *scene, const char *name)
-{
-    return *name ? scene_find(scene, SECTION_motion, name) : -1;
-}
-
 enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *d)
 {
     const struct scene *const scene = rigid->scene;
@@ -28,19 +23,18 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
         body->hinge_motion = -1;
         for (int j = 0; j < body->given->hinge.n; j++) {
             const struct hinge_point *const point = &body->given->hinge.item[j];
-            const int wall = *point->other ? scene_find(scene, SECTION_wall, point->other) : -1;
+            const int wall = scene_find(scene, SECTION_wall, point->other);
             struct rigid_hinge *const hinge = &rigid->hinge[rigid->n_hinges++];
             *hinge = (struct rigid_hinge){.given = body->given,
                                           .at = point->at,
                                           .body = {k, wall - scene_rigid_wall(scene, 0)},
                                           .wall_motion = -1,
-                                          .drive = motion_named(scene, body->given->hinge_motion)};
+                                          .drive = scene_find(scene, SECTION_motion,
+                                                              body->given->hinge_motion)};
             if (hinge->body[1] >= 0) continue;
             hinge->body[1] = -1;
             body->fixed = point;
-            if (wall >= 0)
-                body->hinge_motion = hinge->wall_motion =
-                    motion_named(scene, scene->wall[wall].motion);
+            body->hinge_motion = hinge->wall_motion = scene_wall_motion(scene, wall);
         }
     }
     return ERR_OK;

@@ -467,8 +467,7 @@ static enum err bodies_create(struct contact *contact, struct arena *a, struct d
     TRY(arena_array(a, &contact->body_damping, contact->n_walls, "contact", d));
     for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
     for (int k = 0; k < contact->n_walls; k++)
-        contact->group[contact->n_solids + k] =
-            contact->n_solids + 1 + scene_find(scene, SECTION_motion, scene->wall[k].motion);
+        contact->group[contact->n_solids + k] = contact->n_solids + 1 + scene_wall_motion(scene, k);
     return ERR_OK;
 }
 

@@ -247,10 +247,8 @@ void contact_place(struct contact *contact, const struct particles *particles, d
 #pragma omp single
         for (int k = 0; k < contact->n_walls; k++) {
             contact->time = time;
-            contact->motion[k] = motion_at(contact->scene,
-                                           scene_find(contact->scene, SECTION_motion,
-                                                      contact->scene->wall[k].motion),
-                                           time);
+            contact->motion[k] =
+                motion_at(contact->scene, scene_wall_motion(contact->scene, k), time);
         }
     }
 #pragma omp for schedule(static)

@@ -112,9 +112,7 @@ static void set_hinge(struct hinges *hinges, const struct solid *solid, int body
         .at = {from->at[0], from->at[1]},
         .body = {body, other},
         .bond = {solid->body[body].bond, other >= 0 ? solid->body[other].bond : -1},
-        .motion = other < 0 && wall >= 0
-                      ? scene_find(scene, SECTION_motion, scene->wall[wall].motion)
-                      : -1,
+        .motion = other < 0 ? scene_wall_motion(scene, wall) : -1,
         .line = from->line,
     };
 }
