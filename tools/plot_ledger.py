@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws a run's ledger: shares of the energy, momentum, extremes and the time step."""
+"""Draws a run's ledger: shares of the energy, momentum, extremes and the time step.
+
+example: tools/plot_ledger.py runs/gate --out ledger.pdf"""
 
 import runfiles
 from runfiles import np
 from sphfsi.draw_ledger import draw, energy_shares, read_ledger
 
-EXAMPLE = """example:
-  tools/plot_ledger.py runs/gate --out ledger.pdf
-"""
 
 def arguments():
-    parser = runfiles.options(__doc__, EXAMPLE)
+    parser = runfiles.options(__doc__)
     parser.add_argument("run", nargs="?", metavar="RUN", help="folder of a run")
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
                         "(default: ledger.png in the run's folder)")

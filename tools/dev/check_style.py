@@ -70,12 +70,6 @@ PROGRAMS = re.compile(r"\b(system|popen|exec[lv]p?e?|execvpe|fexecve|fork|vfork|
                       r"posix_spawnp?)\s*\(")
 
 
-def check_mode(path, lines):
-    """Examples call tools by their names."""
-    if lines and lines[0].startswith("#!") and not os.access(path, os.X_OK):
-        report(path, 0, "begins with #! but is not executable; chmod +x")
-
-
 def check_programs(path, lines):
     for number, line in enumerate(lines, 1):
         call = PROGRAMS.search(line)
@@ -209,8 +203,9 @@ def main():
             check_rounding(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
-        if path.parts[len(ROOT.parts)] in ("tools", "web"):
-            check_mode(path, lines)
+        tool = path.parts[len(ROOT.parts)] in ("tools", "web")  # called by name in examples
+        if tool and lines and lines[0].startswith("#!") and not os.access(path, os.X_OK):
+            report(path, 0, "begins with #! but is not executable; chmod +x")
     build = args.library[0].resolve().parent if args.library else None
     for path in sorted(documents() + code):
         if path.suffix == ".md" or path.parts[len(ROOT.parts)] in ("src", "include", "bench"):

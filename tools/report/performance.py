@@ -57,11 +57,6 @@ def parse(text):
         float(row["median"]) for row in rows}
 
 
-def bench_file(processor):
-    name = re.sub(r"[^a-z0-9]+", "-", processor.lower()).strip("-")
-    return (OUT if QUICK else ROOT / "bench") / f"{name}.csv"
-
-
 def compare(rows, path):
     before = parse(path.read_text())[1] if path.exists() else {}
     for key, new in rows.items():
@@ -139,7 +134,9 @@ def main():
                         "the median counts (%(default)s)")
     args = parser.parse_args()
     text = run_bench(args.reps, large=not (QUICK or args.bench))
-    path = bench_file(parse(text)[0][0].split(",")[0])
+    processor = parse(text)[0][0].split(",")[0].lower()
+    name = re.sub(r"[^a-z0-9]+", "-", processor).strip("-")
+    path = (OUT if QUICK else ROOT / "bench") / f"{name}.csv"
     compare(parse(text)[1], path)
     path.write_text(text)
     if args.bench:

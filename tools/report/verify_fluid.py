@@ -391,15 +391,14 @@ RUNS = [
     ("fluid_rest_flat", "still water, flat bottom", [[]], single(rest_of(0.2))),
     ("fluid_rest", "still water, hump and post", [[]], single(rest_of(0.2))),
     *[("fluid_rest_slope", f"still water, slope of {angle} degrees",
-       [[f"constants.angle={angle} deg"]],
-       single(rest_of(0.2))) for angle in (15, 30, 45)],
+       [[f"constants.angle={angle} deg"]], single(rest_of(0.2))) for angle in (15, 30, 45)],
     ("fluid_rest_floor", "still water, elastic floor", [[]], single(rest_of(0.2))),
     *[("fluid_wave", f"standing wave, H/dp = {ratio}", [[f"constants.ratio={ratio}"]],
        single(wave_of(judged)))
       for ratio, judged in ((10, ""), (20, "frequency"), (40, "frequency, loss"))],
     *[("fluid_travel", f"travelling wave, height 10 dp, alpha = {alpha}",
-       [[f"constants.alpha={alpha}"]],
-       single(travel_of(judged))) for alpha, judged in ((0, True), (0.01, False))],
+       [[f"constants.alpha={alpha}"]], single(travel_of(judged)))
+      for alpha, judged in ((0, True), (0.01, False))],
     *[("fluid_impact", f"impact on a wall, H/dp = {ratio}", skins(f"constants.ratio={ratio}"),
        over(impact_of(limit))) for ratio, limit in ((40, None), (60, 0.05))],
     ("dam_break_impact", "impact on a wall, measured one, H/dp = 60", skins("end_time=1.25 s"),
@@ -416,8 +415,7 @@ RUNS = [
     ("dam_break", "template dam_break", [[]], single(penetration)),
     ("baffle", "template baffle", skins() + skins("dp=2 mm"), measure_baffle),
     ("fluid_turned", "gate, turned with gravity",
-     [[f"constants.angle={a} deg"] for a in (0, 15, 30, 45)],
-     measure_turned),
+     [[f"constants.angle={a} deg"] for a in (0, 15, 30, 45)], measure_turned),
     *[(case, f"shipped {case}, {end} s",
        [[f"end_time={end} s", f"output.snapshot_interval={end / 40} s", *settings]],
        single(penetration))
@@ -425,12 +423,9 @@ RUNS = [
 ]
 
 
-def both_schemes(scene, name, variants, measure):
-    return {scheme: (scene, [[f"scheme={scheme}", *settings] for settings in variants], measure)
-            for scheme in SCHEMES[standard_only(name):]}
-
-
-SCENES = {row[1]: both_schemes(*row) for row in RUNS}
+SCENES = {name: {scheme: (scene, [[f"scheme={scheme}", *rest] for rest in variants], measure)
+                 for scheme in SCHEMES[standard_only(name):]}
+          for scene, name, variants, measure in RUNS}
 
 
 if __name__ == "__main__":
