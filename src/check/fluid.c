@@ -164,13 +164,15 @@ static void warn_of_weight(struct check *check, int fluid)
             pressure, upright ? "`surface`, or `pressure`" : "`pressure`");
 }
 
-/* Fluid that faces a wall or body across a gap of one particle, not upwards. */
+/* Fluid that faces a wall or body across a gap of one particle, not upwards. The dummies of a beam
+ * lie on both sides of its line, so they say nothing of a gap. */
 static void warn_of_start_gap(struct check *check, int fluid)
 {
     enum { FEW = 3 }; /* particles at a corner or a curved face */
     static const double sides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     const struct points *const p = &check->points;
     const double dp = check->scene->top.dp;
+    const int beams_from = scene_beam_wall(check->scene, 0);
     int64_t n = 0, first = -1, body = -1;
     for (int64_t k = 0; k < p->n; k++) {
         if (p->bit[k] != POINT_FLUID || p->section[k] != fluid) continue;
@@ -181,6 +183,7 @@ static void warn_of_start_gap(struct check *check, int fluid)
             const double after[2] = {p->x[k] + 2 * dp * to[0], p->y[k] + 2 * dp * to[1]};
             const int64_t found = point_at(check, after, 0.7 * dp, POINT_ANY);
             if (found < 0 || p->bit[found] != POINT_BODY) continue;
+            if (p->kind[found] == KIND_WALL && p->section[found] >= beams_from) continue;
             if (n++ == 0) first = k, body = found;
         }
     }

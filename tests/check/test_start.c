@@ -36,6 +36,11 @@ static void test_fluid_a_little_beside_its_wall(void)
     read(HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK
                     "[wall lid]\nshape = box -0.02, 0.06, 0.12, 0.08\n");
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins"), warnings);
+    /* A beam five spacings away, whose dummies are nearer. */
+    read("dp = 5 mm\nend_time = 1 s\n[fluid water]\nsound_speed = 10\nshape = box 0, 0, 0.1, 0.05\n"
+         "[beam b]\nshape = polyline: 0, 0.075; 0.1, 0.075\nclamp = 0, 0.075\n"
+         "thickness = 1 mm\ndensity = 1000\nyoung = 1e9\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins"), warnings);
 }
 
 static void test_fluid_without_the_pressure_of_its_weight(void)
