@@ -50,9 +50,8 @@ static enum err begin(struct sphfsi_simulation *handle, const char *name, struct
     if (atomic_exchange(&handle->busy, true))
         return diag_fail(
             d, ERR_INPUT,
-            "%s: this simulation is in use by another call. In another thread, wait until "
-            "that call has returned; in a callback, do this after the call that "
-            "invoked the callback has returned",
+            "%s: this simulation is in use by another call, of another thread or of the "
+            "program that invoked this callback; wait until that call has returned",
             name);
     const enum err e = host_enter(&handle->host, handle->threads, d);
     if (e) atomic_store(&handle->busy, false);

@@ -70,8 +70,8 @@ static void say_error(const struct scene *scene, enum kind kind, int body, const
         "error unknown: docs/results/coverage.md has no similar problem at so coarse a resolution";
     if (m > 0)
         snprintf(text, sizeof text,
-                 "error of at most %.2g %% in %.0f of 100 cases (%d similar errors in "
-                 "docs/results/coverage.md)",
+                 "error of at most %.2g %% in %.0f of 100 cases (by %d errors of similar "
+                 "problems in docs/results/coverage.md)",
                  error[k - 1], 100.0 * k / (m + 1), m);
     session_say(o, "  %s: %.0f particles %s: %s", name, n, fluid ? "high" : "across", text);
 }

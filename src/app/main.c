@@ -327,7 +327,7 @@ static int output_is_out(int run)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return 1;
     fputs(
-        run ? "warning: lines of this run are lost, because the standard output cannot be written; "
+        run ? "warning: messages of this run are lost, as the standard output cannot be written; "
               "summary.json holds its results\n"
             : "sphfsi: the output is not complete, because the standard output cannot be written\n",
         stderr);

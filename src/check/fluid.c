@@ -84,9 +84,9 @@ static void warn_of_surface(struct check *check, int f)
     if (isfinite(lowest) && scene->top.gravity[1] < 0)
         warn_section(
             check, &fluid->common,
-            "has a free surface at y = %.4g m, below its `surface = %.4g m`: the pressure "
-            "there begins with %.3g Pa and drives a jet; `surface` is the height of the free "
-            "surface, one for each [fluid]",
+            "ends at y = %.4g m, below its `surface = %.4g m`: the pressure there begins with "
+            "%.3g Pa and drives a jet; `surface` is the height of the free surface, one for "
+            "each [fluid]",
             lowest, fluid->surface,
             -fluid->density * scene->top.gravity[1] * (fluid->surface - lowest));
 }
@@ -192,7 +192,7 @@ static void warn_of_start_gap(struct check *check, int fluid)
     const struct body other = body_at(check->scene, walls_from + p->section[body]);
     warn_section(
         check, &check->scene->fluid[fluid].common,
-        "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will run against it; "
+        "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will hit it; "
         "let their shapes touch, or leave a gap of 2 dp or more",
         dp, other.word, other.common->name, p->x[first], p->y[first]);
 }
@@ -276,8 +276,8 @@ static void warn_of_level(struct check *check, const struct scene_open *o)
         return;
     warn_at(
         check->diag, check->scene, o->common->line,
-        "the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
-        "before it is at y = %.4g m. Above the surface fluid %s; `level = %.4g m` prevents this",
+        "the line of [%s %s] lets fluid pass up to y = %.4g m, but the surface of the fluid "
+        "beside it is at y = %.4g m. Above the surface fluid %s; `level = %.4g m` prevents this",
         o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
 }
 

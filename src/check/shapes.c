@@ -366,7 +366,7 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
             "close the gap",
             between, q->word, q->name, at[0], at[1], width * dp,
             closed ? "and closed by sampling, so no fluid passes"
-                   : "one particle: between a fifth and four fifths of the flow pass, and energy "
+                   : "one particle: the flow through it is 0.2 to 0.8 of the right one, and energy "
                      "may be gained",
             0.5 * width * dp);
 }

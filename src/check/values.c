@@ -86,9 +86,9 @@ void warn_of_speed(struct check *check, int line, double speed, const char *form
     scene->given_speed = max2(scene->given_speed, speed);
     if (scene->n_fluid > 0 && speed > SPEED_WARNING * scene->c0)
         warn_at(check->diag, check->scene, line,
-                "%s up to %.3g m/s, above %g of the fluid's speed of sound, %.3g m/s. It is not "
-                "weakly compressible then, and a guard may stop the run; check the units (angles "
-                "are in radians), or use sound_speed = %.3g or more",
+                "%s up to %.3g m/s, above %g of the fluid's speed of sound, %.3g m/s. The fluid is "
+                "not weakly compressible then, and a guard may stop the run; check the units "
+                "(angles are in radians), or use sound_speed = %.3g or more",
                 what, speed, SPEED_WARNING, scene->c0, 10 * speed);
 }
 
@@ -117,9 +117,9 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
             check->diag, scene,
             scene_line(scene, (enum section_id)open->common->section, open->common->index,
                        "absorb"),
-            "[%s %s] absorb = %g s lets only waves below c0 absorb/4 = %.3g m pass, but the fluid "
-            "resolves none below 2 h = %.3g m. So sound is reflected; absorb = 4 L/c0 lets "
-            "waves up to the length L pass",
+            "[%s %s] absorb = %g s lets only waves shorter than c0 absorb/4 = %.3g m pass, but "
+            "the fluid resolves none shorter than 2 h = %.3g m. So sound is reflected; absorb = "
+            "4 L/c0 lets waves up to the length L pass",
             open->word, open->common->name, open->absorb, wave, reach);
 }
 

@@ -71,8 +71,8 @@ static bool fluid_is_valid(struct simulation *sim)
 
 #define UNSTABLE                                                                             \
     "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, " \
-    "or a wall or structure presses too hard on it; for a soft or light structure a longer " \
-    "damping_time may help"
+    "or a wall or structure presses too hard on the fluid; for a soft or light structure a " \
+    "longer damping_time may help"
 
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
  * until the particle lies in the bed that the front runs over. */
@@ -165,7 +165,8 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
             at->x, at->y);
     warn_once(sim, &sim->guard.warned_contact, d,
               "%s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
-              "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
+              "larger stiffness in [contact] or a smaller dp reduces this; the run stops at "
+              "an overlap of 1",
               one.text, other.text, at->overlap, at->x, at->y);
     return ERR_OK;
 }
@@ -322,8 +323,9 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         const int other = p->body[at];
         warn_once(sim, &sim->guard.warned_rigid, d,
                   "[rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
-                  "contact acts to a quarter of a spacing inside, and not at a hinge; hold the "
-                  "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
+                  "contact ends a quarter of a spacing below the surface, and does not act at a "
+                  "hinge; hold the body by `guide`, `hinge` or a [spring], or use a smaller "
+                  "`fixed_step`",
                   sim->scene->rigid[k].common.name,
                   section_table[sim->scene->wall[other].common.section].word,
                   sim->scene->wall[other].common.name, p->x[at], p->y[at]);
@@ -342,8 +344,8 @@ static enum err check_hinges(struct simulation *sim, struct diag *d)
     sim->guard.case_at_fault = true;
     return diag_fail(
         d, ERR_GUARD,
-        "%s: the hinges of [rigid %s] miss each other or a driven angle by %.2g m, because "
-        "a closed chain or contact leaves them no solution; leave out a "
+        "%s: points that a hinge of [rigid %s] joins are %.2g m apart, or a driven angle is off by "
+        "as much: a closed chain or contact leaves no solution; leave out a "
         "`hinge_motion` or a hinge",
         time_text(sim).text, sim->scene->rigid[k].common.name, gap);
 }
@@ -352,8 +354,8 @@ static void warn_of_crowded(struct simulation *sim, struct diag *d)
 {
     if (!sim->beams.crowded) return;
     warn_once(sim, &sim->guard.warned_beams, d,
-              "beams touch at more than %d places, and pass through the others; use a larger "
-              "`element`",
+              "beams touch at more than %d places, and at further ones they pass through; use a "
+              "larger `element`",
               BEAM_TOUCHES);
 }
 
@@ -379,7 +381,7 @@ static enum err check_newton(const struct simulation *sim, struct diag *d)
     if (!solid && !sim->beams.failed) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
                      "%s: Newton's method finds no solution for the implicit step of the %s, %.3g "
-                     "s, nor for shorter ones (residual: %.2g of the largest force); a smaller "
+                     "s, nor for shorter steps (residual: %.2g of the largest force); a smaller "
                      "fixed_step or %s may help",
                      time_text(sim).text, solid ? "solid" : "beams", sim->state.dt,
                      solid ? by->residual : sim->beams.residual,

@@ -99,10 +99,10 @@ static void test_an_inflow_above_the_surface(void)
                "[outflow o]\nfrom = 0.4, 0\nto = 0.4, 0.1\nlevel = 0.05\n"                    \
                "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nvelocity = 0.1, 0\n"
     read(CHANNEL);
-    expect("the line of [inflow i] passes fluid up to y = 0.1 m");
+    expect("the line of [inflow i] lets fluid pass up to y = 0.1 m");
     expect("Above the surface fluid falls in; `level = 0.05 m` prevents this");
     read(CHANNEL "level = 0.05\n");
-    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "passes fluid up to"), warnings);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "lets fluid pass up to"), warnings);
 }
 
 static void test_probes_inside_a_wall(void)

@@ -80,7 +80,7 @@ if [ -c /dev/full ]; then
     done
     "$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out unsaid >/dev/full 2>err ||
         fail "a run whose messages cannot be written"
-    grep -q "lines of this run are lost" err ||
+    grep -q "messages of this run are lost" err ||
         fail "messages of a run to a full device: $(cat err)"
 fi
 
