@@ -224,6 +224,12 @@ void cells_measure_overhang(struct cells *cells, enum kind kind, const struct pa
         overhang_of(cells, list, particles, list->active[k], own);
         for (int side = 0; side < 4; side++) most[side] = max2(most[side], own[side]);
     }
+    /* Particles in no cell come last. One that is back in the grid needs a cell. */
+    const int32_t *const last = list->n_active ? &list->active[list->n_active - 1] : NULL;
+    for (int64_t k = last ? list->start[*last] + list->count[*last] : 0; k < particles->n; k++) {
+        const int64_t i = list->order ? list->order[k] : k;
+        if (cell_of(cells, particles->x[i], particles->y[i]) != OUTSIDE) most[0] = INFINITY;
+    }
     memcpy(list->overhang, most, sizeof most);
 }
 
@@ -235,7 +241,8 @@ double cells_skin_left(const struct cells *cells, double reach)
     double left = INFINITY;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const double *const other = cells->kind[kind].overhang;
-        for (int to = 0; to < 4 && cells->kind[kind].n_active; to++) { /* to ^ 1: the opposite */
+        if (!cells->kind[kind].n_active && !(other[0] > 0)) continue;
+        for (int to = 0; to < 4; to++) { /* to ^ 1: the opposite */
             const double excess = cells->side[to / 2] - reach;
             left = min2(left, cells->skin - other[to]);
             left = min2(left, excess - (fluid[to] + other[to ^ 1]));

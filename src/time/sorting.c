@@ -88,8 +88,9 @@ void use_skin_left(struct simulation *sim, double speed2_before)
 
 static void measure_overhangs(struct simulation *sim, enum kind first)
 {
+    const bool moves[] = {true, sim->wall_motion.moved, (sim->effects & FX_COUPLING) != 0};
     for (int kind = (int)first; kind < KIND_COUNT; kind++)
-        if (sim->cells.kind[kind].n_active && (kind != KIND_WALL || sim->wall_motion.moved))
+        if (moves[kind])
             cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
     find_skin_left(sim);
 }

@@ -76,10 +76,24 @@ static void test_others_are_not(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
 }
 
+/* A spring brings a body back. Fluid feels it again, since it is in cells. */
+static void test_a_body_that_comes_back_is_in_cells(void)
+{
+    run(WATER RIGID("0, 8") "[spring s]\nbody = b\nfrom = 0.25, 0.25\nto = 0.25, 0\n"
+                            "stiffness = 100\n",
+        0.15);
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    const struct particles *const p = &rig.sim.kind[KIND_WALL];
+    TEST_ASSERT_EQUAL_INT(-1, p->cell[0]);
+    rig_run(&rig, 0.31);
+    for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_GREATER_OR_EQUAL_INT(0, p->cell[i]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_each_body_is_named_once);
     RUN_TEST(test_others_are_not);
+    RUN_TEST(test_a_body_that_comes_back_is_in_cells);
     return UNITY_END();
 }
