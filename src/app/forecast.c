@@ -247,6 +247,8 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
             run->amount[k] = run->amount[per] * each(trial, k, per) * each(&whole, k, per) /
                              each(&first, k, per);
     }
+    if (!(trial->amount[PHASE_output] > 0)) /* rows rarer than the trial is long */
+        run->amount[PHASE_output] = run->amount[TIME] * each(&whole, PHASE_output, TIME);
     run->amount[PHASE_contact] = 0;
     if (whole.amount[PHASE_solid] > 0)
         run->amount[PHASE_contact] =

@@ -3,8 +3,8 @@
 """Holds what --explain foresees against what runs take: steps, and time of the program from its
 start to its end, of the shipped cases, the templates, the elastica and FSI2. Each is cut short by
 --until so that it takes about as long as --seconds says. Forecasts and runs take turns, and all
-cases do, so that a slow minute of the machine counts once for a case. Medians are compared: CPU
-time on one thread, which other programs disturb little; wall time on more.
+cases do, so that a slow minute of the machine counts once for a case. The error is the median of
+forecast over run: CPU time on one thread, which other programs disturb little; wall time on more.
 
 Writes docs/results/forecast.json, one run a line, and the accuracy report, which shows it. A case
 that fails is shown as that. Examples, on an idle machine:
