@@ -54,10 +54,6 @@ def foreseen(case, threads, more):
             "seconds": float(cost[1]) * UNITS[cost[2]]}
 
 
-def end_time(case):
-    return float(re.search(r"(?m)^end_time = ([\d.e+-]+)", effective(str(case)))[1])
-
-
 def taken(case, threads, more, folder):
     command = [str(PROGRAM), str(case), "--quiet", "--out", str(folder), "--threads", str(threads),
                *more]
@@ -81,20 +77,12 @@ def median(found):
             statistics.median(one[key] for one in found) for key, value in found[-1].items()}
 
 
-def begin(case, threads, seconds):
-    """A row without its measurements: until when the case runs."""
-    row = {"case": name_of(case), "threads": threads}
-    try:
-        end, whole = end_time(case), foreseen(case, threads, [])
-        until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
-        row.update(end=end, until=until, whole=whole["seconds"])
-    except (BadFile, OSError, KeyError, ValueError) as problem:
-        row["failed"] = str(problem)
-    return row
-
-
-def measure(case, row):
-    """A forecast and a run."""
+def measure(case, row, seconds):
+    """A forecast and a run; at first also until when the case runs."""
+    if "until" not in row:
+        end = float(re.search(r"(?m)^end_time = ([\d.e+-]+)", effective(str(case)))[1])
+        whole = foreseen(case, row["threads"], [])["seconds"]
+        row.update(end=end, until=float(f"{end * min(1, seconds / whole):.2g}"), whole=whole)
     more = ["--until", repr(row["until"])] if row["until"] < row["end"] else []
     with tempfile.TemporaryDirectory() as folder:
         return (foreseen(case, row["threads"], more),
@@ -108,12 +96,12 @@ def main():
              if not args.cases or name_of(case).startswith(tuple(args.cases))]
     if not cases:
         raise BadFile(f"no case of {', '.join(CASES)} begins with {' or '.join(args.cases)}")
-    rows = [(case, begin(case, threads, args.seconds), [])
+    rows = [(case, {"case": name_of(case), "threads": threads}, [])
             for case in cases for threads in all_threads]
     for _ in range(args.runs):
         for case, row, pairs in rows:
             try:
-                pairs += [measure(case, row)] if "failed" not in row else []
+                pairs += [measure(case, row, args.seconds)] if "failed" not in row else []
             except (BadFile, OSError, KeyError, ValueError) as problem:
                 row["failed"] = str(problem)
     for _, row, pairs in rows:
