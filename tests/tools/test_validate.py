@@ -128,7 +128,7 @@ def test_tables(folder):
         assert curve(sort=True).time[0] == 0.1
     for shipped in validation.REFERENCES.glob("*.csv"):
         table, _ = read_table(shipped)
-        if "time_s" in table:
+        if "time_s" in table and len(table) == 2:
             Reference("", shipped, shipped.stem, shipped.stem)
 
 
