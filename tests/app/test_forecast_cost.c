@@ -215,6 +215,18 @@ static void test_rows_of_later_states_count(void)
     assert_near(0.2, 1, rows[1] - rows[0], "s");
 }
 
+/* Rows that are rarer than the trial is long: of 10 ms, on both sides of one at 0.6 s. */
+static void test_rare_rows_count(void)
+{
+    tick = 2e-5;
+    reading = 1e-2;
+    const struct forecast f = foresee(COLUMN "[probe p]\nquantity = front\n"
+                                             "[output]\nprobe_interval = 0.6\n"
+                                             "ledger_interval = 0.6\n",
+                                      NULL);
+    assert_near(10e-3, 20e-3, f.rows, "s");
+}
+
 /* Sorts of water that flows, although the trial has none: by a run, each of 1 ms. */
 static void test_sorts_of_the_flow_count(void)
 {
@@ -249,6 +261,7 @@ int main(void)
     RUN_TEST(test_work_of_some_steps_counts);
     RUN_TEST(test_later_steps_count);
     RUN_TEST(test_rows_of_later_states_count);
+    RUN_TEST(test_rare_rows_count);
     RUN_TEST(test_sorts_of_the_flow_count);
     RUN_TEST(test_sorts_without_a_skin);
     return UNITY_END();
