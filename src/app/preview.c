@@ -103,7 +103,7 @@ static void put_body(struct drawing *g, enum kind kind, int body,
     }
     snprintf(text, sizeof text, "%lld particles%s", (long long)n,
              held ? ", clamped where dark" : "");
-    put_legend(g, place, common, text);
+    put_legend(g, place, common, n > 0 ? text : "");
 }
 
 /* What has one or two points, as far as the case gives them. */
