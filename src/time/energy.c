@@ -83,6 +83,26 @@ static double add_solids(struct simulation *sim, struct energies *solid)
     return lowest;
 }
 
+/* Kicks at the start of a step (T-32) leave velocities half a step behind positions: adds the work
+ * of the forces that have a potential in this half step (T-46h). Stresses are up to date. */
+static void add_late_work(struct simulation *sim, struct energies *solid)
+{
+    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct solid alone = sim->solid; /* without forces whose work is booked */
+    if (sim->coupling.centred || alone.implicit || sim->substeps == 0) return;
+    const double half = 0.5 * sim->state.dt / sim->substeps;
+    alone.coupled = false;
+    alone.external[0] = NULL;
+    alone.gravity = NULL;
+    alone.loads = NULL;
+    alone.hinges = NULL;
+    solid_forces(&alone, particles);
+    for (int64_t i = 0; i < particles->n; i++)
+        solid[particles->body[i]].row.kinetic +=
+            half * sim->solid.body[particles->body[i]].mass *
+            (particles->sx[i] * particles->vx[i] + particles->sy[i] * particles->vy[i]);
+}
+
 /* Rigid bodies and beams, whose sections follow those of the other walls. */
 static void add_bodies(const struct simulation *sim, struct energies *body)
 {
@@ -421,6 +441,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
     const double driven = sim->effects & FX_OPEN ? flow * (double)sim->kind[KIND_FLUID].n : 0;
     find_energies(sim, of);
+    if (sim->effects & FX_SOLID) add_late_work(sim, &of[energy_entry(KIND_SOLID, 0)]);
     join_neighbours(sim);
     memset(account->now, 0, sizeof account->now);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
