@@ -80,7 +80,7 @@ static void param_type_text(const struct param *param, char *text, size_t size)
         [PARAM_NUMBERS] = "numbers",
         [PARAM_HINGES] = "point, may be repeated",
     };
-    static const char *const scopes[] = {"", " in x, y", " in t", " in x, y, t"};
+    static const char *const scopes[] = {"", " in x, y", " in t", " in x, y, t", " in e"};
     const char *const name = names[param->type];
     if (param->expr_offset)
         snprintf(text, size, "%s or expressions%s", name, scopes[param->scope]);

@@ -71,7 +71,7 @@ static int read_numbers(struct csv *c, const char *line, double *row)
 {
     const size_t length = strcspn(line, "\r\n");
     const char *const doubtful = doubtful_separator(line, length), *at = line;
-    const char *const blanks = " \t\r", *const count = c->n == 2 ? "two" : "three";
+    const char *const blanks = " \t\r";
     if (doubtful) {
         diag_add(c->diag, ERR_INPUT,
                  "%s:%d: commas and %s in one row; write decimal numbers with a point, as 0.5, and "
@@ -83,20 +83,20 @@ static int read_numbers(struct csv *c, const char *line, double *row)
         char *end;
         row[k] = strtod(at, &end);
         if (*at == '\n' || end == at || !isfinite(row[k]) || fabs(row[k]) > c->limit) {
-            diag_add(c->diag, ERR_INPUT, "%s:%d: %s numbers are expected: %s; here `%.*s`", c->path,
-                     c->line, count, c->columns, (int)(length < 60 ? length : 60), line);
+            diag_add(c->diag, ERR_INPUT, "%s:%d: %d numbers are expected: %s; here `%.*s`", c->path,
+                     c->line, c->n, c->columns, (int)(length < 60 ? length : 60), line);
             return -1;
         }
         at = end + strspn(end, blanks);
         if (k + 1 < c->n && (*at == ',' || *at == ';')) at += 1 + strspn(at + 1, blanks);
     }
-    if (!*at || *at == '\n') return 1;
-    diag_add(c->diag, ERR_INPUT, "%s:%d: more than %s columns; %s are expected", c->path, c->line,
-             count, c->columns);
+    if (!*at || *at == '\n' || c->more) return 1;
+    diag_add(c->diag, ERR_INPUT, "%s:%d: more than %d columns; %s are expected", c->path, c->line,
+             c->n, c->columns);
     return -1;
 }
 
-int csv_row(struct csv *c, double row[3])
+int csv_row(struct csv *c, double *row)
 {
     while (*c->at) {
         const char *const at = c->at + strspn(c->at, " \t\r");

@@ -17,10 +17,12 @@ const char *csv_field(const char *line, int k, size_t *length);
 
 /* A table of numbers with a comma, a semicolon or blanks between them. Lines that begin with # are
  * comments. Names of the columns may come before the first row. */
+enum { CSV_COLUMNS = 32 };
 struct csv {
     const char *path;    /* as in messages */
     const char *columns; /* their names as in messages, such as "time (s), value (SI)" */
-    int n;               /* their number, 2 or 3 */
+    int n;               /* their number, CSV_COLUMNS at most */
+    bool more;           /* further columns are skipped */
     double limit;        /* largest magnitude of a number */
     char *text;          /* malloc'd */
     const char *at;      /* the next line */
@@ -32,6 +34,6 @@ struct csv {
 
 /* Reads the file into text. ERR_INPUT: it cannot be read, is no text, or is too long. */
 enum err csv_open(struct csv *c, const char *file) SPHFSI_CHECKED;
-/* 1: a row; 0: the end; -1: failed, in the diag. */
-int csv_row(struct csv *c, double row[3]);
+/* 1: a row of n numbers; 0: the end; -1: failed, in the diag. */
+int csv_row(struct csv *c, double *row);
 void csv_close(struct csv *c);

@@ -93,7 +93,8 @@ struct beam_load {
 struct beam_spring {
     const struct scene_spring *given;
     int node;
-    double length; /* without force, m */
+    double length;    /* without force, m */
+    double stiffness; /* that the longest step takes into account, at least, N/m^2 */
 };
 
 struct beams {
@@ -132,6 +133,8 @@ enum err beams_create(struct beams *beams, struct arena *a, const struct scene *
 
 /* Without fluid and solids, s: a part of the longest period, and of that of a pendulum. */
 double beams_longest_step(struct beams *beams);
+/* The part of it that remains while springs are stiffer than it takes into account. */
+double beams_stiffer_step(const struct beams *beams);
 
 /* The lengths of a step, of the one before (0: the first), and of that of the velocities by the
  * rates of the last evaluation, s. */
@@ -226,6 +229,10 @@ void beams_add_springs(struct beams *beams, double dt);
 /* Adds half of their stiffnesses to the matrix, as beams and springs are at the start; lines that
  * only pull as if they were taut. */
 void beams_stiffen(struct beams *beams);
+
+/* Sets what the longest step takes into account of a spring: its stiffness at the start, or the
+ * least that matters beside a lowest frequency omega. */
+void beams_set_stiffness(struct beams *beams, int spring, double omega2);
 
 /* --- for output --- */
 

@@ -37,10 +37,36 @@ void beams_stiffen(struct beams *beams)
         double along[2];
         if (s->node < 0) continue;
         const double length = reach_of(beams, s, beams->state[s->node].x, along),
-                     half = 0.5 * s->given->stiffness;
+                     longer = elongation(s, length);
         for (int c = 0; c < 2; c++) along[c] /= length;
-        add_stiffness(beams, s->node, along, half, half * max2(elongation(s, length), 0) / length);
+        add_stiffness(beams, s->node, along, 0.5 * spring_slope(s->given, longer),
+                      0.5 * max2(spring_force(s->given, longer), 0) / length);
     }
+}
+
+/* Below omega^2 m, for the mass m of the whole beam, a spring moves its lowest frequency little. */
+void beams_set_stiffness(struct beams *beams, int spring, double omega2)
+{
+    struct beam_spring *const s = &beams->spring[spring];
+    double reach[2], mass = 0;
+    if (s->node < 0) return;
+    for (int k = 0; k < beams->n_nodes; k++)
+        if (beams->node[k].beam == beams->node[s->node].beam) mass += beams->node[k].mass[0];
+    const double longer = elongation(s, reach_of(beams, s, beams->state[s->node].x, reach));
+    s->stiffness = max2(spring_slope(s->given, longer), omega2 * mass);
+}
+
+/* Springs r times as stiff raise no frequency by more than sqrt(r). */
+double beams_stiffer_step(const struct beams *beams)
+{
+    double most = 1, reach[2];
+    for (int k = 0; k < beams->n_springs; k++) {
+        const struct beam_spring *const s = &beams->spring[k];
+        if (s->node < 0 || !s->given->force.e[0]) continue;
+        const double longer = elongation(s, reach_of(beams, s, beams->state[s->node].x, reach));
+        most = max2(most, spring_slope(s->given, longer) / s->stiffness);
+    }
+    return 1 / sqrt(most);
 }
 
 /* T-108 */
@@ -53,8 +79,8 @@ static void add_spring(struct beams *beams, const struct beam_spring *s, double 
                  l1 = reach_of(beams, s, after, reach[1]);
     const double e0 = elongation(s, l0), e1 = elongation(s, l1);
     const double taut = l0 == l1 ? e1 != 0 || !s->given->slack : (e1 - e0) / (l1 - l0),
-                 stiff = 0.5 * taut * s->given->stiffness, damp = s->given->damping / dt,
-                 tension = stiff * (e0 + e1) + damp * (l1 - l0);
+                 stiff = 0.5 * taut * spring_slope(s->given, e1), damp = s->given->damping / dt,
+                 tension = spring_mean(s->given, e0, e1, taut) + damp * (l1 - l0);
     if (s->given->slack && (taut == 0 || tension <= 0)) return;
     for (int c = 0; c < 2; c++) {
         along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);
@@ -76,7 +102,7 @@ double beam_spring_energy(const struct beams *beams, int beam)
         const struct beam_spring *const s = &beams->spring[k];
         if (s->node < 0 || beams->node[s->node].beam != beam) continue;
         const double length = reach_of(beams, s, beams->state[s->node].x, reach);
-        sum += 0.5 * s->given->stiffness * square(elongation(s, length));
+        sum += spring_energy(s->given, elongation(s, length));
     }
     return sum;
 }
@@ -89,7 +115,7 @@ bool beam_spring_force(const struct beams *beams, int spring, double force[2])
     const struct beam_state *const now = &beams->state[s->node];
     const double length = reach_of(beams, s, now->x, reach), longer = elongation(s, length);
     for (int c = 0; c < 2; c++) rate += reach[c] / length * now->v[c];
-    const double tension = s->given->stiffness * longer + s->given->damping * rate;
+    const double tension = spring_force(s->given, longer) + s->given->damping * rate;
     const bool loose = s->given->slack && (longer == 0 || tension <= 0);
     for (int c = 0; c < 2; c++) force[c] = loose ? 0 : tension * reach[c] / length;
     return true;

@@ -362,6 +362,7 @@ double beams_longest_step(struct beams *beams)
         const double middle = sqrt(low * high);
         *(is_above_lowest(beams, middle, free) ? &high : &low) = middle;
     }
+    for (int k = 0; k < beams->n_springs; k++) beams_set_stiffness(beams, k, high);
     const double swing = max2(elementary_hypot(g[0], g[1]) / length, 1e-300);
     return min2(2 * PI / sqrt(high), 2 * PI / sqrt(swing)) / PARTS;
 }

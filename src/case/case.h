@@ -114,6 +114,8 @@ enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
+/* All names of a case, with a scope. */
+struct expr_names case_names(struct reader *r, enum expr_scope scope);
 /* Stores why an expression has no value, unless that follows from a problem already stored. */
 enum err case_bad_expression(struct reader *r, const char *why);
 /* A number of the dimension `unit` from a piece of the entry's value. */
@@ -133,6 +135,9 @@ extern const char *const shape_words[];
 void case_apply_presets(struct reader *r);
 void case_apply_defaults(struct scene *scene);
 
+/* case/spring.c */
+enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
+
 /* case/rigid.c: rigid bodies as walls with a motion, beams as walls; sections of a kind without
  * these. */
 enum err case_place_bodies(struct reader *r) SPHFSI_CHECKED;
@@ -150,7 +155,6 @@ bool case_may_hold(const struct scene *scene, const struct scene_section_common 
 /* The thin line of a beam's wall: its points are the beam's nodes (case/beam.c). */
 enum err case_draw_beam(struct reader *r, int beam) SPHFSI_CHECKED;
 enum err case_check_beam(struct reader *r, const void *section) SPHFSI_CHECKED;
-enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 
@@ -160,5 +164,9 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d) SPHFSI_CHECKED;
+/* The functions of all [table] sections; problems are stored. Then a function by its name: `table`
+ * of struct expr_names. */
+enum err case_load_functions(struct reader *r) SPHFSI_CHECKED;
+const struct expr_table *case_function(void *context, const char *name, char why[EXPR_WHY]);
 /* The tables of gravity and of motions. */
 enum err case_load_tables(struct scene *scene, struct diag *d) SPHFSI_CHECKED;

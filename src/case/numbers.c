@@ -4,6 +4,11 @@
 
 enum { MAX_CONSTANT_DEPTH = 32 };
 
+struct expr_names case_names(struct reader *r, enum expr_scope scope)
+{
+    return (struct expr_names){r, case_name, scope, case_function};
+}
+
 /* --- constants --- */
 
 static struct constant *find_constant(struct reader *r, const char *name)
@@ -54,7 +59,7 @@ enum err case_collect_constants(struct reader *r)
 
 static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXPR_WHY])
 {
-    const struct expr_names names = {r, case_name, EXPR_FIXED};
+    const struct expr_names names = case_names(r, EXPR_FIXED);
     const char *const name = c->entry->key;
     if (c->state == CONSTANT_DONE) return true;
     if (c->state == CONSTANT_BUSY) {
@@ -146,7 +151,7 @@ enum err case_check_dim(struct reader *r, const struct dim *dim, const char *uni
 
 enum err case_number(struct reader *r, struct slice text, const char *unit, double *value)
 {
-    const struct expr_names names = {r, case_name, EXPR_FIXED};
+    const struct expr_names names = case_names(r, EXPR_FIXED);
     struct quantity q = {0};
     char why[EXPR_WHY];
     r->cause_named = false;

@@ -127,6 +127,14 @@ static enum err read_section(struct reader *r, int section)
     return ERR_OK;
 }
 
+static enum err read_sections(struct reader *r, bool tables)
+{
+    for (int k = 0; k < r->n_sections; k++)
+        if (tables == (r->sections[k].id == SECTION_table))
+            TRY(case_go_on(r, read_section(r, k)));
+    return ERR_OK;
+}
+
 /* Required values that were not given. What a section is like may have an invalid one. */
 static enum err check_needed(struct reader *r)
 {
@@ -159,9 +167,11 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
     case_apply_presets(r);
-    TRY(case_all_constants(r));
     TRY(arena_array(&scene->arena, &scene->given, (size_t)r->n_entries + 1, "case file", r->diag));
-    for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
+    TRY(read_sections(r, true)); /* expressions of the others use them */
+    TRY(case_load_functions(r));
+    TRY(case_all_constants(r));
+    TRY(read_sections(r, false));
     if (r->incomplete)
         return ERR_INPUT; /* a key or a name that is missing may be in an invalid line */
     const bool valid = r->n_problems == 0;

@@ -123,23 +123,3 @@ enum err case_check_rigid(struct reader *r, const void *section)
                                                  : "has both `density` and `mass`; leave one out");
     return check_hinge(r, rigid);
 }
-
-enum err case_check_spring(struct reader *r, const void *section)
-{
-    const struct scene_spring *const spring = section;
-    if (spring->stiffness == 0 && spring->damping == 0)
-        return bad_section(r, "needs `stiffness` or `damping`");
-    /* Names that are missing or unknown are reported as such. */
-    const bool joins = scene_find(r->scene, SECTION_rigid, spring->other) >= 0;
-    if (joins && scene_find(r->scene, SECTION_beam, spring->body) >= 0)
-        return bad_section(r,
-                           "joins [beam %s] to [rigid %s]; the other end of a beam's spring is a "
-                           "fixed point: leave `other` out, or join both by `hinge`",
-                           spring->body, spring->other);
-    if (joins && strcmp(spring->body, spring->other) == 0)
-        return bad_section(r, "joins [rigid %s] to itself; name another body, or none",
-                           spring->body);
-    if (spring->from[0] == spring->to[0] && spring->from[1] == spring->to[1])
-        return bad_section(r, "has no direction, because `from` and `to` are the same point");
-    return ERR_OK;
-}

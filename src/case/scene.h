@@ -183,7 +183,7 @@ struct rigid_mass {
 };
 
 /* A table, loaded from its file: n rows of a time and two values. n == 0: none. */
-struct scene_table {
+struct timed_table {
     int n;
     double *t, *x, *y;
     double *vx, *vy; /* of a motion: slopes at the rows, so that the velocity is continuous */
@@ -228,8 +228,9 @@ struct scene {
     int n_given;
     struct scene_given *given;
     struct test_switches test;
-    struct scene_table *motion_data; /* [n_motion] */
-    struct scene_table gravity_data;
+    struct expr_table *function;     /* [n_table] */
+    struct timed_table *motion_data; /* [n_motion] */
+    struct timed_table gravity_data;
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
     /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
     struct rigid_motion *rigid_motion;
@@ -309,6 +310,13 @@ double scene_open_flow(const struct scene_open *o, double time);
 /* Writes the effective case, with all values and defaults in SI units; parsing it again gives an
  * equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
+
+/* Of a spring at an elongation, per depth: the elastic force (N/m), its slope (N/m^2), and its
+ * potential (J/m); and the part `taut` of its mean between two elongations. */
+double spring_force(const struct scene_spring *spring, double e);
+double spring_slope(const struct scene_spring *spring, double e);
+double spring_energy(const struct scene_spring *spring, double e);
+double spring_mean(const struct scene_spring *spring, double from, double to, double taut);
 
 /* The motion of a wall; -1: none, also of wall -1. */
 int scene_wall_motion(const struct scene *scene, int wall);

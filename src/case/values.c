@@ -115,7 +115,7 @@ static enum err read_numbers(struct reader *r, const struct param *param, struct
 static enum err read_expressions(struct reader *r, const struct param *param,
                                  struct scene_expr *field)
 {
-    const struct expr_names names = {r, case_name, param->scope};
+    const struct expr_names names = case_names(r, param->scope);
     struct slice rest = slice_of(r->entry->value), piece = rest;
     TRY(check_count(r, param));
     for (int k = 0; slice_next(&rest, ',', &piece); k++) {

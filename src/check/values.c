@@ -62,7 +62,7 @@ static void warn_of_motion_table(struct check *check, int k)
 {
     const struct scene *const scene = check->scene;
     const struct scene_motion *const motion = &scene->motion[k];
-    const struct scene_table *const table = &scene->motion_data[k];
+    const struct timed_table *const table = &scene->motion_data[k];
     const int n = table->n;
     const double end = motion->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];

@@ -59,9 +59,9 @@ static bool take(struct compiler *c, int ch)
 }
 
 /* Appends an operation, or evaluates it if its operands are numbers. */
-static bool operate(struct compiler *c, enum op_code code, double value)
+static bool append(struct compiler *c, struct op op)
 {
-    const int used = operands(code);
+    const int used = operands(op.code);
     struct op *const first = c->op + c->n - used, *const last = first + (used == 2);
     bool number = used > 0;
     for (int k = 0; k < used; k++) number &= first[k].code == OP_NUMBER;
@@ -75,13 +75,18 @@ static bool operate(struct compiler *c, enum op_code code, double value)
                     "the expression has more than %d operations; use [constants] for parts of it",
                     MAX_OPS);
     if (!number) {
-        c->op[c->n++] = (struct op){code, value};
+        c->op[c->n++] = op;
         return true;
     }
-    if (code == OP_DIV && last->value == 0) return fail(c, "division by zero");
-    first->value = expr_operate(code, first->value, last->value);
+    if (op.code == OP_DIV && last->value == 0) return fail(c, "division by zero");
+    first->value = expr_operate(&op, first->value, last->value);
     c->n -= used - 1;
     return isfinite(first->value) || fail(c, "the result is not a finite number");
+}
+
+static bool operate(struct compiler *c, enum op_code code, double value)
+{
+    return append(c, (struct op){.code = code, .value = value});
 }
 
 /* --- dimensions --- */
@@ -191,15 +196,30 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
     return operate(c, f->code, 0);
 }
 
-/* pi, a coordinate, the time, or a constant. */
+/* A table takes and gives SI values, whatever they are of. */
+static bool parse_table(struct compiler *c, const char *name, struct dim *dim)
+{
+    c->why[0] = '\0';
+    const struct expr_table *const table =
+        c->names->table ? c->names->table(c->names->context, name, c->why) : NULL;
+    if (!table) return c->why[0] ? false : fail(c, "unknown function `%s`", name);
+    if (!take(c, '(') || !parse_sum(c, dim)) return false;
+    if (!take(c, ')')) return fail(c, "`(` after %s is not closed", name);
+    if (dim->kind != DIM_ANY) *dim = (struct dim){DIM_PLAIN, {0, 0, 0}};
+    return append(c, (struct op){.code = OP_TABLE, .table = table});
+}
+
+/* pi, a coordinate, the time, the elongation, or a constant. */
 static bool parse_constant(struct compiler *c, const char *name, struct dim *dim)
 {
     const enum expr_scope scope = c->names->scope;
-    const bool t = strcmp(name, "t") == 0, x = strcmp(name, "x") == 0, y = strcmp(name, "y") == 0;
+    const bool t = strcmp(name, "t") == 0, x = strcmp(name, "x") == 0, y = strcmp(name, "y") == 0,
+               e = strcmp(name, "e") == 0;
     if (strcmp(name, "pi") == 0) return operate(c, OP_NUMBER, PI);
-    if ((t && scope & EXPR_IN_TIME) || ((x || y) && scope & EXPR_IN_SPACE)) {
-        dim->kind = DIM_ANY; /* an expression in t alone is evaluated at x = t */
-        return operate(c, y ? OP_Y : x || scope == EXPR_IN_TIME ? OP_X : OP_T, 0);
+    if ((t && scope & EXPR_IN_TIME) || ((x || y) && scope & EXPR_IN_SPACE) ||
+        (e && scope == EXPR_IN_ELONGATION)) {
+        dim->kind = DIM_ANY; /* an expression in t or e alone is evaluated at x = t or x = e */
+        return operate(c, y ? OP_Y : t && scope == EXPR_IN_BOTH ? OP_T : OP_X, 0);
     }
     if (x || y)
         return fail(c, "`%s` is known only in keys that take an expression in x and y", name);
@@ -230,8 +250,7 @@ static bool parse_name(struct compiler *c, struct dim *dim)
     c->rest = after;
     for (size_t k = 0; call && k < COUNT_OF(functions); k++)
         if (strcmp(functions[k].name, name) == 0) return parse_call(c, &functions[k], dim);
-    if (call) return fail(c, "unknown function `%s`", name);
-    return parse_constant(c, name, dim);
+    return call ? parse_table(c, name, dim) : parse_constant(c, name, dim);
 }
 
 /* An invalid character, and what was probably meant. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Arithmetic of case files: numbers with units, named constants, functions, and, where a value may
- * vary in space or time, the coordinates x and y in metres or the time t in seconds.
+ * vary, the coordinates x and y in metres, the time t in seconds or the elongation e in metres.
  *
  *   sum     = product { (+|-) product }
  *   product = factor { (*|/) factor }
@@ -10,7 +10,7 @@
  *
  * A unit belongs to the number before it: 1/2 m is 1/(2 m). Symbols: m km cm mm um, s min ms us,
  * kg g (after a number), N, Pa kPa MPa GPa, Hz kHz, rad deg. Functions: sqrt sin cos tan sinh cosh
- * tanh exp log abs min max; pi is a name.
+ * tanh exp log abs min max round, and tables; pi is a name.
  *
  * Dimensions are carried along. A plain number, written without a unit, may stand for any dimension
  * (it is SI); in a product with a number that has a unit it is a pure number. */
@@ -21,7 +21,7 @@
 enum dim_kind {
     DIM_PLAIN, /* no unit given: compatible with all */
     DIM_KNOWN, /* powers of metre, kilogram, second */
-    DIM_ANY    /* depends on x, y or t: not tracked, compatible with all */
+    DIM_ANY    /* depends on x, y, t or e: not tracked, compatible with all */
 };
 
 struct dim {
@@ -42,15 +42,24 @@ struct slice {
 
 enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 
-/* Coordinates that can be used: none; x and y; t; all of them. */
-enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH };
+/* Coordinates that can be used: none; x and y; t; these three; e. */
+enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH, EXPR_IN_ELONGATION };
 
-/* Resolves names: `find` returns true and the quantity, or false. Then it has written the reason,
- * or nothing if the name is unknown. */
+/* A function by n rows of an argument x, which increases, and a value y. */
+struct expr_table {
+    int n;
+    double *x, *y;
+    double *slope; /* at the rows, of a smooth one; NULL: linear between the rows */
+};
+void expr_table_smooth(struct expr_table *table);
+
+/* Resolves names: `find` returns true and the quantity, `table` a function, or false and NULL. Then
+ * they have written the reason, or nothing if the name is unknown. */
 struct expr_names {
     void *context;
     bool (*find)(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
     enum expr_scope scope; /* coordinates that can be used */
+    const struct expr_table *(*table)(void *context, const char *name, char why[EXPR_WHY]);
 };
 
 /* Compiled: evaluated at many points. */
@@ -65,19 +74,19 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
 
-/* Value of an expression at a point; of one in t at x = t. */
+/* Value of an expression at a point; of one in t or e alone at x = t or x = e. */
 double expr_at(const struct expr *e, double x, double y);
 /* Value of an expression in x, y and t. */
 double expr_at_time(const struct expr *e, double x, double y, double t);
 
-/* The value of an expression in t with its exact first two derivatives. At a kink or step of min,
- * max, abs and round they are one-sided. */
+/* The value of an expression in t or e alone with its exact first two derivatives; at a kink those
+ * of the side after it. */
 struct expr_jet {
     double value, d1, d2;
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
-/* The integral of one in t by Gauss-Legendre quadrature with three points, exact for polynomials of
- * order 5. */
+/* The integral of one in t or e alone. Its relative error is about 1e-10 for each kink, and
+ * round-off for polynomials of order 3. */
 double expr_integral(const struct expr *e, double from, double to);
 
 /* Whether its value jumps by more than `size` between two times, or has no value, at time `at`. The

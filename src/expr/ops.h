@@ -27,12 +27,16 @@ enum op_code {
     OP_EXP,
     OP_LOG,
     OP_ROUND,
-    OP_ABS
+    OP_ABS,
+    OP_TABLE
 };
 
 struct op {
     enum op_code code;
-    double value;
+    union {
+        double value;
+        const struct expr_table *table;
+    };
 };
 
 struct expr {
@@ -47,4 +51,4 @@ enum { MAX_STACK = 64 };
 SPHFSI_INLINE int operands(enum op_code code) { return code < OP_ADD ? 0 : code < OP_NEG ? 2 : 1; }
 
 /* The result of an operation; `b` of two operands only. */
-double expr_operate(enum op_code code, double a, double b);
+double expr_operate(const struct op *op, double a, double b);

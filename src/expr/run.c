@@ -6,9 +6,57 @@
 #include "base/elementary.h"
 #include "expr/ops.h"
 
-double expr_operate(enum op_code code, double a, double b)
+/* --- tables --- */
+
+/* The row at or before an argument, or before it if the argument falls (`back`), so that the
+ * segment to the next row follows; but not before the first nor the last one. */
+static int table_row(const struct expr_table *table, double x, bool back)
 {
-    switch (code) {
+    int low = 0, high = table->n - 1;
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        if (back ? table->x[middle] < x : table->x[middle] <= x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* With its derivatives in the argument. Between rows linear, or with slopes a cubic; outside
+ * constant. */
+static struct expr_jet table_at(const struct expr_table *table, double x, bool back)
+{
+    const int last = table->n - 1, k = table_row(table, x, back);
+    const double *const X = table->x, *const Y = table->y, *const v = table->slope;
+    if (back ? x <= X[0] : x < X[0]) return (struct expr_jet){Y[0], 0, 0};
+    if (back ? x > X[last] : x >= X[last]) return (struct expr_jet){Y[last], 0, 0};
+    const double h = X[k + 1] - X[k], u = (x - X[k]) / h, jump = Y[k + 1] - Y[k];
+    if (!v) return (struct expr_jet){Y[k] + u * jump, jump / h, 0};
+    const double b = 3 * jump - h * (2 * v[k] + v[k + 1]);
+    const double c = h * (v[k] + v[k + 1]) - 2 * jump;
+    return (struct expr_jet){Y[k] + u * (h * v[k] + u * (b + u * c)),
+                             v[k] + u * (2 * b + 3 * u * c) / h, (2 * b + 6 * u * c) / (h * h)};
+}
+
+/* Slopes of the monotone cubic (Fritsch and Carlson 1980, with the harmonic mean of Brodlie): no
+ * overshoot between rows. Zero at both ends, so that it continues smoothly outside. */
+void expr_table_smooth(struct expr_table *table)
+{
+    const double *const X = table->x, *const Y = table->y;
+    for (int k = 1; k + 1 < table->n; k++) {
+        const double h0 = X[k] - X[k - 1], h1 = X[k + 1] - X[k];
+        const double s0 = (Y[k] - Y[k - 1]) / h0, s1 = (Y[k + 1] - Y[k]) / h1;
+        const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+        table->slope[k] = s0 * s1 > 0 ? (w0 + w1) / (w0 / s0 + w1 / s1) : 0;
+    }
+}
+
+/* --- values --- */
+
+double expr_operate(const struct op *op, double a, double b)
+{
+    switch (op->code) {
     case OP_ADD: return a + b;
     case OP_SUB: return a - b;
     case OP_MUL: return a * b;
@@ -27,6 +75,7 @@ double expr_operate(enum op_code code, double a, double b)
     case OP_EXP: return elementary_exp(a);
     case OP_LOG: return elementary_log(a);
     case OP_ROUND: return round(a);
+    case OP_TABLE: return table_at(op->table, a, false).value;
     default: return fabs(a);
     }
 }
@@ -45,7 +94,7 @@ double expr_at_time(const struct expr *e, double x, double y, double t)
             continue;
         }
         top -= operands(code) - 1;
-        stack[top] = expr_operate(code, stack[top], stack[top + 1]);
+        stack[top] = expr_operate(&e->op[k], stack[top], stack[top + 1]);
     }
     return stack[0];
 }
@@ -60,11 +109,11 @@ void expr_fix_time(struct expr *fixed, const struct expr *e, double t)
         bool number = used > 0;
         for (int j = 1; j <= used; j++) number &= op[n - j].code == OP_NUMBER;
         if (!number) {
-            op[n++] = code == OP_T ? (struct op){OP_NUMBER, t} : e->op[k];
+            op[n++] = code == OP_T ? (struct op){.code = OP_NUMBER, .value = t} : e->op[k];
             continue;
         }
         n -= used - 1;
-        op[n - 1].value = expr_operate(code, op[n - 1].value, op[n].value);
+        op[n - 1].value = expr_operate(&e->op[k], op[n - 1].value, op[n].value);
     }
     fixed->n = n;
 }
@@ -100,10 +149,17 @@ static struct expr_jet chain(const struct expr_jet *a, double f, double first, d
     return (struct expr_jet){f, first * a->d1, bend + first * a->d2};
 }
 
-static struct expr_jet unary_jet(enum op_code code, struct expr_jet a)
+/* At a kink, of the side that t moves to. */
+static struct expr_jet table_jet(const struct expr_table *table, struct expr_jet a)
 {
-    const double x = a.value, f = expr_operate(code, x, 0);
-    switch (code) {
+    const struct expr_jet f = table_at(table, a.value, a.d1 < 0);
+    return chain(&a, f.value, f.d1, f.d2);
+}
+
+static struct expr_jet unary_jet(const struct op *op, struct expr_jet a)
+{
+    const double x = a.value, f = expr_operate(op, x, 0);
+    switch (op->code) {
     case OP_SQRT: return chain(&a, f, 0.5 / f, -0.25 / (x * f));
     case OP_SIN: return chain(&a, f, elementary_cos(x), -f);
     case OP_COS: return chain(&a, f, -elementary_sin(x), -f);
@@ -114,8 +170,9 @@ static struct expr_jet unary_jet(enum op_code code, struct expr_jet a)
     case OP_EXP: return chain(&a, f, f, f);
     case OP_LOG: return chain(&a, f, 1 / x, -1 / (x * x));
     case OP_ROUND: return (struct expr_jet){f, 0, 0};
+    case OP_TABLE: return table_jet(op->table, a);
     case OP_ABS:
-        if (!(x < 0)) return a;
+        if (!(x < 0 || (x == 0 && a.d1 < 0))) return a;
         /* fall through */
     default: return (struct expr_jet){-x, -a.d1, -a.d2};
     }
@@ -134,7 +191,15 @@ static struct expr_jet power_jet(struct expr_jet a, struct expr_jet b)
     if (b.d1 == 0 && b.d2 == 0)
         return chain(&a, elementary_pow(x, p), p == 0 ? 0 : p * elementary_pow(x, p - 1),
                      p == 0 || p == 1 ? 0 : p * (p - 1) * elementary_pow(x, p - 2));
-    return unary_jet(OP_EXP, product_jet(b, unary_jet(OP_LOG, a)));
+    const struct op log = {.code = OP_LOG}, exp = {.code = OP_EXP};
+    return unary_jet(&exp, product_jet(b, unary_jet(&log, a)));
+}
+
+/* Whether a is the less just after now, if not now. */
+static bool is_less(const struct expr_jet *a, const struct expr_jet *b)
+{
+    if (a->value != b->value) return a->value < b->value;
+    return a->d1 != b->d1 ? a->d1 < b->d1 : a->d2 < b->d2;
 }
 
 static struct expr_jet binary_jet(enum op_code code, struct expr_jet a, struct expr_jet b)
@@ -150,8 +215,8 @@ static struct expr_jet binary_jet(enum op_code code, struct expr_jet a, struct e
         q.d2 = (a.d2 - 2 * q.d1 * b.d1 - q.value * b.d2) / b.value;
         return q;
     case OP_POW: return power_jet(a, b);
-    case OP_MIN: return a.value < b.value ? a : b;
-    default: return a.value > b.value ? a : b;
+    case OP_MIN: return is_less(&a, &b) ? a : b;
+    default: return is_less(&b, &a) ? a : b;
     }
 }
 
@@ -166,20 +231,40 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
             stack[top] =
                 code == OP_X ? (struct expr_jet){t, 1, 0} : (struct expr_jet){e->op[k].value, 0, 0};
         else
-            stack[top] = operands(code) == 1 ? unary_jet(code, stack[top])
+            stack[top] = operands(code) == 1 ? unary_jet(&e->op[k], stack[top])
                                              : binary_jet(code, stack[top], stack[top + 1]);
     }
     return stack[0];
 }
 
+/* --- integral --- */
+
+/* Halves an interval as long as its Gauss-Legendre quadrature with three points is not what values
+ * and slopes at its ends say; those see a kink that no point has passed. `size`: that of the
+ * whole. */
+static double integral_of(const struct expr *e, const struct expr_jet *a, const struct expr_jet *b,
+                          double from, double to, double size, int halvings)
+{
+    const double length = to - from, middle = 0.5 * (to + from), off = 0.5 * length * sqrt(0.6);
+    const struct expr_jet m = expr_jet_at(e, middle);
+    const double left = expr_at(e, middle - off, 0), right = expr_at(e, middle + off, 0);
+    const double gauss = length * (5 * left + 8 * m.value + 5 * right) / 18;
+    const double ends = length * (0.5 * (a->value + b->value) + length * (a->d1 - b->d1) / 12);
+    const double here = fabs(a->value) + fabs(b->value) + fabs(left) + fabs(right);
+    size = max2(size, fabs(length) * here);
+    if (halvings == 0 || fabs(gauss - ends) <= 1e-11 * size) return gauss;
+    return integral_of(e, a, &m, from, middle, size, halvings - 1) +
+           integral_of(e, &m, b, middle, to, size, halvings - 1);
+}
+
 double expr_integral(const struct expr *e, double from, double to)
 {
-    const double half = 0.5 * (to - from), middle = 0.5 * (to + from), off = half * sqrt(0.6);
-    return half *
-           (5 * expr_jet_at(e, middle - off).value + 8 * expr_jet_at(e, middle).value +
-            5 * expr_jet_at(e, middle + off).value) /
-           9;
+    enum { HALVINGS = 18 };
+    const struct expr_jet a = expr_jet_at(e, from), b = expr_jet_at(e, to);
+    return integral_of(e, &a, &b, from, to, 0, HALVINGS);
 }
+
+/* --- jumps --- */
 
 /* Difference of a change from the one predicted by the slopes at both ends. */
 static double unexplained(double from, double to, double slope_from, double slope_to, double dt)

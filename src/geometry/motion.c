@@ -4,7 +4,7 @@
 #include "base/elementary.h"
 
 /* The row at or before a time, but not before the first nor the last one. */
-static int table_row(const struct scene_table *table, double t)
+static int table_row(const struct timed_table *table, double t)
 {
     int low = 0, high = table->n - 1;
     while (high - low > 1) {
@@ -27,7 +27,7 @@ bool scene_gravity_varies(const struct scene *scene)
 
 void scene_gravity_at(const struct scene *scene, double t, double g[2])
 {
-    const struct scene_table *const table = &scene->gravity_data;
+    const struct timed_table *const table = &scene->gravity_data;
     t = max2(t, 0); /* while rest is sought (T-78) */
     for (int c = 0; c < 2; c++) {
         const struct expr *const e = scene->top.gravity_in_time.e[c];
@@ -45,7 +45,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
 /* --- motions: displacements or angles with their first two derivatives --- */
 
 static struct expr_jet velocity_at(const struct scene_motion *motion,
-                                   const struct scene_table *table, int c, double t)
+                                   const struct timed_table *table, int c, double t)
 {
     const struct expr *const e = motion->velocity_in_time.e[c];
     if (!e) return (struct expr_jet){motion->velocity[c] * t, motion->velocity[c], 0};
@@ -70,7 +70,7 @@ static struct expr_jet polynomial_at(const struct number_list *c, double t)
 }
 
 /* Cubic Hermite between two rows of a column; at rest before the first and after the last row. */
-static struct expr_jet table_at(const struct scene_table *table, int column, double time)
+static struct expr_jet table_at(const struct timed_table *table, int column, double time)
 {
     const double *const t = table->t, *const d = column ? table->y : table->x,
                         *const v = column ? table->vy : table->vx;
@@ -96,7 +96,7 @@ static struct expr_jet sine_at(const struct scene_motion *motion, double amplitu
 }
 
 static struct expr_jet turning_at(const struct scene_motion *motion,
-                                  const struct scene_table *table, double t)
+                                  const struct timed_table *table, double t)
 {
     const struct expr_jet p = polynomial_at(&motion->angle, t), tabled = table_at(table, 0, t),
                           s = sine_at(motion, motion->angle_amplitude, t);
@@ -114,7 +114,7 @@ static struct expr_jet expression_at(const struct scene_expr *of, double t)
 }
 
 static struct motion_state moving_at(const struct scene_motion *motion,
-                                     const struct scene_table *table, double t)
+                                     const struct timed_table *table, double t)
 {
     struct motion_state m = {0};
     struct expr_jet d[2] = {{0, 0, 0}, {0, 0, 0}}, angle = {0, 0, 0};

@@ -290,10 +290,11 @@ static struct spring_end end_at(const struct rigid *rigid, const struct rigid_sp
     return e;
 }
 
-/* A spring now: its ends, the direction from one to the other, and its elongation. */
+/* A spring now: its ends, the direction from one to the other, its elongation and that one's rate.
+ */
 struct spring_now {
     struct spring_end end[2];
-    double along[2], longer, tension;
+    double along[2], longer, rate, tension;
 };
 
 /* T-100. A damper in a line that only pulls does not push. */
@@ -308,7 +309,8 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
         rate += now.along[c] * (now.end[1].v[c] - now.end[0].v[c]);
     }
     now.longer = length - spring->length;
-    now.tension = spring->given->stiffness * now.longer + spring->given->damping * rate;
+    now.rate = rate;
+    now.tension = spring_force(spring->given, now.longer) + spring->given->damping * rate;
     if (spring->given->slack && (now.longer <= 0 || now.tension <= 0)) now.tension = 0;
     return now;
 }
@@ -320,9 +322,9 @@ void rigid_add_springs(struct rigid *rigid)
         const struct spring_now now = spring_now(rigid, spring);
         if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
-        row->stiffness = spring->given->stiffness;
+        row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
         row->damping = spring->given->damping;
-        row->shorter = -now.longer;
+        row->force = -spring_force(spring->given, now.longer);
         row->later = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
         for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);
@@ -345,7 +347,7 @@ double rigid_spring_energy(const struct rigid *rigid, int k)
         if (rigid->spring[j].body[0] != k) continue;
         const struct spring_now now = spring_now(rigid, &rigid->spring[j]);
         const bool slack = rigid->spring[j].given->slack && now.longer <= 0;
-        sum += slack ? 0 : 0.5 * rigid->spring[j].given->stiffness * square(now.longer);
+        sum += slack ? 0 : spring_energy(rigid->spring[j].given, now.longer);
     }
     return sum;
 }
@@ -367,7 +369,16 @@ static double end_yields(const struct rigid *rigid, const struct rigid_spring *s
     return 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
 }
 
-double rigid_spring_rates(const struct rigid *rigid, double *damping)
+/* The larger slope of a spring's force now and after such a step. */
+static double stiffness_in(const struct rigid *rigid, const struct rigid_spring *spring, double dt)
+{
+    if (!spring->given->force.e[0]) return spring->given->stiffness;
+    const struct spring_now now = spring_now(rigid, spring);
+    return max2(max2(spring_slope(spring->given, now.longer), 0),
+                spring_slope(spring->given, now.longer + dt * now.rate));
+}
+
+double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)
 {
     double omega2 = 0;
     *damping = 0;
@@ -375,10 +386,25 @@ double rigid_spring_rates(const struct rigid *rigid, double *damping)
         const struct rigid_spring *const spring = &rigid->spring[j];
         if (spring->body[1] < 0) continue;
         const double both = end_yields(rigid, spring, 0) + end_yields(rigid, spring, 1);
-        omega2 += spring->given->stiffness * both;
+        omega2 += stiffness_in(rigid, spring, dt) * both;
         *damping += spring->given->damping * both;
     }
     return omega2;
+}
+
+/* Of oscillations without fluid and solids, s: a part of their time scale. */
+static double part_of_time(double rate2) { return 1e-3 / sqrt(rate2); }
+
+double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only)
+{
+    double rate2 = 0;
+    for (int j = 0; j < rigid->n_springs; j++) {
+        const struct rigid_spring *const spring = &rigid->spring[j];
+        for (int end = 0; end < 2 && (spring->given->force.e[0] || !laws_only); end++)
+            rate2 = max2(rate2, 2 * stiffness_in(rigid, spring, dt) *
+                                    end_yields(rigid, spring, end));
+    }
+    return part_of_time(rate2);
 }
 
 double rigid_longest_step(const struct rigid *rigid)
@@ -392,9 +418,5 @@ double rigid_longest_step(const struct rigid *rigid)
         rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
         rate2 = max2(rate2, body->given->hinge_stiffness / body->mass[2]);
     }
-    for (int j = 0; j < rigid->n_springs; j++)
-        for (int end = 0; end < 2; end++)
-            rate2 = max2(rate2, 2 * rigid->spring[j].given->stiffness *
-                                    end_yields(rigid, &rigid->spring[j], end));
-    return 1e-3 / sqrt(rate2);
+    return min2(part_of_time(rate2), rigid_spring_step(rigid, 0, false));
 }

@@ -65,7 +65,7 @@ struct rigid_row {
     double leave;              /* least speed at which a gap opens after an impact, m/s */
     double friction;           /* Coulomb's coefficient with the gap of the row before, or N */
     double stiffness, damping; /* N/m^2 and N s/m^2, or N and N s */
-    double shorter;            /* of a spring, m, or its angle */
+    double force;              /* of a spring before the step: N/m, or its moment, N */
     double later;    /* part of a step in which its change of the rate moves it: 1/4, explicit 0 */
     bool pulls_only; /* a spring that does not push */
     const struct rigid_hinge *hinge; /* NULL: none */

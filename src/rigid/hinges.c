@@ -97,7 +97,7 @@ void rigid_add_hinges(struct rigid *rigid, double time)
             row->stiffness = given->hinge_stiffness;
             row->damping = given->hinge_damping;
             row->later = 0.25;
-            row->shorter = angle_of(rigid, h, wall.angle);
+            row->force = given->hinge_stiffness * angle_of(rigid, h, wall.angle);
             row->other_rate = -wall.rate;
         }
         if (given->hinge_friction > 0) {

@@ -55,7 +55,7 @@ static double find_more(const struct rigid *rigid, const struct rigid_row *row,
     case RIGID_SPRING: {
         const double K = row->stiffness, C = row->damping;
         const double e = step->kick * (row->later * step->dt * K + 0.5 * C);
-        const double force = K * row->shorter + C * row->start_rate;
+        const double force = row->force + C * row->start_rate;
         const double more =
             -(had + step->kick * force + e * (rate - row->start_rate)) / (1 + e * a);
         return row->pulls_only ? max2(-had, more) : more;

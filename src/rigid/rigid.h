@@ -70,9 +70,13 @@ int rigid_find(const struct scene *scene, const char *name);
  * body by its radius of gyration. */
 double rigid_longest_step(const struct rigid *rigid);
 
+/* The part of it that springs allow, as stiff as they are now or after a step of dt; `laws_only`:
+ * those with a `force`, whose stiffness changes. */
+double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only);
+
 /* Sums of the squared frequencies, 1/s^2, and of the damping rates, 1/s, of all springs between two
- * bodies: at least the largest of these bodies. */
-double rigid_spring_rates(const struct rigid *rigid, double *damping);
+ * bodies, as stiff as they are now or after a step of dt: at least the largest of these bodies. */
+double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping);
 
 /* Gives the scene the motion of the bodies at a time, after a step of dt: motion_at continues it.
  */

@@ -8,6 +8,18 @@ static double bound_decay(const struct simulation *sim, double limit, double rat
     return 0.9 * limit * sim->fluid.k.h / (rate * sim->fluid.k.c0);
 }
 
+/* Without fluid the step is that of the bodies, which springs of a changing stiffness may shorten.
+ */
+static double bound_solid(const struct simulation *sim)
+{
+    double step = sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
+    if (sim->effects & FX_FLUID) return step;
+    if (sim->effects & FX_BEAM) step *= beams_stiffer_step(&sim->beams);
+    if (sim->effects & FX_RIGID)
+        step = min2(step, rigid_spring_step(&sim->rigid, sim->state.dt, true));
+    return step;
+}
+
 /* What bound k of time/bounds.def allows, from the fluid's extremes `now`, which are zero at rest.
  */
 static double bound_value(const struct simulation *sim, enum bound k,
@@ -36,7 +48,7 @@ static double bound_value(const struct simulation *sim, enum bound k,
     }
     case BOUND_solid:
         if (sim->effects & FX_MULTIRATE) return never;
-        return sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
+        return bound_solid(sim);
     case BOUND_contact: /* with sub-steps only what passes within the step */
         if (!sim->solid.contact) return never;
         return sim->effects & FX_MULTIRATE || sim->solid.implicit ? sim->contact.approach
@@ -52,7 +64,7 @@ static double bound_value(const struct simulation *sim, enum bound k,
     }
     case BOUND_spring: {
         double damping;
-        const double omega2 = rigid_spring_rates(&sim->rigid, &damping);
+        const double omega2 = rigid_spring_rates(&sim->rigid, sim->state.dt, &damping);
         return n->solid_safety * solid_step_of(omega2, damping);
     }
     case BOUND_fixed: return n->fixed_step > 0 ? n->fixed_step : never;

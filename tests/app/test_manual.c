@@ -52,6 +52,7 @@ static const char scene_text[] =
     "[rigid raft]\nshape = box 0.85, 0, 0.95, 0.1\ndensity = 500\n"
     "[rigid barge]\nshape = box 0.85, 0.2, 0.95, 0.3\ndensity = 500\n"
     "[damping more]\nto = 1, 1\nrate = 1\n"
+    "[table more]\nfile = shake.csv\ncolumn = 2\n"
     "[spring more]\nbody = raft\nto = 1, 1\nstiffness = 1\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
     "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
@@ -128,6 +129,7 @@ static void example_is_accepted(const struct param *param)
         is(param, "outflow", "level"))
         *strstr(text, "pressure = 0") = '#';
     if (is(param, "rigid", "mass")) *strstr(strstr(text, "[rigid raft]"), "density") = '#';
+    if (is(param, "spring", "force")) *strstr(text, "stiffness") = '#';
     if (is(param, "load", "traction")) *strstr(text, "force") = '#';
     if (is(param, "probe", "point") || is(param, "probe", "to") || is(param, "probe", "on"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);

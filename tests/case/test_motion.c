@@ -367,11 +367,11 @@ static void test_bad_tables(void)
               "test_motion.tmp:3: times must increase, but 0.1 s follows 0.2 s");
     bad_table(
         "0, 0, 0\n0.2, 1\n",
-        "test_motion.tmp:2: three numbers are expected: time (s), dx (m), dy (m); here `0.2, 1`");
-    bad_table("0, 0, 0\n0.2, 1, nan\n", "test_motion.tmp:2: three numbers are expected: time (s), "
+        "test_motion.tmp:2: 3 numbers are expected: time (s), dx (m), dy (m); here `0.2, 1`");
+    bad_table("0, 0, 0\n0.2, 1, nan\n", "test_motion.tmp:2: 3 numbers are expected: time (s), "
                                         "dx (m), dy (m); here `0.2, 1, nan`");
     bad_table("0, 0, 0\n0.2, 1, 2, 3\n",
-              "test_motion.tmp:2: more than three columns; time (s), dx (m), dy (m) are expected");
+              "test_motion.tmp:2: more than 3 columns; time (s), dx (m), dy (m) are expected");
     bad_table("0, 1, 0\n0.2, 1, 2\n", "test_motion.tmp:1: the first row must have a time of 0 or "
                                       "later and no displacement, usually `0, 0, 0`");
 }

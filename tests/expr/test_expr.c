@@ -23,7 +23,7 @@ static bool find(void *context, const char *name, struct quantity *q, char reaso
     return true;
 }
 
-static const struct expr_names names = {NULL, find, true};
+static const struct expr_names names = {.find = find, .scope = EXPR_IN_SPACE};
 
 static struct quantity value_of(const char *text)
 {
@@ -211,7 +211,7 @@ static void test_at_a_fixed_time(void)
                                         "1.5*y*(0.4 - y)*(1 - cos(pi*min(t/0.3, 1)))/0.04",
                                         "max(x, t) - -abs(t - 1)*y^2 + exp(-t)/(1 + t)",
                                         "min(t, y) + (t + (t + x))"};
-    const struct expr_names both = {NULL, find, EXPR_IN_BOTH};
+    const struct expr_names both = {.find = find, .scope = EXPR_IN_BOTH};
     struct arena a = {0};
     struct diag d = {0};
     for (size_t k = 0; k < COUNT_OF(texts); k++) {

@@ -177,13 +177,13 @@ static void test_malformed_row(void)
 {
     put("r.csv", "time_s,value\n0,1\n0.1,two\n");
     refuses("file = r.csv\n", "time_s,P_dx_m",
-            "r.csv:3: two numbers are expected: time (s), value (SI); here `0.1,two`");
+            "r.csv:3: 2 numbers are expected: time (s), value (SI); here `0.1,two`");
 }
 
 static void test_third_column(void)
 {
     put("r.csv", "0,1,2\n");
-    refuses("file = r.csv\n", "time_s,P_dx_m", "r.csv:1: more than two columns");
+    refuses("file = r.csv\n", "time_s,P_dx_m", "r.csv:1: more than 2 columns");
 }
 
 static void test_empty_file(void)

@@ -326,7 +326,8 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE BOX "[spring s]\nbody = a\nother = a\nstiffness = 1\nto = 1, 1\n",
                 "to itself");
     rig_refuses(FREE BOX "[spring s]\nbody = a\nstiffness = 1\n", "no direction");
-    rig_refuses(FREE BOX "[spring s]\nbody = a\nto = 1, 1\n", "needs `stiffness` or `damping`");
+    rig_refuses(FREE BOX "[spring s]\nbody = a\nto = 1, 1\n",
+                "needs `stiffness`, `force` or `damping`");
     rig_refuses(FREE BOX "[probe p]\nquantity = reaction\nbody = a\n", "holds a, but nothing does");
     rig_refuses(FREE "[wall a]\nshape = box 3, 3, 4, 4\n"
                      "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n",

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT
+ * The elastic force of a spring (T-100), and checks of a [spring]. */
+#include "base/elementary.h"
+#include "case/case.h"
+
+double spring_force(const struct scene_spring *spring, double e)
+{
+    const struct expr *const law = spring->force.e[0];
+    return law ? expr_at(law, e, 0) : spring->stiffness * e;
+}
+
+double spring_slope(const struct scene_spring *spring, double e)
+{
+    const struct expr *const law = spring->force.e[0];
+    return law ? expr_jet_at(law, e).d1 : spring->stiffness;
+}
+
+double spring_energy(const struct scene_spring *spring, double e)
+{
+    const struct expr *const law = spring->force.e[0];
+    return law ? expr_integral(law, 0, e) : 0.5 * spring->stiffness * square(e);
+}
+
+double spring_mean(const struct scene_spring *spring, double from, double to, double taut)
+{
+    const struct expr *const law = spring->force.e[0];
+    if (!law) return 0.5 * taut * spring->stiffness * (from + to);
+    return taut * (from == to ? expr_at(law, to, 0) : expr_integral(law, from, to) / (to - from));
+}
+
+/* Finite with its slope at elongations up to its length, and no push of a line that only pulls. */
+static enum err check_force(struct reader *r, const struct scene_spring *spring)
+{
+    enum { PARTS = 1000 };
+    const double start =
+        elementary_hypot(spring->to[0] - spring->from[0], spring->to[1] - spring->from[1]);
+    const double length = spring->length > 0 ? spring->length : start;
+    for (int k = -PARTS; k <= PARTS; k++) {
+        const double e = length * k / PARTS, force = spring_force(spring, e);
+        if (!isfinite(force) || !isfinite(spring_slope(spring, e)))
+            return bad_key(r, "force", NULL,
+                           "force = %.200s is not finite, or its slope is not, at e = %g m; "
+                           "change the expression",
+                           expr_source(spring->force.e[0]), e);
+        if (spring->slack && k > 0 && force < 0)
+            return bad_key(r, "force", NULL,
+                           "force = %.200s is %g N/m at e = %g m, but slack = on lets the spring "
+                           "only pull; change one of them",
+                           expr_source(spring->force.e[0]), force, e);
+    }
+    return ERR_OK;
+}
+
+enum err case_check_spring(struct reader *r, const void *section)
+{
+    const struct scene_spring *const spring = section;
+    const bool law = spring->force.e[0] != NULL;
+    if (!law && spring->stiffness == 0 && spring->damping == 0)
+        return bad_section(r, "needs `stiffness`, `force` or `damping`");
+    if (law && spring->stiffness > 0)
+        return bad_section(r, "has both `stiffness` and `force`; leave one out");
+    /* Names that are missing or unknown are reported as such. */
+    const bool joins = scene_find(r->scene, SECTION_rigid, spring->other) >= 0;
+    if (joins && scene_find(r->scene, SECTION_beam, spring->body) >= 0)
+        return bad_section(r,
+                           "joins [beam %s] to [rigid %s]; the other end of a beam's spring is a "
+                           "fixed point: leave `other` out, or join both by `hinge`",
+                           spring->body, spring->other);
+    if (joins && strcmp(spring->body, spring->other) == 0)
+        return bad_section(r, "joins [rigid %s] to itself; name another body, or none",
+                           spring->body);
+    if (spring->from[0] == spring->to[0] && spring->from[1] == spring->to[1])
+        return bad_section(r, "has no direction, because `from` and `to` are the same point");
+    return law ? check_force(r, spring) : ERR_OK;
+}

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: MIT
+ * Springs with a force that is no multiple of the elongation: period, energy, the step that they
+ * need, tables, and input that is refused. */
+#include "rig.h"
+#include "beam/beam.h"
+#include "time/energy.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+
+void tearDown(void)
+{
+    rig_close(&rig);
+    remove("test_spring_laws.tmp");
+}
+
+/* A mass of 2 kg/m on a spring of force K e + C e^3, which begins at e = 0 with a velocity U and
+ * comes to e = A: 2 U^2/2 = K A^2/2 + C A^4/4. */
+#define K 100.0
+#define C 2e5
+#define A 0.05
+#define LAW "force = 100*e + 2e5*e^3\n"
+
+static double speed(void) { return A * sqrt(0.5 * (K + 0.5 * C * A * A)); }
+
+/* By e = A sin(p): the period is the integral of dp/sqrt((K + C A^2 (1 + sin^2 p)/2)/m) over a
+ * turn. */
+static double exact_period(void)
+{
+    enum { PARTS = 200 };
+    double sum = 0;
+    for (int k = 0; k < PARTS; k++)
+        sum += sqrt(2 / (K + 0.5 * C * A * A * (1 + pow(sin(2 * M_PI * k / PARTS), 2))));
+    return sum * 2 * M_PI / PARTS;
+}
+
+static double total(void)
+{
+    const struct ledger row = simulation_ledger(&rig.sim);
+    return row.kinetic + row.elastic + row.potential;
+}
+
+static double place_of_body(void) { return rig.sim.rigid.state[0].x[0]; }
+static double place_of_beam(void) { return rig.sim.beams.state[0].x[0]; }
+
+/* The mean of two periods by rising zeros; energy stays within a part of the first one. */
+static double period_of(double (*place)(void), double part)
+{
+    enum { PERIODS = 2 };
+    int steps = 0;
+    const double start = total();
+    double before = place(), then = 0, first = 0;
+    for (int n = -1; n < PERIODS;) {
+        rig_steps(&rig, 1, 1e6);
+        const double now = place(), t = rig.sim.state.time;
+        if (steps++ % 50 == 0) assert_near(part * start, start, total(), "energy");
+        const double zero = then + (t - then) * before / (before - now);
+        if (before < 0 && now >= 0 && ++n == 0) first = zero;
+        if (n == PERIODS) first = (zero - first) / PERIODS;
+        before = now;
+        then = t;
+    }
+    rig_close(&rig);
+    return first;
+}
+
+#define BODY                                                                            \
+    "dp = 3 cm\nend_time = 100\n[domain]\nlower = -20, -20\nupper = 20, 20\n"           \
+    "[rigid a]\nshape = box 0, 0, 0.1, 0.1\nmass = 2\nguide = 1, 0\nturns = off\n"
+#define SPRING "[spring s]\nbody = a\nfrom = 0, 0.05\nto = -1, 0.05\n"
+#define TABLE "[table law]\nfile = test_spring_laws.tmp\n"
+
+static void open_body(const char *spring, const char *set)
+{
+    char text[1000];
+    snprintf(text, sizeof text, BODY "velocity = %.17g, 0\n" SPRING "%s", speed(), spring);
+    rig_open(&rig, text, set, NULL);
+}
+
+static void write_table(double step)
+{
+    FILE *const file = fopen("test_spring_laws.tmp", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    for (double e = -0.06; e < 0.06 + 0.5 * step; e += step)
+        fprintf(file, "%.9g, %.9g\n", e, K * e + C * e * e * e);
+    fclose(file);
+}
+
+static void test_a_hardening_spring_has_its_period(void)
+{
+    const double exact = exact_period();
+    open_body(LAW, NULL);
+    assert_near(1e-5 * exact, exact, period_of(place_of_body, 2e-6), "period");
+    open_body("other = b\n" LAW "[rigid b]\nshape = box -1.1, 0, -1, 0.1\nmass = 1e9\n", NULL);
+    assert_near(1e-5 * exact, exact, period_of(place_of_body, 2e-6), "between two bodies");
+}
+
+static void test_a_table_is_the_same_law(void)
+{
+    static const struct {
+        const char *text;
+        double step, off;
+    } each[] = {{TABLE, 5e-4, 1e-4}, {TABLE "between = cubic\n", 2e-3, 1e-3}};
+    for (int k = 0; k < 2; k++) {
+        char spring[400];
+        write_table(each[k].step);
+        snprintf(spring, sizeof spring, "force = law(e)\n%s", each[k].text);
+        open_body(spring, NULL);
+        const double exact = exact_period();
+        assert_near(each[k].off * exact, exact, period_of(place_of_body, 1e-5), "period");
+    }
+}
+
+/* With water far away, so that the step is that of its sound. */
+static void test_each_integrator_beside_water(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        open_body("other = b\n" LAW "[rigid b]\nshape = box -1.1, 0, -1, 0.1\nmass = 1e9\n"
+                  "[fluid w]\nshape = box 9, 0, 9.1, 0.1\nsound_speed = 20\n",
+                  integrators[k]);
+        const double exact = exact_period();
+        assert_near(5e-3 * exact, exact, period_of(place_of_body, 1e9), integrators[k]);
+    }
+}
+
+/* A bar of one metre that moves as a whole. */
+#define BAR                                                                                \
+    "dp = 10 cm\nend_time = 1e6\n[beam a]\nshape = polyline: 0, 0.05; 1, 0.05\nmass = 2\n" \
+    "axial_stiffness = 1e7\nbending_stiffness = 1e4\n"
+
+static void test_a_beam_keeps_the_energy_and_has_the_period(void)
+{
+    char text[1000];
+    const double exact = exact_period();
+    write_table(5e-4);
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text, BAR "velocity = %.17g, 0\n" SPRING "%s", speed(),
+                 k ? "force = law(e)\n" TABLE : LAW);
+        rig_open(&rig, text, "numerics.fixed_step=0.002", NULL);
+        assert_near(5e-3 * exact, exact, period_of(place_of_beam, k ? 1e-6 : 1e-8), "period");
+    }
+}
+
+/* A stop that is met on the way, while nothing is stiff at the start: rigid bodies and beams
+ * rebound with their energy. */
+static void test_a_stop_shortens_the_step(void)
+{
+    static const char *const stop = "length = 1.02\nforce = -1e5*max(0, -e - 0.1)\n";
+    char text[1000];
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text, "%svelocity = -1, 0\n" SPRING "%s", k ? BAR : BODY, stop);
+        rig_open(&rig, text, NULL);
+        const double before = rig.sim.dt_lone_solid;
+        double shortest = 1;
+        for (int n = 0; (k ? rig.sim.beams.state[0].v : rig.sim.rigid.state[0].v)[0] < 0.999; n++) {
+            TEST_ASSERT_TRUE(n < 20000);
+            rig_steps(&rig, 1, 1e6);
+            shortest = fmin(shortest, rig.sim.state.dt);
+        }
+        assert_near(2e-4, 1, total(), "energy");
+        assert_at_most(fmin(before, k ? 2 * M_PI * sqrt(2 / 1e5) / 20 : 1e-3 * sqrt(2 / 1e5)),
+                       shortest, "shortest step");
+        rig_close(&rig);
+    }
+}
+
+/* A line that only pulls, with a damper, by its stiffness and by its force: the same motion. */
+static void test_a_slack_line(void)
+{
+    double x[2];
+    for (int k = 0; k < 2; k++) {
+        open_body(k ? "slack = on\ndamping = 3\nforce = 100*e\n"
+                    : "slack = on\ndamping = 3\nstiffness = 100\n",
+                  NULL);
+        rig_run(&rig, 1);
+        x[k] = place_of_body();
+        rig_close(&rig);
+    }
+    assert_near(1e-12, x[0], x[1], "place");
+}
+
+static void test_bad_input_is_refused(void)
+{
+    rig_refuses(BODY SPRING, "needs `stiffness`, `force` or `damping`");
+    rig_refuses(BODY SPRING "stiffness = 2\nforce = e\n", "both `stiffness` and `force`");
+    rig_refuses(BODY SPRING "force = 3*x\n", "`x` is known only in keys");
+    rig_refuses(BODY SPRING "force = 1/(e - 0.5)\n",
+                "force = 1/(e - 0.5) is not finite, or its slope is not, at e = 0.5 m");
+    rig_refuses(BODY SPRING "slack = on\nforce = e*(0.5 - e)\n",
+                "at e = 0.501 m, but slack = on lets the spring only pull");
+    rig_refuses(BODY SPRING "force = e, e\n", "one expression is expected");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_hardening_spring_has_its_period);
+    RUN_TEST(test_a_table_is_the_same_law);
+    RUN_TEST(test_each_integrator_beside_water);
+    RUN_TEST(test_a_beam_keeps_the_energy_and_has_the_period);
+    RUN_TEST(test_a_stop_shortens_the_step);
+    RUN_TEST(test_a_slack_line);
+    RUN_TEST(test_bad_input_is_refused);
+    return UNITY_END();
+}
