@@ -11,9 +11,10 @@ enum { DRAWING = 1000, MARGIN = 70, LINE = 18 };
 struct drawing {
     FILE *file;
     const struct scene *scene;
-    struct box2 view; /* m */
-    double scale;     /* pixels per m */
-    int n_listed;     /* lines of the legend so far */
+    struct box2 view;       /* m */
+    double scale;           /* pixels per m */
+    int n_listed, n_placed; /* lines of the legend, numbers in the drawing so far */
+    double x[8 * SCENE_MAX_SECTIONS], y[8 * SCENE_MAX_SECTIONS]; /* of the numbers, pixels */
 };
 
 /* With the palette of Okabe and Ito, for colour-blind readers. */
@@ -49,39 +50,42 @@ static void put_path(struct drawing *g, const char *class, const char *of, int n
     fputs("h.01\"/>\n", g->file);
 }
 
-/* A line of the legend, and its number in the drawing beside a place. */
+/* A line of the legend, and its number beside a place. Places whose numbers overlap share one. */
 static void put_legend(struct drawing *g, const double *place,
                        const struct scene_section_common *of, const char *what)
 {
-    const double line = px(g, 1, g->view.low[1]) + MARGIN + LINE * ++g->n_listed;
-    char text[300];
-    snprintf(text, sizeof text, "%d  %s %s%s%s", g->n_listed, section_table[of->section].word,
-             of->name, *what ? ": " : "", what);
-    put_text(g, MARGIN, line, "", text);
-    *strchr(text, ' ') = '\0';
-    if (place) put_text(g, px(g, 0, place[0]) - 10, px(g, 1, place[1]) + 13, "label", text);
+    char number[16] = "", text[300];
+    if (place) {
+        const double x = px(g, 0, place[0]) - 10, y = px(g, 1, place[1]) + 13;
+        int k = 0;
+        while (k < g->n_placed && hypot(x - g->x[k], y - g->y[k]) >= LINE) k++;
+        snprintf(number, sizeof number, "%d", k + 1);
+        if (k == g->n_placed) put_text(g, g->x[k] = x, g->y[k] = y, "label", number), g->n_placed++;
+    }
+    snprintf(text, sizeof text, "%s  %s %s%s%s", number, section_table[of->section].word, of->name,
+             *what ? ": " : "", what);
+    put_text(g, MARGIN, px(g, 1, g->view.low[1]) + MARGIN + LINE * ++g->n_listed, "", text);
 }
 
-/* The particles of a body, held by a clamp or not, as squares, without those of thin lines. Returns
- * their number and the place of the last one. */
-static int64_t put_particles(struct drawing *g, enum kind kind, int body, bool held,
-                             const char *class, double place[2])
+/* The particles of a body, held by a clamp or not, but those of thin lines, as squares. Returns
+ * whether there are any, and the place of the last one. */
+static bool put_particles(struct drawing *g, enum kind kind, int body, bool held, const char *class,
+                          double place[2])
 {
     const struct scene_points *const p = &g->scene->points[kind];
     const double side = kind == KIND_SOLID ? g->scene->solid_lattice[body].dp : g->scene->top.dp;
-    int64_t n = 0;
+    bool any = false;
     fprintf(g->file, "<path class=\"body %s\" stroke-width=\"%.2f\" d=\"", class, side * g->scale);
     for (int64_t i = 0; i < p->n; i++) {
         const bool thin = kind == KIND_WALL && scene_line_of(g->scene, i);
         if (p->body[i] != body || (p->clamped && p->clamped[i]) != held || thin) continue;
         box2_include(&g->view, p->x[i], p->y[i]);
         fprintf(g->file, "M%.1f %.1fh.01", px(g, 0, p->x[i]), px(g, 1, p->y[i]));
-        place[0] = p->x[i];
-        place[1] = p->y[i];
-        n++;
+        place[0] = p->x[i], place[1] = p->y[i];
+        any = true;
     }
     fputs("\"/>\n", g->file);
-    return n;
+    return any;
 }
 
 static void put_body(struct drawing *g, enum kind kind, int body,
@@ -93,17 +97,14 @@ static void put_body(struct drawing *g, enum kind kind, int body,
         (const void *)((const char *)common + param_find(id, "shape")->offset);
     const char *const class = moves ? "moving" : kind_names[kind];
     double place[2] = {g->view.low[0], g->view.low[1]};
-    char text[80];
-    const int64_t held = put_particles(g, kind, body, true, "clamped", place),
-                  n = held + put_particles(g, kind, body, false, class, place);
     for (const struct shape *line = lines->item; line < lines->item + lines->n; line++) {
         if (id != SECTION_beam && !line->thin) continue;
         put_path(g, "line", class, line->n, line->pt);
-        if (n == 0) memcpy(place, line->pt[line->n / 2], sizeof place);
+        memcpy(place, line->pt[line->n / 2], sizeof place);
     }
-    snprintf(text, sizeof text, "%lld particles%s", (long long)n,
-             held ? ", clamped where dark" : "");
-    put_legend(g, place, common, n > 0 ? text : "");
+    const bool held = put_particles(g, kind, body, true, "clamped", place);
+    put_particles(g, kind, body, false, class, place);
+    put_legend(g, place, common, held ? "clamped where dark" : "");
 }
 
 /* What has one or two points, as far as the case gives them. */
@@ -128,7 +129,7 @@ static void put_sections(struct drawing *g)
     static const enum section_id id[] = {SECTION_fluid,   SECTION_wall,    SECTION_solid,
                                          SECTION_spring,  SECTION_damping, SECTION_inflow,
                                          SECTION_outflow, SECTION_probe};
-    g->n_listed = 0;
+    g->n_listed = g->n_placed = 0;
     for (size_t s = 0; s < COUNT_OF(id); s++)
         for (int k = 0; k < section_count(g->scene, id[s]); k++) {
             const struct scene_section_common *of = section_at(g->scene, id[s], k);
@@ -152,7 +153,7 @@ static void put_grid(struct drawing *g)
             memcpy(end, &g->view, sizeof end);
             end[0][c] = end[1][c] = k == 0 ? 0 : k * step;
             put_path(g, "grid", "", 2, end);
-            snprintf(text, sizeof text, "%.6g", end[0][c]);
+            snprintf(text, sizeof text, "%.6g m", end[0][c]);
             put_text(g, px(g, 0, end[0][0]) - (c ? 9 : 0), px(g, 1, end[0][1]) + (c ? 4 : 19),
                      c ? "end" : "middle", text);
         }
@@ -184,8 +185,7 @@ static enum err draw_case(struct session *session, const struct sphfsi_options *
     snprintf(path, sizeof path, "preview-%.*s.svg", length, name);
     if (o->out) snprintf(path, sizeof path, "%s", o->out);
     g.file = fopen(path, "w");
-    if (g.file) put_sections(&g);
-    if (g.file) g.file = freopen(path, "w", g.file);
+    if (g.file) put_sections(&g), g.file = freopen(path, "w", g.file);
     if (g.file) put_picture(&g);
     const bool ok = g.file && !ferror(g.file);
     if ((g.file && fclose(g.file) != 0) || !ok)

@@ -312,8 +312,8 @@ static void preview_shows_the_scene(void)
     svg[fread(svg, 1, sizeof svg - 1, file)] = '\0';
     fclose(file);
     TEST_ASSERT_NOT_NULL(strstr(svg, "tiny \"quoted\""));
-    TEST_ASSERT_NOT_NULL(strstr(svg, "fluid water: 100 particles"));
-    TEST_ASSERT_NOT_NULL(strstr(svg, "solid gate: 45 particles, clamped where dark"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "fluid water<"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "solid gate: clamped where dark"));
     TEST_ASSERT_NOT_NULL(strstr(svg, "probe flow_through: flux"));
     TEST_ASSERT_NOT_NULL(strstr(svg, "</svg>"));
 }
@@ -334,8 +334,6 @@ static void preview_shows_particles_as_they_are(void)
     static char svg[1 << 16];
     svg[fread(svg, 1, sizeof svg - 1, file)] = '\0';
     fclose(file);
-    TEST_ASSERT_NOT_NULL(strstr(svg, "solid thin: 448 particles<"));
-    TEST_ASSERT_NOT_NULL(strstr(svg, "solid slanted: 320 particles<"));
     size_t squares = 0;
     for (const char *at = strstr(svg, "body "); (at = strstr(at, "h.01")); at++) squares++;
     TEST_ASSERT_EQUAL_UINT64(448 + 320, squares);
