@@ -150,7 +150,7 @@ static void warn_of_weight(struct check *check, int fluid)
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
         warn_section(
             check, &f->common,
-            "has a `surface`, but nothing is below it: the pressure at its lower end begins "
+            "has a `surface`, but nothing to stand on: the pressure at its lower end begins "
             "with up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out "
             "`surface`",
             pressure);
@@ -278,7 +278,7 @@ static void warn_of_level(struct check *check, const struct scene_open *o)
         check->diag, check->scene, o->common->line,
         "the line of [%s %s] lets fluid pass up to y = %.4g m, but the surface of the fluid "
         "beside it is at y = %.4g m. Above the surface fluid %s; `level = %.4g m` prevents this",
-        o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
+        o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "stands still", fluid);
 }
 
 /* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:

@@ -84,15 +84,15 @@ static void warn_of_area(struct check *check, const struct region *region)
     const struct scene_lattice *const l = &check->scene->solid_lattice[region->body];
     const double ratio = 1 + l->area_error, stiff = ratio * square(ratio);
     if (fabs(l->area_error) <= 0.005) return;
-    const bool part = l->area_free;
     check->scene->off_lattice = true;
     warn_at(check->diag, check->scene, region->line,
-            "the %.0f particles of [solid %s]%s cover %.2g %% %s than its area of %.4g m^2%s, so a "
-            "thin body is about %.2g %% too %s in bending; a finer dp or another lattice_angle "
-            "helps",
-            ratio * l->area / square(l->dp), region->name, part ? " that no clamp holds" : "",
-            100 * fabs(ratio - 1), ratio > 1 ? "more" : "less", l->area, part ? " there" : "",
-            100 * fabs(stiff - 1), ratio > 1 ? "stiff" : "soft");
+            "the %.0f particles of [solid %s]%s cover %.2g %% %s than the shape there, %.4g m^2, "
+            "so a thin body is about %.2g %% too %s in bending; a finer dp or another "
+            "lattice_angle helps",
+            ratio * l->area / square(l->dp), region->name,
+            l->area_free ? " that no clamp holds" : "", 100 * fabs(ratio - 1),
+            ratio > 1 ? "more" : "less", l->area, 100 * fabs(stiff - 1),
+            ratio > 1 ? "stiff" : "soft");
 }
 
 /* --- too thin --- */
@@ -366,8 +366,8 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
             "close the gap",
             between, q->word, q->name, at[0], at[1], width * dp,
             closed ? "and closed by sampling, so no fluid passes"
-                   : "one particle: the flow through it is 0.2 to 0.8 of the right one, and energy "
-                     "may be gained",
+                   : "one particle: the flow through it is 0.2 to 0.8 of the exact flow, and "
+                     "energy may be gained",
             0.5 * width * dp);
 }
 

@@ -125,7 +125,7 @@ static void warn_of_other_motions(struct check *check, int body)
                 "overlap or part; `%s = %s` moves both",
                 b->common.name, b->clamp_motion[0] ? "has the motion " : "is at rest",
                 b->clamp_motion, w->common.name, w->motion[0] ? "moves" : "is at rest",
-                w->motion[0] && b->clamp_motion[0] ? " otherwise" : "",
+                w->motion[0] && b->clamp_motion[0] ? " differently" : "",
                 w->motion[0] ? "clamp_motion" : "motion",
                 w->motion[0] ? w->motion : b->clamp_motion);
     }

@@ -211,7 +211,7 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
              scene_text);
     read(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has the motion sway but touches [wall floor], "
-                                                  "which moves otherwise"),
+                                                  "which moves differently"),
                                  warnings);
     /* A wall that does not touch the clamp may move alone. */
     read(HEAD "[wall lid]\nshape = box -0.05, 0.2, 0.07, 0.22\nmotion = shake\n"
@@ -243,8 +243,8 @@ static void test_a_gap_of_one_particle(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(warnings, "doubts.cfg:15: the gap between [wall floor] and [wall "
                          "post] at (0.05059, 0.002497) m is 0.005 m wide, one "
-                         "particle: the flow through it is 0.2 to 0.8 of the right "
-                         "one, and energy may be gained; use dp = 0.0025 m or less"),
+                         "particle: the flow through it is 0.2 to 0.8 of the exact "
+                         "flow, and energy may be gained; use dp = 0.0025 m or less"),
         warnings);
     TEST_ASSERT_NULL(strchr(strchr(warnings, '\n') + 1, '\n')); /* one warning */
     read(HEAD

@@ -56,7 +56,7 @@ static void test_fluid_without_the_pressure_of_its_weight(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "weight"), warnings);
     read(HEAD
          "[fluid drop]\nsound_speed = 10\nsurface = 0.1\nshape = box 0, 0.05, 0.1, 0.1\n" TANK);
-    expect("[fluid drop] has a `surface`, but nothing is below it: the pressure at its lower end "
+    expect("[fluid drop] has a `surface`, but nothing to stand on: the pressure at its lower end "
            "begins with up to 490 Pa");
 }
 

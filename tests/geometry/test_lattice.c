@@ -242,8 +242,8 @@ static void test_area_is_told(void)
     const double ratio = (double)scene.points[KIND_SOLID].n * 4 / (pi * 529);
     TEST_ASSERT_TRUE(fabs(ratio - 1) > 0.005);
     char expected[64];
-    snprintf(expected, sizeof expected, "cover %.2g %% %s than its area", 100 * fabs(ratio - 1),
-             ratio > 1 ? "more" : "less");
+    snprintf(expected, sizeof expected, "cover %.2g %% %s than the shape there",
+             100 * fabs(ratio - 1), ratio > 1 ? "more" : "less");
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, expected), warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "so a thin body is about"), warnings);
 }
