@@ -50,7 +50,7 @@ def draw(run, ledger):
     shares, total = energy_shares(ledger)
     for colour, (name, values) in zip(COLOURS, shares.items()):
         energy.plot(time, values, color=colour, label=f"{SHARES[name]}: {values[-1]:.3g} %")
-    energy.set(ylabel=f"Share of {total:.4g} J/m (%)", title=run.label())
+    energy.set(ylabel=f"Share of {total:.4g} J/m (%)", title=run.label(run.summary.get("title")))
     energy.legend(title="Energy, its share at the end", loc="center left",
                   bbox_to_anchor=(1.01, 0.5), handlelength=1.6)
     for colour, axis in zip(COLOURS, "xy"):

@@ -111,9 +111,9 @@ class Run:
             return None
         return "unfinished" if reason == "running" else f"stopped: {reason}"
 
-    def label(self):
-        reason = self.failure()
-        return self.name if reason is None else f"{self.name} ({reason})"
+    def label(self, name=None):
+        name, reason = name or self.name, self.failure()
+        return name if reason is None else f"{name} ({reason})"
 
     def stopped(self):
         return self.summary.get("exit_reason", "running") not in ("finished", "running")

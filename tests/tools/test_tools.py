@@ -306,6 +306,11 @@ def test_ledger(tmp, good):
     without = [",".join([*row[:-2], "inf", row[-1]]) for row in fields]  # as a fluid alone has it
     ledger.write_text("\n".join([head, *without, ""]))
     draws(good / "ledger.png", "plot_ledger", good)
+    from sphfsi.draw_ledger import draw, read_ledger
+    from sphfsi.files import Run
+    run = Run(good)
+    run.summary["title"] = "A dam break"
+    assert draw(run, read_ledger(run)).axes[0].get_title() == "A dam break"
     (tmp / "empty").mkdir()
     refuses("cannot read", "plot_ledger", tmp / "empty")
 
