@@ -381,8 +381,7 @@ def picture():
            xlim=(1, 1e8), ylim=(0.3, 25))
     ax.set_yticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
     ax.minorticks_off()
-    ax.set_title("Elastic flag behind a cylinder. Circles: FSI2; squares: FSI3", fontsize=10,
-                 loc="left")
+    ax.set_title("Flag behind a cylinder. Circles: FSI2; squares: FSI3", fontsize=10, loc="left")
     save(fig, IMAGES / "turek_hron_cost.png", dpi=150, bbox_inches="tight")
 
 

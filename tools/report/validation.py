@@ -290,7 +290,8 @@ def cantilever(report):
                  "Deflection of the free end, and its difference from the references"),
         *picture("plot_fields", ["cantilever-20", "cantilever-20-symplectic"], "cantilever-fields",
                  "Von Mises stress at 0.57 s and 0.70 s, Verlet and symplectic (ts/dp = 20)",
-                 "--time", 0.57, 0.7), *report.appendix("cantilever", interface=False)]
+                 "--time", 0.57, 0.7, "--window", -0.01, 0.21, -0.04, 0.055),
+        *report.appendix("cantilever", interface=False)]
 
 
 def deflections():
