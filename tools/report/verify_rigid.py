@@ -50,7 +50,7 @@ def measure_wedge(runs):
     p = runs[0].table()
     t = p["time_s"]
     late = t > t[-1] / 3
-    force, t = p["force_fy_N_per_m"][late] / RHO, t[late]
+    force, t = p["force_fy_N_per_m"][late] / 1000, t[late]
     return [("force, % too large", 100 * ((force @ t) / (t @ t) / 14.139 - 1), 3),
             ("its scatter, % of the last force", 100 * np.std(force / (14.139 * t[-1])
                                                               - t / t[-1]), None)]
