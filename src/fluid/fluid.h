@@ -67,10 +67,10 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
  * tip. */
 void line_slides(const struct thin_line *line, int64_t i, double t[2]);
 
-/* T-110: the first line that the connection of two places crosses an odd number of times, from 1;
- * 0: none. (x, y) is the second place less the first, `from`. */
-int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
-                  double x, double y);
+/* T-110: how much of each other two places see, of which the second is a dummy of the line `own`,
+ * from 1; 0: of none. `way`: the second place less the first, `from`; `reach` of the kernel, m. */
+double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
+                  const double from[2], const double way[2], int32_t own);
 
 #define ETA2 0.01 /* (eta/h)^2 */
 /* r0 of fx_repulsion over the mean spacing of fluid and dummy. It is 1 for a thin line, so that no
@@ -314,12 +314,13 @@ SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, i
     return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
-/* Whether a place and particle i of a kind, (x, y) away, see each other (T-110). */
-SPHFSI_INLINE bool fluid_sees(const struct fluid *fluid, const struct cells *cells,
-                              const double from[2], enum kind kind, int64_t i, double x, double y)
+/* How much a place and particle i of a kind, (x, y) away, see each other (T-110). */
+SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *cells,
+                                const double from[2], enum kind kind, int64_t i, double x, double y)
 {
-    if (!(fluid->effects & FX_THIN)) return true;
-    return lines_between(&fluid->lines, cells, from, x, y) == fluid_line_of(fluid, kind, i);
+    if (!(fluid->effects & FX_THIN)) return 1;
+    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
+                      (const double[]){x, y}, fluid_line_of(fluid, kind, i));
 }
 
 /* Energy that walls and structures have stored by repelling each section of fluid (L-7b), J/m. */

@@ -192,13 +192,27 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
     return ERR_OK;
 }
 
-int lines_between(const struct lines *lines, const struct cells *cells, const double from[2],
-                  double x, double y)
+/* T-110b: how much passes a piece that the connection `way` crosses between these ends, which are
+ * relative to its beginning. */
+static double passes_piece(const struct thin_line *line, const struct line_piece *piece,
+                           const double way[2], const double from[2], const double to[2],
+                           double reach)
 {
-    const double to[2] = {x, y};
+    const double a = way[0] * from[1] - way[1] * from[0], b = way[0] * to[1] - way[1] * to[0];
+    const double along = piece->start + piece->length * a / (a - b);
+    const double first = line->scene->tip[0] ? along : reach,
+                 last = line->scene->tip[1] ? line->length - along : reach;
+    return max2(0, 1 - min2(first, last) / reach);
+}
+
+double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
+                  const double from[2], const double way[2], int32_t own)
+{
+    double clear = 1;
     for (int k = 0; k < lines->n; k++) {
         const struct thin_line *const line = &lines->line[k];
         bool odd = false;
+        double passes = 1;
         for (int image = 0; image < CELLS_IMAGES; image++) {
             double shift[2];
             if (!cells_image(cells, image, shift)) continue;
@@ -207,10 +221,15 @@ int lines_between(const struct lines *lines, const struct cells *cells, const do
                 const double one[2] = {start[0] + shift[0] - from[0],
                                        start[1] + shift[1] - from[1]},
                              other[2] = {end[0] + shift[0] - from[0], end[1] + shift[1] - from[1]};
-                odd ^= crosses_piece(to, one, other);
+                if (!crosses_piece(way, one, other)) continue;
+                odd = !odd;
+                passes =
+                    min2(passes, passes_piece(line, &line->piece[m], way, one, other, reach));
             }
         }
-        if (odd) return k + 1;
+        if (!odd) passes = 1;
+        if (own == k + 1) return clear * (1 - passes);
+        clear *= passes;
     }
-    return 0;
+    return own ? 0 : clear;
 }

@@ -37,8 +37,9 @@ static void add_repulsion(void *context, int64_t i, double x, double y, double r
     const double over = fluid->volume[at->kind][particles->body[i]];
     const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
                       (1 + sqrt(over)) * fluid->k.dp;
-    if (r < r0 && fluid_sees(fluid, at->cells, at->place, at->kind, i, x, y))
-        at->sum += over * fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
+    if (r < r0)
+        at->sum += fluid_seen(fluid, at->cells, at->place, at->kind, i, x, y) * over *
+                   fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
                    repulsion_held(r, r0, fluid->k.h);
 }
 

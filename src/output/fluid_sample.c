@@ -22,8 +22,9 @@ static void add_to_sample(void *context, int64_t i, double x, double y, double r
     struct sampling *const at = context;
     const struct particles *const particles = &at->sim->kind[at->kind];
     const struct fluid_constants *const k = &at->sim->fluid.k;
-    const double w = kernel_w(r, k->h) * square(k->dp);
-    if (!fluid_sees(&at->sim->fluid, &at->sim->cells, at->place, at->kind, i, x, y)) return;
+    const double w =
+        fluid_seen(&at->sim->fluid, &at->sim->cells, at->place, at->kind, i, x, y) *
+        kernel_w(r, k->h) * square(k->dp);
     if (at->kind != KIND_FLUID) {
         at->sum.occupied += w;
         at->wall_x += w * (particles->ax ? particles->ax[i] : 0);

@@ -184,6 +184,29 @@ static void test_a_dam_break(void)
     TEST_ASSERT_TRUE(largest > 300);
 }
 
+/* T-110b: what passes between two places beside a line falls with the distance from its tip; the
+ * energy of repulsion (L-7b) has these weights, too. With all of it for dummies that are hardly
+ * seen, water that runs over a tip seemed to gain 1.5 % of its energy. */
+static void test_what_is_seen_past_a_tip(void)
+{
+    rig_open(&rig,
+             TOP "[fluid water]\nshape = box -0.4, 0, -0.16, 0.4\nsurface = 0.4\n"
+                 "sound_speed = 40\n" TANK "[wall line]\nshape = polyline thickness 0: 0, 0; 0, "
+                 "0.1\n",
+             NULL);
+    const double reach = KERNEL_REACH * rig.sim.fluid.k.h, way[2] = {0.02, 0};
+    for (double part = -0.4; part < 1.5; part += 0.25) {
+        const double from[2] = {-0.01, 0.1 - part * reach}, seen = max2(0, min2(1, part));
+        for (int own = 0; own < 2; own++)
+            assert_near(1e-6, own ? seen : 1 - seen,
+                        lines_seen(&rig.sim.fluid.lines, &rig.sim.cells, reach, from, way, own),
+                        "weight");
+    }
+    rig_run(&rig, 0.3);
+    const struct energy_account *const account = &rig.sim.state.energy;
+    assert_at_most(0.003 * account->largest_available, account->most[TERM_FLUID], "gain");
+}
+
 /* Particles out of order around a tip, a corner and a junction: the forces of fluid and walls have
  * no sum. */
 static void test_action_and_reaction(void)
@@ -305,6 +328,7 @@ int main(void)
     RUN_TEST(test_a_piston);
     RUN_TEST(test_a_line_slides_into_water);
     RUN_TEST(test_a_dam_break);
+    RUN_TEST(test_what_is_seen_past_a_tip);
     RUN_TEST(test_action_and_reaction);
     RUN_TEST(test_places_and_loads);
     RUN_TEST(test_a_side_at_the_end_of_a_floor);
