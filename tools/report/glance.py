@@ -61,7 +61,7 @@ def draw_accuracy():
         # The last point of still water lies on another line: its name is below the first one.
         end, place = (0, (-30, -46)) if case == "still" else (-1, (7, 3))
         axes.annotate(label, (seconds[end], off[end]), xytext=place, textcoords="offset points",
-                      color=colour, va="center", fontsize=9)
+                      color=colour, va="center", fontsize=9, bbox={"fc": "w", "lw": 0, "pad": 0.5})
     axes.set(xlabel="CPU time (s)", ylabel="error (%)", xlim=(0.02, 4e3))
     axes.set_yticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
     axes.set_title("solid: scheme = standard, the default;  dashed: scheme = paper, the article's",
