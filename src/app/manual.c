@@ -77,7 +77,6 @@ static void param_type_text(const struct param *param, char *text, size_t size)
         [PARAM_VECTOR] = "two numbers",
         [PARAM_EXPR] = "expression",
         [PARAM_SHAPES] = "shape, may be repeated",
-        [PARAM_NUMBERS] = "numbers",
         [PARAM_HINGES] = "point, may be repeated",
     };
     static const char *const scopes[] = {"", " in x, y", " in t", " in x, y, t", " in e"};
@@ -88,14 +87,6 @@ static void param_type_text(const struct param *param, char *text, size_t size)
         snprintf(text, size, "%s%s%s%s",
                  param->type == PARAM_EXPR && param->count == 2 ? "two " : "", name,
                  param->type == PARAM_EXPR && param->count == 2 ? "s" : "", scopes[param->scope]);
-}
-
-/* The meaning of a key, with the kinds of motion that have it. */
-static void meaning_of(const struct param *param, char *text, size_t size)
-{
-    const bool some = param->motion_kinds;
-    snprintf(text, size, "%s%s%s%s", param->meaning, some ? " (kind = " : "",
-             some ? param->motion_kinds : "", some ? ")" : "");
 }
 
 /* What the default scheme sets a key to in a kind of scene; false: it leaves the default. */
@@ -119,7 +110,7 @@ static void say_key(const struct param *param, const struct sphfsi_options *o)
     char type[64], range[128] = "", fallback[SCENE_TEXT], meaning[768], value[SCENE_NAME];
     param_type_text(param, type, sizeof type);
     default_of(param, fallback, sizeof fallback);
-    meaning_of(param, meaning, sizeof meaning);
+    snprintf(meaning, sizeof meaning, "%s", param->meaning);
     for (int k = 0; k < SCENE_KINDS; k++)
         if (scheme_value(param, k, value, sizeof value))
             snprintf(meaning + strlen(meaning), sizeof meaning - strlen(meaning), "; %s: %s",
@@ -185,15 +176,14 @@ static void write_default(struct json *j, const struct param *param)
 
 static void write_key(struct json *j, const struct param *param)
 {
-    char type[64], text[768];
+    char type[64], text[SCENE_TEXT];
     param_type_text(param, type, sizeof type);
     json_open(j, param->key, '{');
     json_text(j, "type", type);
     if (!pure(param)) json_text(j, "unit", param->unit);
     write_range(j, param);
     write_default(j, param);
-    meaning_of(param, text, sizeof text);
-    json_text(j, "meaning", text);
+    json_text(j, "meaning", param->meaning);
     manual_example(param, text, sizeof text);
     json_text(j, "example", text);
     json_close(j, '}');

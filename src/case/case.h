@@ -8,7 +8,6 @@
  *
  *   number       arithmetic with units, functions, constants: expr/expr.h
  *   vector       two numbers with a comma between them
- *   numbers      numbers with commas between them
  *   choice       one of the names of case/params.def
  *   text         as it is; between double quotes it may hold # or be empty
  *   expressions  one or two, with a comma between them; in x and y (metres), evaluated per particle
@@ -26,7 +25,7 @@ enum {
     CASE_MAX_BYTES = 4 << 20,
     CASE_MAX_LINES = 20000,
     CASE_MAX_CONSTANTS = 512,
-    CASE_MAX_POINTS = 4096, /* of a polygon; numbers of a list */
+    CASE_MAX_POINTS = 4096, /* of a polygon */
     CASE_MAX_PROBLEMS = 20, /* reported once per case */
     PROBLEM_TEXT = 1024,
 };
@@ -158,15 +157,11 @@ enum err case_check_beam(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_open(struct reader *r, const void *section) SPHFSI_CHECKED;
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 
-/* case/tables.c: opens the text table `name` given by a key of a line. Messages begin with the
- * place of the key, or with the table's name and line. The caller closes `csv`, also after a
- * failure. */
+/* case/tables.c: opens the text table of a name, which is relative to the case. Messages go to the
+ * diag of `csv`; the caller closes it, also after a failure. */
 struct csv;
-enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
-                    const char *key, struct diag *d) SPHFSI_CHECKED;
+enum err table_open(const struct scene *scene, struct csv *csv, const char *name) SPHFSI_CHECKED;
 /* The functions of all [table] sections; problems are stored. Then a function by its name: `table`
  * of struct expr_names. */
 enum err case_load_functions(struct reader *r) SPHFSI_CHECKED;
 const struct expr_table *case_function(void *context, const char *name, char why[EXPR_WHY]);
-/* The tables of gravity and of motions. */
-enum err case_load_tables(struct scene *scene, struct diag *d) SPHFSI_CHECKED;

@@ -223,40 +223,6 @@ enum { TIMES = 1000 };
 
 /* --- motions --- */
 
-static enum err check_kind(struct reader *r, const struct scene_motion *m)
-{
-    const struct choice_name kind = param_choice(param_find(SECTION_motion, "kind"), m->kind);
-    for (const struct param *p = param_table; p < param_table + PARAM_COUNT; p++)
-        if (p->motion_kinds && !strstr(p->motion_kinds, kind.text) && !param_is_default(p, m))
-            return bad_key(r, p->key, NULL,
-                           "`%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
-                           p->key, p->motion_kinds, kind.text);
-    return ERR_OK;
-}
-
-/* What a motion of its kind cannot do without, or NULL. */
-static const char *lacking(const struct scene_motion *m)
-{
-    const bool turns = m->angle_amplitude != 0;
-    switch ((enum motion_kind)m->kind) {
-    case MOTION_SINE: return m->period == 0 ? "kind = sine needs `period`" : NULL;
-    case MOTION_ROTATION:
-        if (turns && m->period == 0) return "angle_amplitude needs `period`";
-        return turns || m->angle.n || *m->file
-                   ? NULL
-                   : "kind = rotation needs `angle`, `angle_amplitude` or `file`";
-    case MOTION_TABLE: return *m->file ? NULL : "kind = table needs `file`";
-    case MOTION_POLYNOMIAL:
-        return m->poly_x.n + m->poly_y.n ? NULL : "kind = polynomial needs `poly_x` or `poly_y`";
-    case MOTION_EXPRESSION:
-        return m->x.e[0] || m->y.e[0] || m->turn.e[0]
-                   ? NULL
-                   : "kind = expression needs `x`, `y` or `turn`, expressions in t";
-    case MOTION_VELOCITY: break;
-    }
-    return NULL;
-}
-
 /* Finite with its derivatives. */
 static enum err check_finite(struct reader *r, const struct expr *e, double length)
 {
@@ -289,17 +255,15 @@ static enum err check_jumps(struct reader *r, const char *key, const struct expr
 static enum err check_motion(struct reader *r, const void *section)
 {
     const struct scene_motion *const m = section;
-    const struct expr *const each[] = {m->x.e[0], m->y.e[0], m->turn.e[0], m->velocity_in_time.e[0],
-                                       m->velocity_in_time.e[1]};
+    const struct expr *const each[] = {m->x.e[0], m->y.e[0], m->turn.e[0]};
     static const char *const keys[] = {"x", "y", "turn"};
     const double length = fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
     if (!(m->start < m->stop))
         return bad_section(r, "start = %g s must come before stop = %g s", m->start, m->stop);
-    TRY(check_kind(r, m));
-    if (lacking(m)) return bad_section(r, "%s", lacking(m));
     for (size_t k = 0; k < COUNT_OF(each); k++) {
-        if (each[k]) TRY(check_finite(r, each[k], length));
-        if (each[k] && k < COUNT_OF(keys)) TRY(check_jumps(r, keys[k], each[k], length));
+        if (!each[k]) continue;
+        TRY(check_finite(r, each[k], length));
+        TRY(check_jumps(r, keys[k], each[k], length));
     }
     return ERR_OK;
 }

@@ -49,10 +49,9 @@ static bool meets(const struct scene *scene, struct effect_caller *by, int first
 static bool has_gravity(const struct scene *scene, struct effect_caller *by)
 {
     const struct scene_expr *const e = &scene->top.gravity_in_time;
-    const bool table = *scene->top.gravity_file;
     const bool acts =
         scene->top.gravity[0] != 0 || scene->top.gravity[1] != 0 || e->e[0] || e->e[1];
-    return called_by(by, SECTION_top, table ? "gravity_file" : "gravity", table || acts ? 0 : -1);
+    return called_by(by, SECTION_top, "gravity", acts ? 0 : -1);
 }
 
 /* The first probe of the force on a wall; -1: none. */

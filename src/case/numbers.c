@@ -104,8 +104,7 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     for (int k = 0; k < r->n_constants; k++) nearest_offer(&near, name, r->constants[k].entry->key);
     if (strcmp(name, "t") == 0)
         snprintf(why, EXPR_WHY,
-                 "unknown name `t`: the time is known only in keys that take an expression in t "
-                 "(of a [motion]: `velocity`, `x`, `y`, `turn`)");
+                 "unknown name `t`: the time is known only in keys that take an expression in t");
     else
         snprintf(why, EXPR_WHY, "unknown name `%s`%s", name,
                  near.name ? nearest_hint(&near) : "; define it in [constants]");

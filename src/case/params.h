@@ -37,7 +37,6 @@ enum param_type {
     PARAM_TIME_VECTOR = PARAM_VECTOR,
     PARAM_EXPR,
     PARAM_SHAPES,
-    PARAM_NUMBERS,
     PARAM_HINGES
 };
 
@@ -65,7 +64,6 @@ struct param {
     int count;                    /* of their expressions */
     enum section_id kind, also;   /* of the sections that a TEXT names; 0: it names none */
     bool list;                    /* several of them */
-    const char *motion_kinds;     /* that have the key of a motion; NULL: all */
     size_t offset, size;          /* in the section's struct, bytes */
     size_t expr_offset;           /* of the expressions of a TIME_VECTOR; else 0 */
 };

@@ -9,8 +9,7 @@ static enum scene_kind kind_of_scene(const struct reader *r)
 {
     const struct scene *const scene = r->scene;
     const struct entry *const e = case_entry(r, 0, "gravity");
-    const bool heavy =
-        case_entry(r, 0, "gravity_file") || (e && e->value[strspn(e->value, "0., ")]);
+    const bool heavy = e && e->value[strspn(e->value, "0., ")];
     if (!scene->n_fluid) return SCENE_SOLID;
     if (scene->n_solid) return SCENE_COUPLED;
     return scene->n_inflow && !heavy ? SCENE_STREAM : SCENE_FLUID;

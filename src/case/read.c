@@ -81,15 +81,37 @@ static enum err inherit(struct reader *r, const struct param *like, struct scene
 
 /* --- keys --- */
 
+/* What another key of a section says instead of these, which older cases have. */
+static const char *instead_of(enum section_id id, const char *key)
+{
+    static const struct {
+        enum section_id section;
+        const char *keys, *instead;
+    } gone[] = {
+        {SECTION_top, " gravity_file ",
+         "; write gravity = NAME(t), OTHER(t) with a [table] of the file for each of the two"},
+        {SECTION_motion,
+         " kind velocity poly_x poly_y amplitude period phase angle angle_amplitude file ",
+         "; write x, y or turn as an expression in t, such as y = 1.5 m/s*t, or y = NAME(t) with a "
+         "[table NAME] of a file"},
+    };
+    char word[SCENE_NAME + 2];
+    snprintf(word, sizeof word, " %s ", key);
+    for (size_t k = 0; k < COUNT_OF(gone); k++)
+        if (gone[k].section == id && strstr(gone[k].keys, word)) return gone[k].instead;
+    return NULL;
+}
+
 static enum err unknown_key(struct reader *r, int id)
 {
     char title[SCENE_NAME];
     struct nearest near = {0};
+    const char *const instead = instead_of((enum section_id)id, r->entry->key);
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
     r->incomplete = true;
     return bad_entry(r, "unknown key `%s` %s%s", r->entry->key,
                      id == SECTION_top ? "at the top of the file" : title,
-                     param_hint((enum section_id)id, r->entry->key, &near));
+                     instead ? instead : param_hint((enum section_id)id, r->entry->key, &near));
 }
 
 static enum err read_section(struct reader *r, int section)
@@ -180,7 +202,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     case_apply_defaults(scene);
     TRY(case_check_names(r));
     if (valid) TRY(case_check(r));
-    return r->n_problems > 0 ? ERR_INPUT : case_load_tables(scene, r->diag);
+    return r->n_problems > 0 ? ERR_INPUT : ERR_OK;
 }
 
 /* --- from text, from a file --- */

@@ -104,10 +104,9 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
                            "has a `hinge_motion` and %d hinges; keep one, and give the others "
                            "to the other bodies",
                            rigid->hinge.n);
-    if (driven >= 0 && !scene_motion_turns(&r->scene->motion[driven]))
+    if (driven >= 0 && !r->scene->motion[driven].turn.e[0])
         return bad_section(r,
-                           "has the `hinge_motion` %s, which has no angle: its kind must be "
-                           "rotation, or expression with `turn`",
+                           "has the `hinge_motion` %s, which has no angle; give it `turn`",
                            rigid->hinge_motion);
     if (*rigid->hinge_motion && moments > 0)
         return bad_section(r, "has a `hinge_motion`, which gives the angle, and a stiffness, "

@@ -23,11 +23,6 @@ int scene_wall_motion(const struct scene *scene, int wall)
     return wall < 0 ? -1 : scene_find(scene, SECTION_motion, scene->wall[wall].motion);
 }
 
-bool scene_motion_turns(const struct scene_motion *motion)
-{
-    return motion->kind == MOTION_ROTATION || motion->turn.e[0];
-}
-
 int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
                      const double b[2])
 {

@@ -30,11 +30,6 @@ struct shape_list {
     struct shape *item;
 };
 
-struct number_list {
-    int n;
-    double *value;
-};
-
 /* A point of a body that stays in place, or on another section, in the case file's words. */
 struct hinge_point {
     double at[2];
@@ -70,7 +65,6 @@ struct scene_section_common {
     struct scene_expr key##_in_time;
 #define MEMBER_EXPR(key) struct scene_expr key;
 #define MEMBER_SHAPES(key) struct shape_list key;
-#define MEMBER_NUMBERS(key) struct number_list key;
 #define MEMBER_HINGES(key) struct hinge_list key;
 #define PARAM(section, key, type, ...) MEMBER_##type(key)
 /* clang-format off */
@@ -104,14 +98,6 @@ enum plane { PLANE_STRAIN, PLANE_STRESS };
 enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
 enum hourglass_form { HOURGLASS_PRINTED, HOURGLASS_VARIATIONAL };
 enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
-enum motion_kind {
-    MOTION_VELOCITY,
-    MOTION_POLYNOMIAL,
-    MOTION_TABLE,
-    MOTION_SINE,
-    MOTION_ROTATION,
-    MOTION_EXPRESSION
-};
 enum probe_quantity {
 #define QUANTITY(NAME, ...) PROBE_##NAME,
 #include "case/quantities.def"
@@ -182,13 +168,6 @@ struct rigid_mass {
     double mass, inertia, centre[2];
 };
 
-/* A table, loaded from its file: n rows of a time and two values. n == 0: none. */
-struct timed_table {
-    int n;
-    double *t, *x, *y;
-    double *vx, *vy; /* of a motion: slopes at the rows, so that the velocity is continuous */
-};
-
 /* A named constant, evaluated. */
 struct scene_constant {
     char name[SCENE_NAME];
@@ -228,9 +207,7 @@ struct scene {
     int n_given;
     struct scene_given *given;
     struct test_switches test;
-    struct expr_table *function;     /* [n_table] */
-    struct timed_table *motion_data; /* [n_motion] */
-    struct timed_table gravity_data;
+    struct expr_table *function; /* [n_table] */
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
     /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
     struct rigid_motion *rigid_motion;
@@ -360,7 +337,6 @@ SPHFSI_INLINE int scene_line_of(const struct scene *scene, int64_t wall_particle
             return k + 1;
     return 0;
 }
-bool scene_motion_turns(const struct scene_motion *motion);
 /* Elements of a beam from a to b. */
 int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, const double a[2],
                      const double b[2]);

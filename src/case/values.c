@@ -102,16 +102,6 @@ static enum err read_list(struct reader *r, const struct param *param, double *v
     return ERR_OK;
 }
 
-static enum err read_numbers(struct reader *r, const struct param *param, struct number_list *list)
-{
-    list->n = slice_count(slice_of(r->entry->value), ',');
-    if (list->n > CASE_MAX_POINTS)
-        return bad_value(r, "more than %d numbers are given", CASE_MAX_POINTS);
-    list->value =
-        arena_alloc(&r->scene->arena, (size_t)list->n, sizeof *list->value, "numbers", r->diag);
-    return list->value ? read_list(r, param, list->value) : ERR_MEMORY;
-}
-
 static enum err read_expressions(struct reader *r, const struct param *param,
                                  struct scene_expr *field)
 {
@@ -164,8 +154,7 @@ enum err case_value(struct reader *r, const struct param *param, void *section)
         return read_list(r, param, place);
     case PARAM_EXPR: return read_expressions(r, param, place);
     case PARAM_SHAPES: return case_shape(r, place);
-    case PARAM_HINGES: return case_hinge(r, place);
-    case PARAM_NUMBERS: break;
+    case PARAM_HINGES: break;
     }
-    return read_numbers(r, param, place);
+    return case_hinge(r, place);
 }

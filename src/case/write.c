@@ -94,7 +94,6 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
 {
     const void *const value = section + param->offset;
     const double *const number = value;
-    const struct number_list *const list = value;
     const struct shape_list *const shapes = value;
     const struct hinge_list *const hinges = value;
     char text[SCENE_TEXT];
@@ -108,8 +107,7 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     case PARAM_CHOICE: fputs(param_choice(param, *(const int *)value).text, out); break;
     case PARAM_TEXT:
         snprintf(text, sizeof text, "%s", (const char *)value);
-        if (strcmp(param->key, "file") == 0 || strcmp(param->key, "gravity_file") == 0)
-            relocate(scene, value, path, text);
+        if (strcmp(param->key, "file") == 0) relocate(scene, value, path, text);
         write_text(out, text);
         break;
     case PARAM_VECTOR:
@@ -123,7 +121,6 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
                 write_number(out, number[k], param->unit);
         }
         break;
-    case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
     case PARAM_SHAPES:
         for (int k = 0; k < shapes->n; k++) write_shape(out, param->key, &shapes->item[k]);
         return;

@@ -368,7 +368,7 @@ static void warn_of_turning(struct check *check)
         const bool solid = b.kind == KIND_SOLID;
         const int motion = solid ? -1 : scene_find(scene, SECTION_motion, b.motion);
         const struct scene_motion *const m = motion < 0 ? NULL : &scene->motion[motion];
-        const bool turns = solid ? scene->solid[k].clamp.n == 0 : m && scene_motion_turns(m);
+        const bool turns = solid ? scene->solid[k].clamp.n == 0 : m && m->turn.e[0];
         bool asked = solid;
         char name[SCENE_TEXT];
         for (int p = 0; p < scene->n_probe && !solid; p++)

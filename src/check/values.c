@@ -57,22 +57,19 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
                  "[solid] or by `hinge_motion` of a [rigid]");
 }
 
-/* A table that ends in motion, while the run goes on: the wall stops within a step. */
-static void warn_of_motion_table(struct check *check, int k)
+/* A table that ends in motion, while the run goes on: the wall stops at once. */
+static void warn_of_motion_table(struct check *check, int k, const char *key)
 {
     const struct scene *const scene = check->scene;
     const struct scene_motion *const motion = &scene->motion[k];
-    const struct timed_table *const table = &scene->motion_data[k];
-    const int n = table->n;
-    const double end = motion->start + table->t[n - 1];
-    const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
-    if (!moves || end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, "file"),
-            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and its last "
-            "two rows "
-            "differ: the motion stops there within a step; continue the table, end it at rest, or "
-            "use end_time = %.6g s",
-            motion->common.name, motion->file, end, scene->top.end_time, end);
+    const struct expr *const e = param_expr(param_find(SECTION_motion, key), motion, 0);
+    const double end = motion->start + (e ? expr_table_end(e) : (double)INFINITY);
+    if (end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
+    warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, key),
+            "[motion %s] %s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and "
+            "its last two rows differ: the motion stops there within a step; continue the table, "
+            "end it at rest, or use end_time = %.6g s",
+            motion->common.name, key, expr_source(e), end, scene->top.end_time, end);
 }
 
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
@@ -130,7 +127,9 @@ void warn_of_values(struct check *check)
     warn_of_sliding(check);
     for (int k = 0; k < scene->n_motion; k++) {
         warn_of_motion_of_nothing(check, &scene->motion[k]);
-        if (*scene->motion[k].file) warn_of_motion_table(check, k);
+        warn_of_motion_table(check, k, "x");
+        warn_of_motion_table(check, k, "y");
+        warn_of_motion_table(check, k, "turn");
     }
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);

@@ -104,6 +104,10 @@ enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, st
  * operations. */
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
 
+/* The last row of the table of t alone in it that ends first and whose value still changes there;
+ * infinite: there is none. */
+double expr_table_end(const struct expr *e);
+
 /* Whether it is a constant number. */
 bool expr_is_number(const struct expr *e);
 

@@ -134,6 +134,18 @@ bool expr_varies(const struct expr *e)
     return false;
 }
 
+double expr_table_end(const struct expr *e)
+{
+    double end = (double)INFINITY;
+    for (int k = 1; k < e->n; k++) {
+        const struct expr_table *const table = e->op[k].table;
+        if (e->op[k].code != OP_TABLE || e->op[k - 1].code != OP_X) continue;
+        const int last = table->n - 1;
+        if (table->y[last] != table->y[last - 1]) end = min2(end, table->x[last]);
+    }
+    return end;
+}
+
 bool expr_is_number(const struct expr *e) { return e->n == 1 && e->op[0].code == OP_NUMBER; }
 
 const char *expr_source(const struct expr *e) { return e->source; }

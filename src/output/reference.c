@@ -33,13 +33,15 @@ static enum err read_rows(struct reference *r, struct csv *csv, struct arena *a)
 static enum err read_file(struct reference *r, const struct scene *scene, struct arena *a,
                           struct diag *d)
 {
-    struct csv csv = {.columns = "time (s), value (SI)", .n = 2, .limit = HUGE_VAL};
-    char key[2 * SCENE_NAME];
-    snprintf(key, sizeof key, "[reference %s] file", r->from->common.name);
-    enum err e = table_open(scene, &csv, r->from->file, r->from->common.line, key, d);
+    struct diag why = {.code = ERR_OK};
+    struct csv csv = {
+        .columns = "time (s), value (SI)", .n = 2, .limit = HUGE_VAL, .diag = &why};
+    enum err e = table_open(scene, &csv, r->from->file);
     if (!e) e = read_rows(r, &csv, a);
     csv_close(&csv);
-    return e;
+    if (!e || e == ERR_MEMORY) return e ? diag_add(d, e, "%s", why.text) : e;
+    return fail_at(d, scene, r->from->common.line, "[reference %s] file: %.400s",
+                   r->from->common.name, why.text);
 }
 
 /* Searches the headers of all files for the column of a reference. */

@@ -54,11 +54,6 @@ static void write_value(struct json *j, const struct param *param, const void *v
         break;
     case PARAM_SHAPES: write_shapes(j, param->key, value); break;
     case PARAM_HINGES: write_hinges(j, param->key, value); break;
-    case PARAM_NUMBERS: {
-        const struct number_list *list = value;
-        json_numbers(j, param->key, list->value, list->n);
-        break;
-    }
     }
 }
 

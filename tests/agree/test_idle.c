@@ -14,8 +14,8 @@ static const char scene[] =
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.6, 0; 0.6, 0.2\n"
     "[wall plate]\nshape = box 0.1, 0, 0.12, 0.15\nmotion = lift\n"
     "[wall late]\nshape = box 0.15, 0.2, 0.2, 0.22\nmotion = drop\n"
-    "[motion lift]\nvelocity = 0, 3\nstop = 0.02\n"
-    "[motion drop]\nvelocity = 0.5, -3\nstart = 0.03\nstop = 0.05\n"
+    "[motion lift]\ny = 3*t\nstop = 0.02\n"
+    "[motion drop]\nx = 0.5*t\ny = -3*t\nstart = 0.03\nstop = 0.05\n"
     "[solid gate]\nshape = box 0.4, 0, 0.42, 0.15\nclamp = box 0.4, 0.13, 0.42, 0.15\n"
     "density = 1100\nyoung = 4e6\npoisson = 0.4\n";
 

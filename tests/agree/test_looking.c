@@ -20,7 +20,7 @@ static const char piston[] = "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\
                              "artificial_viscosity = 0.1\nsurface = 0.2\n"
                              "[wall tank]\nshape = box -0.1, -0.04, 0.6, 0\n"
                              "[wall piston]\nshape = box -0.04, 0, 0, 0.3\nmotion = push\n"
-                             "[motion push]\nkind = polynomial\npoly_x = 0.5, 15\n"
+                             "[motion push]\nx = t*(0.5 + 15*t)\n"
                              "[domain]\nlower = -0.3, -0.2\nupper = 0.8, 0.6\n";
 
 static uint64_t hash_after(const char *integrator, const char *scheme, bool look)

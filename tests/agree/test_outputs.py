@@ -118,7 +118,6 @@ density = 1000
 young = 1 MPa
 poisson = 0.3
 [motion swing]
-kind = expression
 x = 0.1*sin(50*t)
 [numerics]
 fixed_step = {}

@@ -168,8 +168,7 @@ static void test_where_float_is_taken(void)
 #define BLOCK "[solid block]\ndensity = 1100\nyoung = 2e6\npoisson = 0.4\n"
     static const char free_block[] = BLOCK "shape = box 0.4, 0, 0.5, 0.06\n";
     static const char joined[] = BLOCK "shape = box 0.3, 0, 0.4, 0.06\njoined = bar\n";
-    static const char moved[] = "clamp_motion = way\n[motion way]\nkind = sine\n"
-                                "amplitude = 1 mm, 0\nperiod = 1 s\n";
+    static const char moved[] = "clamp_motion = way\n[motion way]\nx = 1 mm*sin(2*pi*t)\n";
     const struct {
         const char *more, *set;
         bool single;
@@ -200,8 +199,8 @@ static void test_where_float_is_taken(void)
  * each step. */
 static void test_lanes_follow_the_particles(void)
 {
-    static const char moved[] = "clamp_motion = way\n[motion way]\nkind = sine\n"
-                                "amplitude = 5 cm, 3 cm\nperiod = 1 ms\n";
+    static const char moved[] = "clamp_motion = way\n[motion way]\n"
+                                "x = 5 cm*sin(2000*pi*t)\ny = 3 cm*sin(2000*pi*t)\n";
     char text[1024];
     snprintf(text, sizeof text, "%s%s", bar, moved);
     RIG_OPEN_SOLID(text, precisions[1], "integrator=leapfrog");

@@ -16,7 +16,7 @@ static const char scene[] =
     "velocity = 8*y, 0\nartificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0; 0.5, 0; 0.5, 0.25\n"
     "[wall piston]\nshape = box -0.02, 0, 0, 0.25\nmotion = push\n"
-    "[motion push]\nkind = polynomial\npoly_x = 0.2, 3\n"
+    "[motion push]\nx = t*(0.2 + 3*t)\n"
     "[solid gate]\nshape = box 0.2, 0, 0.22, 0.25\nclamp = box 0.2, 0.22, 0.22, 0.25\n"
     "density = 1100\nyoung = 4e6\npoisson = 0.4\n";
 
@@ -139,7 +139,7 @@ static void test_periodic_sides(void)
         "shifting = 2\ntensile_control = 0.2\nwall_repulsion = 0.1\n"
         "[wall bed]\nshape = box 0, -0.02, 0.2, 0\nslip = none\n"
         "[wall sill]\nshape = box 0.1, 0, 0.12, 0.05\nmotion = drift\n"
-        "[motion drift]\nvelocity = 1.5, 0\n";
+        "[motion drift]\nx = 1.5*t\n";
     uint64_t expected = 0;
     const int threads[] = {1, 2, 3, 8};
     for (int k = 0; k < 4; k++) {

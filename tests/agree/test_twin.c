@@ -22,7 +22,7 @@ static const char scene[] =
     "density_diffusion = 0.1\n"
     "[wall floor]\nshape = box -0.06, -0.06, 0.3, 0\n"
     "[wall side]\nshape = box -0.06, 0, 0, 0.25\nmotion = push\n"
-    "[motion push]\nkind = velocity\nvelocity = 0.1, 0\n"
+    "[motion push]\nx = 0.1*t\n"
     "[solid gate]\nshape = box 0.24, 0, 0.3, 0.25\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n"
     "[domain]\nlower = -0.3, -0.3\nupper = 0.6, 0.6\n";
 
@@ -34,7 +34,7 @@ static const char channel[] =
     "[wall floor]\nshape = box 0, -0.06, 0.3, 0\nslip = none\n"
     "[wall roof]\nshape = box 0, 0.2, 0.26, 0.23\nmotion = push\nslip = none\n"
     "[wall middle]\nshape = box 0.24, 0, 0.26, 0.2\n"
-    "[motion push]\nkind = velocity\nvelocity = 0.1, 0\n"
+    "[motion push]\nx = 0.1*t\n"
     "[solid gate]\nshape = box 0.26, 0.05, 0.3, 0.45\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n"
     "slip = none\n[domain]\nlower = 0, -0.3\nupper = 0.3, 0.6\nperiodic = x\n";
 

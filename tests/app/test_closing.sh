@@ -77,7 +77,6 @@ sound_speed = 10
 shape = box -0.04, 0, 0, 0.1
 motion = m
 [motion m]
-kind = expression
 x = -0.01*t*(t - 0.0703125)/(t - 0.0703125)
 [numerics]
 fixed_step = 0.000244140625 # 2^-12: 288 of them are 0.0703125 exactly

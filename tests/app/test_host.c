@@ -174,8 +174,8 @@ static const char clapper[] =
     "[solid plate]\nshape = box 0, 0, 12 mm, 60 mm\nclamp = box 0, 0, 12 mm, 8 mm\n"
     "clamp_motion = shake\ndensity = 1000\nyoung = 1e5\npoisson = 0.3\n"
     "[wall block]\nshape = box 12 mm, 50 mm, 20 mm, 58 mm\nmotion = push\n"
-    "[motion shake]\nkind = sine\namplitude = 1 mm, 0\nperiod = 50 ms\n"
-    "[motion push]\nkind = sine\namplitude = -1 mm, 0\nperiod = 50 ms\n"
+    "[motion shake]\nx = 1 mm*sin(40*pi*t)\n"
+    "[motion push]\nx = -1 mm*sin(40*pi*t)\n"
     "[contact all]\n"
     "[domain]\nlower = -0.1, -0.1\nupper = 0.1, 0.2\n"
     "[numerics]\nfixed_step = 20 us\n";

@@ -135,7 +135,7 @@ static const char piston[] =
     "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nmax_speed = 1\nsurface = 0.05\n"
     "[wall floor]\nshape = box -0.1, -20 mm, 0.3, 0\n"
     "[wall piston]\nshape = box -20 mm, 0, 0, 0.1\nmotion = push\n"
-    "[motion push]\nkind = polynomial\npoly_x = 0.2, 1.5\n"
+    "[motion push]\nx = t*(0.2 + 1.5*t)\n"
     "[probe P]\nquantity = force\nbody = piston\n"
     "[domain]\nlower = -0.2, -0.1\nupper = 0.4, 0.3\n";
 
@@ -149,7 +149,7 @@ static void pushing(void *context, double t, double d[2], double v[2], double ac
 
 static void a_motion_of_the_program(void)
 {
-    a = create(piston, "motion push.poly_x=0");
+    a = create(piston, "motion push.x=0");
     b = create(piston, NULL);
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_set_motion(a, "push", pushing, NULL));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_advance(a, 0.02));

@@ -52,7 +52,7 @@ static const char scene_text[] =
     "[rigid raft]\nshape = box 0.85, 0, 0.95, 0.1\ndensity = 500\n"
     "[rigid barge]\nshape = box 0.85, 0.2, 0.95, 0.3\ndensity = 500\n"
     "[damping more]\nto = 1, 1\nrate = 1\n"
-    "[table more]\nfile = shake.csv\ncolumn = 2\n"
+    "[table more]\nfile = lift.csv\ncolumn = 2\n"
     "[spring more]\nbody = raft\nto = 1, 1\nstiffness = 1\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
     "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
@@ -87,11 +87,6 @@ static const char *companion(const struct param *param)
     if (is(param, "probe", "to")) return "probe more.quantity=flux";
     if (is(param, "probe", "on")) return "probe more.quantity=pressure";
     if (is(param, "probe", "average")) return "probe more.interval=0.01";
-    if (is(param, "motion", "poly_x") || is(param, "motion", "poly_y"))
-        return "motion more.kind=polynomial";
-    if (is(param, "motion", "x") || is(param, "motion", "y") || is(param, "motion", "turn"))
-        return "motion more.kind=expression";
-    if (is(param, "motion", "file")) return "motion more.kind=table";
     if (is(param, "reference", "file")) return "reference more.label=x";
     if (is(param, "inflow", "absorb")) return "inflow more.pressure=1";
     return NULL;
@@ -143,15 +138,12 @@ static void example_is_accepted(const struct param *param)
 
 static void every_example_is_accepted(void)
 {
-    static const char *const tables[] = {"lift.csv", "shake.csv"}; /* which examples name */
-    for (size_t k = 0; k < COUNT_OF(tables); k++) {
-        FILE *const table = fopen(tables[k], "w");
-        TEST_ASSERT_NOT_NULL(table);
-        fputs("0, 0, 0\n1, 0, 0.1\n", table);
-        fclose(table);
-    }
+    FILE *const table = fopen("lift.csv", "w"); /* which an example names */
+    TEST_ASSERT_NOT_NULL(table);
+    fputs("0, 0, 0\n1, 0, 0.1\n", table);
+    fclose(table);
     for (int k = 0; k < PARAM_COUNT; k++) example_is_accepted(&param_table[k]);
-    for (size_t k = 0; k < COUNT_OF(tables); k++) remove(tables[k]);
+    remove("lift.csv");
 }
 
 /* --- traps --- */

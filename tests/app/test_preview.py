@@ -30,7 +30,7 @@ shape = polyline thickness -0.04: 0.34, 0; 0.46, 0.05
 shape = box 0.1, 0.3, 0.2, 0.34
 motion = down
 [motion down]
-velocity = 0, -0.001
+y = -0.001*t
 [solid post]
 shape = box 0.2, -0.04, 0.24, 0.15
 clamp = box 0.2, -0.04, 0.24, 0

@@ -245,8 +245,8 @@ static void test_holds_that_move_apart_are_refused(void)
 {
 #define WALLS                                                               \
     "[wall w]\nshape = box -1, -1, -0.5, -0.5\nmotion = m\n[motion m]\n"    \
-    "kind = velocity\nvelocity = 1, 0\n[wall o]\nshape = box 2, 2, 3, 3\n"  \
-    "motion = n\n[motion n]\nkind = velocity\nvelocity = 0, 1\n"
+    "x = t\n[wall o]\nshape = box 2, 2, 3, 3\n"                              \
+    "motion = n\n[motion n]\ny = t\n"
 #define OTHER(rest)                                                         \
     "[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"            \
     "thickness = 1 cm\ndensity = 1\n" rest

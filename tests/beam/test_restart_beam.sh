@@ -22,9 +22,7 @@ young = 1e8
 clamp = 2, 0
 motion = shake
 [motion shake]
-kind = sine
-amplitude = 0, 0.1
-period = 0.5
+y = 0.1*sin(4*pi*t)
 [load push]
 body = bar
 shape = box 2.95, 0.95, 3.05, 1.05

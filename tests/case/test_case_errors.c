@@ -170,7 +170,8 @@ static const struct {
      "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be "
      "finite at all times up to end_time"},
     {TOP "gravity_file = none.csv\n" SOLID, NULL,
-     "bad.cfg:3: gravity_file: none.csv: cannot be read: No such file or directory"},
+     "bad.cfg:3: unknown key `gravity_file` at the top of the file; write gravity = NAME(t), "
+     "OTHER(t) with a [table] of the file for each of the two"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
@@ -283,14 +284,13 @@ static const struct {
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; leave one out"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
      "bad.cfg:7: motion = lift: there is no [motion] of that name"},
-    {TOP FLUID "[motion lift]\nkind = table\n", NULL,
-     "bad.cfg:6: [motion lift] kind = table needs `file`"},
-    {TOP FLUID "[motion lift]\nkind = table\nfile = none/such.txt\n", NULL,
-     "bad.cfg:6: [motion lift] file: none/such.txt: cannot be read: No such file or directory"},
+    {TOP FLUID "[motion lift]\npoly_y = 0, 1\n", NULL,
+     "bad.cfg:7: unknown key `poly_y` in [motion]; write x, y or turn as an expression in t, such "
+     "as y = 1.5 m/s*t, or y = NAME(t) with a [table NAME] of a file"},
+    {TOP FLUID "[table lift]\nfile = none/such.txt\n", NULL,
+     "bad.cfg:7: [table lift] file: none/such.txt: cannot be read: No such file or directory"},
     {TOP FLUID "[motion lift]\nstart = 2\nstop = 1\n", NULL,
      "bad.cfg:6: [motion lift] start = 2 s must come before stop = 1 s"},
-    {TOP FLUID "[motion lift]\nkind = polynomial\n", NULL,
-     "bad.cfg:6: [motion lift] kind = polynomial needs `poly_x` or `poly_y`"},
     {TOP SOLID "[output]\nsnapshot_fields = a234567890123456789012345678901234567890123456789012345"
                "678901234567890\n",
      NULL,
@@ -357,8 +357,6 @@ static const struct {
      "periodic in line 16): contact is not computed through periodic sides"},
     {TOP FLUID "[contact c]\n", NULL, "bad.cfg:6: [contact c] needs a [solid]"},
     {TOP FLUID "[load l]\nshape = box 0, 0, 1 mm, 1 mm\nforce = 1, 0\n", NULL, "bad.cfg:6: "},
-    {TOP FLUID "[wall b]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = m\n[motion m]\nkind = sine\n",
-     NULL, "bad.cfg:9: [motion m] kind = sine needs `period`"},
     {TOP FLUID "[domain]\nperiodic = x\n", NULL,
      "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
     {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,
@@ -432,8 +430,7 @@ static const char *wrong(const struct param *param, const char **value)
         snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1",
                  param->key);
         return why;
-    case PARAM_EXPR:
-    case PARAM_NUMBERS: *value = "(1"; return param->count > 1 ? "" : "`(` is not closed";
+    case PARAM_EXPR: *value = "(1"; return param->count > 1 ? "" : "`(` is not closed";
     case PARAM_HINGES: *value = "1"; return "`X, Y` or `X, Y, NAME` is expected; there is 1";
     case PARAM_SHAPES: *value = "cube 1"; return "";
     case PARAM_TEXT: break;

@@ -25,13 +25,13 @@ static void refuses_all(const char *text, const char *want)
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
 
-/* Names and values in one run; what else concerns several values, such as the period of [motion m],
+/* Names and values in one run; what else concerns several values, such as the times of [motion m],
  * when all are right. */
 static void test_names_are_checked_beside_wrong_values(void)
 {
     refuses_all(
         TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\nyoung = 1 Mpa\nclamp = bix 0\n"
-            "clamp_motion = m\n[wall w]\nmotion = mm\n[motion m]\nkind = sine\n"
+            "clamp_motion = m\n[wall w]\nmotion = mm\n[motion m]\nstop = -1\n"
             "[probe p]\nquantity = reaction\nbody = a\n[probe q]\nbody = b\n"
             "point = 0, 0\n[load l]\nbody = aa\n[contact c]\nbetween = a, v\n",
         "bad.cfg:3: [solid a] lacks `density`: reference density (kg/m^3)\n"
@@ -55,7 +55,7 @@ static void test_checks_go_on_after_the_first(void)
 {
     refuses_all(
         TOP SOLID "joined = zz\n[probe p]\nbody = zz\n[load l]\nbody = a\n"
-                  "[motion m]\nkind = sine\n[contact c]\n[reference r]\n",
+                  "[motion m]\nstop = -1\n[contact c]\n[reference r]\n",
         "bad.cfg:8: joined = zz: there is no [solid] of that name\n"
         "bad.cfg:9: [probe p] lacks `point`: quantity = displacement needs the place, two "
         "numbers, in metres\n"
@@ -63,7 +63,7 @@ static void test_checks_go_on_after_the_first(void)
         "bad.cfg:11: [load l] lacks `shape`: region of the body, in the reference configuration, "
         "whose particles carry the load (m)\n"
         "bad.cfg:11: [load l] needs either `force` or `traction`, and has neither\n"
-        "bad.cfg:13: [motion m] kind = sine needs `period`\n"
+        "bad.cfg:13: [motion m] start = 0 s must come before stop = -1 s\n"
         "bad.cfg:16: [reference r] lacks `probe`: column that the reference is compared "
         "with, such as M1_dx_m\n"
         "bad.cfg:16: [reference r] needs either `file` or `formula`, and has neither\n");

@@ -61,8 +61,8 @@ static const struct {
     {TOP SOLID, "a.young=sin(1 m)", "sin of a length (m)"},
     {TOP SOLID, "a.young=1 zzzz", "`zzzz` after 1 is not a unit"},
     /* Values that do not fit together. */
-    {TOP WATER "[motion m]\nkind = rotation\n[wall b]\nshape = box 0, -30 mm, 0.4, 0\nmotion = m\n",
-     NULL, "needs `angle`, `angle_amplitude` or `file`"},
+    {TOP WATER "[motion m]\nstop = -1\n[wall b]\nshape = box 0, -30 mm, 0.4, 0\nmotion = m\n",
+     NULL, "must come before stop = -1 s"},
     {TOP SOLID
      "[load l]\nbody = a\nshape = box 0, 0, 10 mm, 10 mm\nforce = 1, 0\ntraction = 1, 0\n",
      NULL, "and has both"},
@@ -73,7 +73,7 @@ static const struct {
      "0.1/(t/s - 0.5), ...: component 1 is not finite at t = 0.5 s"},
     {TOP SOLID PROBE "[reference r]\nprobe = Mx\nformula = 1\n", NULL,
      "no probe has such a column"},
-    {TOP SOLID "clamp = box 0, 0, 50 mm, 10 mm\nclamp_motion = m\n[motion m]\nvelocity = 1, 0\n"
+    {TOP SOLID "clamp = box 0, 0, 50 mm, 10 mm\nclamp_motion = m\n[motion m]\nx = t\n"
                "start = -1\n[relax]\n",
      NULL, "with [relax] no motion may begin before"},
     {TOP SOLID, "numerics.solid_h_over_dp=0.5", "solid_h_over_dp = 0.5 is too small"},

@@ -70,7 +70,7 @@ static const struct {
     {TOP FLUID "[domain]\nlower = 0, 0\nupper = 0.4, 0.4\nperiodic = y\n", FX_FLUID | FX_PERIODIC,
      EFFECT_PERIODIC, "line 9: [domain] periodic"},
     {TOP FLUID WALL, FX_FLUID | FX_WALL, EFFECT_WALL, "line 6: [wall bed]"},
-    {TOP FLUID WALL "motion = m\n[motion m]\nvelocity = 1, 0\n", FX_FLUID | FX_WALL | FX_MOTION,
+    {TOP FLUID WALL "motion = m\n[motion m]\nx = t\n", FX_FLUID | FX_WALL | FX_MOTION,
      EFFECT_MOTION, "line 8: [wall bed] motion"},
     {TOP FLUID "[wall bed]\nshape = polyline thickness 0: 0, 0.3; 0.1, 0.3\n",
      FX_FLUID | FX_WALL | FX_THIN, EFFECT_THIN, "line 7: [wall bed] shape"},

@@ -49,7 +49,7 @@ static void expect(double time, double d, double v, double a)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, a, m.a[0]);
 }
 
-#define MOVES(x) CASE "[motion move]\nkind = expression\nx = " x "\n" FILE_OF("way")
+#define MOVES(x) CASE "[motion move]\nx = " x "\n" FILE_OF("way")
 static const char rows[] = "t,d\n# a comment\n0.1 0.01\n0.2; 0.04\n0.4,0\n";
 
 /* At a row the slope is that of the segment that follows. */
@@ -153,12 +153,20 @@ static void test_bad_tables_are_refused(void)
     };
     for (size_t k = 0; k < COUNT_OF(each); k++) {
         char message[400];
-        snprintf(message, sizeof message, "t.cfg:13: [table way] file: %s", each[k].why);
+        snprintf(message, sizeof message, "t.cfg:12: [table way] file: %s", each[k].why);
         refuses(MOVES("way(t)"), each[k].rows, message);
     }
     refuses(MOVES("way(t)") "column = 4\n", "0, 1, 2\n1, 2, 3\n",
-            "t.cfg:13: [table way] file: test_tables.tmp:1: 4 numbers are expected: argument, "
+            "t.cfg:12: [table way] file: test_tables.tmp:1: 4 numbers are expected: argument, "
             "value in column 4; here `0, 1, 2`");
+    static const char bytes[] = "0, 0\n0.1, 0\0, 5\n0.2, 2\n";
+    FILE *const file = fopen("test_zero_byte.tmp", "wb");
+    fwrite(bytes, 1, sizeof bytes - 1, file);
+    fclose(file);
+    refuses(CASE "[motion move]\n[table way]\nfile = test_zero_byte.tmp\n", "",
+            "t.cfg:11: [table way] file: test_zero_byte.tmp:2: a byte of value 0; a table is plain "
+            "text");
+    remove("test_zero_byte.tmp");
     refuses(CASE "[motion move]\n[table way]\nfile = none.csv\n", "",
             "t.cfg:11: [table way] file: none.csv: cannot be read: No such file or directory");
 }
@@ -174,9 +182,9 @@ static void test_bad_names_are_refused(void)
             "t.cfg:10: [table way] lacks `file`: file of rows with the argument, which increases, "
             "and the value");
     refuses(MOVES("wat(t)"), rows,
-            "t.cfg:11: x = wat(t): unknown function `wat`; did you mean `way`?");
-    refuses(MOVES("foobar(t)"), rows, "t.cfg:11: x = foobar(t): unknown function `foobar`");
-    refuses(MOVES("way"), rows, "t.cfg:11: x = way: unknown name `way`; define it in [constants]");
+            "t.cfg:10: x = wat(t): unknown function `wat`; did you mean `way`?");
+    refuses(MOVES("foobar(t)"), rows, "t.cfg:10: x = foobar(t): unknown function `foobar`");
+    refuses(MOVES("way"), rows, "t.cfg:10: x = way: unknown name `way`; define it in [constants]");
 }
 
 int main(void)

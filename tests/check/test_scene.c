@@ -190,7 +190,7 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
 {
     static const char scene_text[] =
         HEAD "[wall floor]\nshape = box -0.05, -0.02, 0.07, 0\nmotion = shake\n"
-             "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+             "[motion shake]\nx = 0.01*sin(2*pi*t)\n"
              "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n" POST;
     char text[1024];
     read(scene_text);
@@ -200,14 +200,14 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
     /* The clamp moves alone, and both move in different ways. */
     read(HEAD "[wall floor]\nshape = box -0.05, -0.02, 0.07, 0\n"
-              "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+              "[motion shake]\nx = 0.01*sin(2*pi*t)\n"
               "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n"
               "clamp_motion = shake\n" POST);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
                                         "which is at rest, so the two will overlap or part; "
                                         "`motion = shake` moves both"),
                                  warnings);
-    snprintf(text, sizeof text, "%sclamp_motion = sway\n[motion sway]\nvelocity = 0.1, 0\n",
+    snprintf(text, sizeof text, "%sclamp_motion = sway\n[motion sway]\nx = 0.1*t\n",
              scene_text);
     read(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has the motion sway but touches [wall floor], "
@@ -215,7 +215,7 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
                                  warnings);
     /* A wall that does not touch the clamp may move alone. */
     read(HEAD "[wall lid]\nshape = box -0.05, 0.2, 0.07, 0.22\nmotion = shake\n"
-              "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+              "[motion shake]\nx = 0.01*sin(2*pi*t)\n"
               "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n" POST);
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }

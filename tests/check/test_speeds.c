@@ -28,10 +28,10 @@ static void warns(const char *text, const char *words)
 
 static void test_walls(void)
 {
-    warns(BASIN "kind = expression\nx = 0.4*sin(10*t)\n",
+    warns(BASIN "x = 0.4*sin(10*t)\n",
           "fast.cfg:12: [motion m] moves [wall paddle] at up to 4 m/s, above 0.3 of");
     TEST_ASSERT_EQUAL_DOUBLE(4, scene.given_speed);
-    warns(BASIN "velocity = 0, 2.9\n", NULL);
+    warns(BASIN "y = 2.9*t\n", NULL);
 }
 
 static void test_fluid_at_the_start(void)

@@ -81,14 +81,14 @@ static void test_a_body_force_that_drives_a_periodic_flow(void)
 static void test_a_motion_near_the_speed_of_sound(void)
 {
 #define DRIVEN HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK "motion = shake\n"
-    read(DRIVEN "[motion shake]\nvelocity = 2.9*sin(6.3*t), 0\n");
+    read(DRIVEN "[motion shake]\nx = 2.9/6.3*cos(6.3*t)\n");
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "[motion shake]"), warnings);
-    read(DRIVEN "[motion shake]\nvelocity = 4*sin(6.3*t), 0\n");
+    read(DRIVEN "[motion shake]\nx = 4/6.3*cos(6.3*t)\n");
     expect("[motion shake] moves [wall tank] at up to 4 m/s, above 0.3 of the fluid's speed of "
            "sound, 10 m/s");
     expect("sound_speed = 40 or more");
     /* 90 turns a second where 90 degrees were meant, 0.1 m off its axis. */
-    read(DRIVEN "[motion shake]\nkind = rotation\ncentre = 0, 0\nangle = 90\n");
+    read(DRIVEN "[motion shake]\nturn = 90*t\n");
     expect("angles are in radians");
 }
 
@@ -122,9 +122,9 @@ static void test_the_moment_on_a_wall_that_turns(void)
     "dp = 5 mm\nend_time = 1 s\n[fluid oil]\nshape = circle 0, 0, 0.1\nsound_speed = 10\n" \
     "laminar_viscosity = 1e-3\npressure = 50\n[wall drum]\nshape = circle 0, 0, 0.12\n"    \
     "minus = circle 0, 0, 0.1\n" slip motion "[probe p]\nquantity = force\nbody = drum\n"
-    read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nturn = t\n"));
     expect("[wall drum] turns with slip = none: the viscous moment on it is off by 2 mu A omega");
-    read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = expression\nturn = t\n"));
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nturn = t\n"));
     expect("mu = 1 Pa s");
     /* A free body, which turns by it; a clamped one does not. */
 #define FLOATER                                                               \
@@ -137,9 +137,9 @@ static void test_the_moment_on_a_wall_that_turns(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
     read(FLOATER);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
-    read(DRUM("slip = none\n", "motion = m\n[motion m]\nvelocity = 1, 0\n"));
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nx = t\n"));
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "moment on it"), warnings);
-    read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
+    read(DRUM("", "motion = m\n[motion m]\nturn = t\n"));
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "moment on it"), warnings);
 }
 

@@ -17,8 +17,7 @@ static const char disc[] =
     "[wall round]\nshape = circle 0, 0, 0.2 + 4*dp\nminus = circle 0, 0, 0.2\nslip = none\n"
     "[solid disc]\nshape = circle 0, 0, 0.05\nclamp = box -1, -1, 1, 1\nclamp_motion = up\n"
     "density = 10000\nyoung = 5.6e6\npoisson = 0.4\nslip = none\n"
-    "[motion up]\nkind = velocity\n"
-    "velocity = 0, V*0.5*(1 - cos(pi*min(t/T, 1)))*sin(2*pi*t/T)\n"
+    "[motion up]\ny = -V*T/(4*pi)*(1 - cos(pi*min(t/T, 1)))*cos(2*pi*t/T)\n"
     "[contact any]\nenabled = off\n";
 
 static const double speed = 6e-3, period = 0.5, rho = 1000;

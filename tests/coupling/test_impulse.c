@@ -491,7 +491,7 @@ static void test_moving_clamps_owe_nothing(void)
         "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.24, 0.1\nsound_speed = 20\n"
         "[solid floor]\nshape = box 0, -0.04, 0.24, 0\ndensity = 2000\nyoung = 1e7\npoisson = 0.3\n"
         "clamp = box 0, -0.04, 0.1, 0\nclamp_motion = shake\n"
-        "[motion shake]\nkind = polynomial\npoly_y = 0, 5\n"
+        "[motion shake]\ny = 5*t^2\n"
         "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
         NULL);
     TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);

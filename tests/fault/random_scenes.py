@@ -116,28 +116,32 @@ def motion(s, name, speed):
     """A motion that starts where the body is, no faster than `speed`."""
     d = s.dice
     kind = d.choice(["velocity", "polynomial", "table", "sine", "rotation", "expression"])
-    rows = [("kind", kind)]
+    rows = []
     v = [s.number(-speed, speed), s.number(-speed, speed)]
     if kind == "velocity":
-        rows += [("velocity", f"{v[0]}, {v[1]}")]
+        rows += [("x", f"{v[0]}*t"), ("y", f"{v[1]}*t")]
     elif kind == "polynomial":
-        rows += [("poly_x", f"{v[0]}, 1"), ("poly_y", f"{v[1]}")]
+        rows += [("x", f"t*({v[0]} + t)"), ("y", f"{v[1]}*t")]
     elif kind == "table":
         times = [k * s.end / 4 for k in range(6)]
         lines = "".join(f"{t:.6g}, {v[0] * t * t / times[-1]:.6g}, {v[1] * t * t / times[-1]:.6g}\n"
                         for t in times)
         s.files[f"{name}.csv"] = lines
-        rows += [("file", f"{name}.csv")]
+        for column, key in ((2, "x"), (3, "y")):
+            s.add("table", f"{name}_{key}", [("file", f"{name}.csv"), ("column", column),
+                                             ("between", d.choice(["line", "cubic"]))])
+            rows += [(key, f"{name}_{key}(t)")]
     elif kind == "sine":
         period = s.number(2, 8) * s.end
         a = speed * period / (2 * math.pi)
-        rows += [("amplitude", f"{a * d.choice([-1, 0, 1]):.4g}, {a:.4g}"), ("period", period),
-                 ("phase", d.choice([0, -1.5707963]))]
+        wave = f"sin(2*pi*t/{period} + {d.choice([0, -1.5707963])})"
+        rows += [("x", f"{a * d.choice([-1, 0, 1]):.4g}*{wave}"), ("y", f"{a:.4g}*{wave}")]
     elif kind == "rotation":
         rows += [("centre", f"{s.number(0, 0.2)}, {s.number(0, 0.1)}"),
-                 ("angle", f"{s.number(-1, 1) * speed / 0.3:.4g}")]
+                 ("turn", f"{s.number(-1, 1) * speed / 0.3:.4g}*t")]
     else:
-        rows += [("x", f"{v[0]}*t"), ("y", f"{v[1]}*t^2/{s.end}"), ("turn", f"{speed}*sin(t)")]
+        rows += [("x", f"{v[0]}*min(t, {s.end}/2)"), ("y", f"{v[1]}*t^2/{s.end}"),
+                 ("turn", f"{speed}*sin(t)")]
     if s.chance(0.3):
         rows += [("start", s.number(0.1, 0.5) * s.end)]
     s.features.add(f"motion by {kind}")
@@ -202,13 +206,14 @@ def outputs(s):
 
 def gravity(s):
     g = s.dice.choice(["0, -9.81", "0, -9.81", "3, -9.81", f"{s.number(1, 5)}*sin(400*t), -9.81"])
-    s.top["gravity"] = g
     if "t" in g:
         s.features.add("gravity that changes")
     if s.chance(0.15):
-        s.files["shake.csv"] = "0, 0, 0\n0.001, 5, 1\n0.002, -5, 0\n1, 0, 0\n"
-        s.top["gravity_file"] = "shake.csv"
+        s.files["shake.csv"] = "0, 0\n0.001, 5\n0.002, -5\n1, 0\n"
+        s.add("table", "shake", [("file", "shake.csv")])
+        g = f"shake(t) + {g}"
         s.features.add("gravity from a table")
+    s.top["gravity"] = g
 
 
 def tank(s):
@@ -305,7 +310,7 @@ def channel(s):
         sill = [("shape", box(6, 0, 10, 3))]
         if choice == "drift":
             sill.append(("motion", "drift"))
-            s.add("motion", "drift", [("velocity", f"{s.number(-1, 1)}, 0")])
+            s.add("motion", "drift", [("x", f"{s.number(-1, 1)}*t")])
             s.features.add("a wall that moves through a periodic side")
         s.add("wall", "sill", sill)
     for name, _, rows in solids:

@@ -127,7 +127,7 @@ static enum sphfsi_status fresh(void)
 static enum sphfsi_status driven(void)
 {
     static const char text[] =
-        "dp = 1 cm\nend_time = 1 s\n[motion m]\nvelocity = 0.1, 0\n[contact all]\n"
+        "dp = 1 cm\nend_time = 1 s\n[motion m]\nx = 0.1*t\n[contact all]\n"
         "[solid a]\nshape = box 0, 0, 0.05, 0.03\nclamp = box 0, 0, 0.02, 0.03\n"
         "clamp_motion = m\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
         "[solid b]\nlike = a\nshape = box 0.06, 0, 0.09, 0.03\nclamp = box 0.08, 0, 0.09, 0.03\n"
@@ -192,11 +192,11 @@ static void drive(void *context, double time, double d[2], double v[2], double a
     d[0] = d[1] = v[0] = v[1] = a[0] = a[1] = 0;
 }
 
-/* A program's own force and motion; the case has a velocity that depends on time. */
+/* A program's own force and motion; the case has one of its own. */
 static enum sphfsi_status library(void)
 {
     static const char text[] =
-        "dp = 1 cm\nend_time = 1 s\n[motion m]\nvelocity = 0.1*t/s, 0\n"
+        "dp = 1 cm\nend_time = 1 s\n[motion m]\nx = 0.05*t^2\n"
         "[solid a]\nshape = box 0, 0, 0.05, 0.04\nclamp = box 0, 0, 0.02, 0.04\n"
         "clamp_motion = m\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n";
     const struct sphfsi_options o = {.case_text = text, .threads = 1};

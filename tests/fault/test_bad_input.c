@@ -17,7 +17,7 @@ static const char good[] =
     "[fluid v]\nlike = w\nshape = polygon 0.03, 0; 0.05, 0; 0.05, 0.02\n"
     "[wall tank]\nshape = polyline thickness -0.006: 0, 0.03; 0, 0; 0.06, 0; 0.06, 0.03\n"
     "[wall paddle]\nshape = box 0.02, 0, 0.03, 0.03\nmotion = go\n"
-    "[motion go]\nkind = polynomial\npoly_y = 0, 1, -0.5\nstart = 0.01 s\nstop = 1 s\n"
+    "[motion go]\ny = t^2*(1 - 0.5*t)\nstart = 0.01 s\nstop = 1 s\n"
     "[solid gate]\nshape = box 0.07, 0, 0.08, 0.04\nclamp = box 0.07, 0.03, 0.08, 0.04\n"
     "density = 1.1 g/cm^3\nyoung = 7.8 MPa\npoisson = 40 %\nvelocity = 0, max(x, 0)*1 s^-1\n"
     "[output]\nprobe_interval = 1 ms\n[probe M1]\nbody = gate\npoint = 0.075, 0\n"

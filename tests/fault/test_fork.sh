@@ -127,7 +127,7 @@ expect 0 'fork from' "$dir/free.cfg" --fork "$dir/implicit" --threads 1 --until 
 
 # --- fork: a wall that begins to move; one that would jump ---
 cp "$case" "$dir/moving.cfg"
-sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nvelocity = 0.1, 0\nstart = 21 ms\n\n&/' \
+sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nx = 0.1*t\nstart = 21 ms\n\n&/' \
     "$dir/moving.cfg"
 expect 0 'fork from' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/moving" "${go[@]}"
 expect 1 'particle of .wall .*would jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" \
@@ -160,7 +160,7 @@ probe_interval = 1 ms
 body = bar
 point = 0.05, 0.04
 CASE
-sed 's/^density/clamp_motion = lift\n&/; $a [motion lift]\nvelocity = 0, 1' "$dir/still.cfg" \
+sed 's/^density/clamp_motion = lift\n&/; $a [motion lift]\ny = t' "$dir/still.cfg" \
     >"$dir/lifted.cfg"
 expect 0 'simulated' "$dir/lifted.cfg" --threads 1 --until 0.002 --out "$dir/lifted"
 for n in 1 2; do
@@ -171,7 +171,7 @@ done
     "$(tail -n 1 "$dir/still1/probes.csv" | cut -d, -f2-)" ] || fail "the clamp lets go in a fork"
 expect 0 'fork from' "$dir/lifted.cfg" --fork "$dir/lifted" --threads 2 --out "$dir/on"
 expect 1 'clamp of .solid bar. would jump' "$dir/lifted.cfg" \
-    --fork "$dir/lifted" --out "$dir/none" --set 'lift.velocity=0, 2'
+    --fork "$dir/lifted" --out "$dir/none" --set 'lift.y=2*t'
 
 # --- fork: what the state is made of may not change ---
 for set in dp=5mm integrator=verlet water.sound_speed=30 gate.density=1200 numerics.h_over_dp=1.4 \

@@ -50,7 +50,7 @@ if [ "$(id -u)" != 0 ]; then
     install -m 000 "$case" "$dir/closed.cfg"
     expect 1 'closed.cfg: cannot be read: Permission denied' "$dir/closed.cfg" --out "$dir/no"
 fi
-sed 's/^point.*/&\n[motion m]\nkind = table\nfile = fifo.cfg/' "$case" >"$dir/table.cfg"
+sed 's/^point.*/&\n[table way]\nfile = fifo.cfg/' "$case" >"$dir/table.cfg"
 expect 1 'is not a file' "$dir/table.cfg" --out "$dir/no"
 sed 's/^point.*/&\n[reference r]\nprobe = M1_dx_m\nfile = fifo.cfg/' "$case" >"$dir/reference.cfg"
 expect 1 'is not a file' "$dir/reference.cfg" --out "$dir/no"

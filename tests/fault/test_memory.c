@@ -20,7 +20,7 @@ void tearDown(void)
 
 /* A beam with a load and a clamp that moves. */
 static const char beam[] =
-    "dp = 1 cm\nend_time = 1\n[motion m]\nvelocity = 0.1, 0\n[solid bar]\nshape = box 0, 0, 0.5, "
+    "dp = 1 cm\nend_time = 1\n[motion m]\nx = 0.1*t\n[solid bar]\nshape = box 0, 0, 0.5, "
     "0.04\n"
     "clamp = box 0, 0, 0.04, 0.04\nclamp_motion = m\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
     "[load end]\nbody = bar\nshape = box 0.4, 0, 0.5, 0.04\nforce = 30, 0\n";
@@ -45,7 +45,9 @@ static const char rich[] = "dp = 10 mm\n"
                            "shape = box 0.02, 0.42, 0.06, 0.46\n"
                            "motion = down\n"
                            "[motion down]\n"
-                           "kind = table\n"
+                           "y = way(t)\n"
+                           "[table way]\n"
+                           "between = cubic\n"
                            "file = memory-table.tmp\n"
                            "[solid block]\n"
                            "shape = box 0.02, 0.36, 0.06, 0.42\n"
@@ -98,7 +100,7 @@ static void write_file(const char *path, const char *text)
 
 static void write_files(void)
 {
-    write_file("memory-table.tmp", "0, 0, 0\n0.5, 0, -0.001\n1, 0, -0.002\n");
+    write_file("memory-table.tmp", "0, 0\n0.5, -0.001\n1, -0.002\n");
     write_file("memory-reference.tmp", "0, 0\n0.5, 1e-3\n");
 }
 

@@ -24,7 +24,7 @@ static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\n"
 static const char water[] = WATER;
 static const char channel[] = WATER "[wall bed]\nshape = box -0.1, -0.04, 0.2, 0\n"
                                     "[wall sill]\nshape = box 0.1, 0, 0.14, 0.05\nmotion = drift\n"
-                                    "[motion drift]\nkind = velocity\nvelocity = 0.5, 0\n";
+                                    "[motion drift]\nx = 0.5*t\n";
 
 static struct rig rig;
 static struct particles *p;

@@ -28,10 +28,8 @@ shape = polyline thickness 0: -0.2, 0.1; -0.1, 0.1
 shape = polyline: 0.2, 0.04; 0.2, 0.5
 motion = swing
 [motion swing]
-kind = rotation
+turn = 0.1*sin(5*pi*t)
 centre = 0.2, 0.04
-angle_amplitude = 0.1
-period = 0.4
 [probe force]
 quantity = force
 body = post, paddle

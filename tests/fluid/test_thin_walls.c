@@ -134,8 +134,7 @@ static void test_a_piston(void)
 {
     rig_open(&rig,
              TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE "0, 0; 0, 0.7\nmotion = m\n[motion m]\n"
-                                                      "kind = sine\namplitude = 0.04, 0\n"
-                                                      "period = 1\nphase = -pi/2\n" FORCE,
+                                                      "x = -0.04*cos(2*pi*t)\n" FORCE,
              NULL);
     while (rig.sim.state.time < 0.5) {
         rig_steps(&rig, 1, 9);
@@ -158,8 +157,7 @@ static void test_a_line_slides_into_water(void)
 {
     rig_open(&rig,
              TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE "0, 0.7; 0, 0.2\nmotion = m\n[motion m]\n"
-                                                      "kind = sine\namplitude = 0, -0.05\n"
-                                                      "period = 1\nphase = -pi/2\n" FORCE,
+                                                      "y = 0.05*cos(2*pi*t)\n" FORCE,
              NULL);
     const double start = simulation_ledger(&rig.sim).potential;
     rig_run(&rig, 0.5);
@@ -247,8 +245,8 @@ static void test_places_and_loads(void)
 {
     rig_open(&rig,
              TOP WATER("-0.4, 0, 0.4, 0.4") TANK LINE
-             "-0.05, 0.15; 0.05, 0.2; 0.05, 0.3\nmotion = m\n[motion m]\nkind = rotation\n"
-             "centre = 0.1, 0.1\nangle = 0.5, 2\n",
+             "-0.05, 0.15; 0.05, 0.2; 0.05, 0.3\nmotion = m\n[motion m]\n"
+             "centre = 0.1, 0.1\nturn = t*(0.5 + 2*t)\n",
              NULL);
     struct particles *const walls = &rig.sim.kind[KIND_WALL];
     const struct thin_line *const line = &rig.sim.fluid.lines.line[0];

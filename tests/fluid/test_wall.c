@@ -14,7 +14,7 @@ static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\ngravity 
                            "[domain]\nlower = -10, -10\nupper = 10, 10\n"
                            "[fluid w]\nshape = box 0, 0, 0.8, 0.8\nsound_speed = 10\n"
                            "[wall plate]\nshape = box 0, -0.8, 0.8, 0\nmotion = m\n"
-                           "[motion m]\nkind = velocity\nvelocity = 0, 0\n";
+                           "[motion m]\n";
 
 static struct rig rig;
 static struct particles *fluid, *wall;
@@ -284,7 +284,7 @@ static void test_moving_walls_follow_their_motion(void)
              "[fluid w]\nshape = box 0, 0, 0.1, 0.05\nsurface = 0.05\nsound_speed = 20\n"
              "[wall w]\nshape = box -0.04, 0, 0, 0.1\nmotion = m\n"
              "[wall floor]\nshape = box -0.04, -0.04, 0.14, 0\n"
-             "[motion m]\nkind = polynomial\npoly_x = 0.1, 2\n",
+             "[motion m]\nx = t*(0.1 + 2*t)\n",
              NULL);
     wall = &rig.sim.kind[KIND_WALL];
     rig_run(&rig, 0.01);
@@ -309,8 +309,7 @@ static void test_a_turning_tank_holds_its_water(void)
              "artificial_viscosity = 0.1\ndensity_diffusion = 0.1\n"
              "[wall tank]\nshape = box -0.04, -0.04, 0.24, 0\nshape = box -0.04, 0.3, 0.24, 0.34\n"
              "shape = box -0.04, 0, 0, 0.3\nshape = box 0.2, 0, 0.24, 0.3\nmotion = roll\n"
-             "[motion roll]\nkind = rotation\ncentre = 0.1, 0\nangle_amplitude = 0.4\n"
-             "period = 0.5\nphase = -pi/2\n",
+             "[motion roll]\ncentre = 0.1, 0\nturn = -0.4*cos(4*pi*t)\n",
              NULL);
     fluid = &rig.sim.kind[KIND_FLUID];
     const int64_t n = fluid->n;

@@ -343,7 +343,7 @@ static void test_domain_holds_moving_walls(void)
 {
     must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
               "shape = box 0, 0, 5 mm, 5 mm\n[wall a]\nshape = box 0, -4 mm, 5 mm, 0\nmotion = m\n"
-              "[motion m]\nvelocity = -3, 2\n",
+              "[motion m]\nx = -3*t\ny = 2*t\n",
               NULL);
     TEST_ASSERT_TRUE(scene.domain_lower[0] < -3 && scene.domain_upper[1] > 2);
     TEST_ASSERT_TRUE(scene.domain_upper[0] > 0.005 && scene.domain_lower[1] < -0.004);

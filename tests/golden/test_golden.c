@@ -16,7 +16,7 @@ static const char gate[] =
     "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.2, 0\n"
     "[wall lid]\nshape = box 0.1, 0.08, 0.115, 0.16\nmotion = lift\n"
-    "[motion lift]\nkind = polynomial\npoly_y = 0.1, 2\n"
+    "[motion lift]\ny = t*(0.1 + 2*t)\n"
     "[solid gate]\nshape = box 0.1, 0, 0.115, 0.08\nclamp = box 0.1, 0.06, 0.115, 0.08\n"
     "density = 1100\nyoung = 8e6\npoisson = 0.4\n[contact none]\nenabled = off\n";
 

@@ -280,7 +280,7 @@ static const char moved[] =
     "[solid bar]\nshape = box 0, 0, 0.24, 0.04\nclamp = box 0, 0, 0.03, 0.04\n"
     "clamp_motion = shake\ndensity = 1100\nyoung = 2e6\npoisson = 0.4\nlaw = neo_hookean\n"
     "artificial_viscosity = 0\n"
-    "[motion shake]\nkind = expression\nx = 0.01*t^2\ny = 0.005*(1 - cos(20*t))\n"
+    "[motion shake]\nx = 0.01*t^2\ny = 0.005*(1 - cos(20*t))\n"
     "[load pull]\nbody = bar\nshape = box 0.22, 0, 0.24, 0.04\nforce = 5, 8\nhistory = sin(7*t)\n";
 
 /* What loads, moving clamps and gravity in time give is what the body has gained. The work of the
@@ -410,7 +410,7 @@ static void test_hinge_on_a_moving_wall(void)
         "[solid bar]\nshape = box 0, 0, 0.04, 0.3\nhinge = 0.02, 0.29, arm\ndensity = 1000\n"
         "young = 2e6\npoisson = 0.3\nlaw = svk\nartificial_viscosity = 0\n"
         "[wall arm]\nshape = box 0, 0.32, 0.04, 0.36\nmotion = shake\n[contact none]\n"
-        "enabled = off\n[motion shake]\nkind = expression\nx = 0.05*(1 - cos(8*t))\ny = 0\n";
+        "enabled = off\n[motion shake]\nx = 0.05*(1 - cos(8*t))\ny = 0\n";
     double at[2] = {0}, work[2] = {0};
     for (int explicit = 0; explicit < 2; explicit ++) {
         RIG_OPEN_SOLID(text,

@@ -104,7 +104,7 @@ static void test_pressure_at_a_moving_wall(void)
         snprintf(text, sizeof text, tank, 0.0, 0.0);
         const size_t end = strlen(text);
         snprintf(text + end, sizeof text - end,
-                 "motion = m\n[motion m]\nkind = expression\ny = %d*t^2\n", 5 * (k - 1));
+                 "motion = m\n[motion m]\ny = %d*t^2\n", 5 * (k - 1));
         rig_open(&rig, text, NULL);
         rig_evaluate(&rig);
         floor[k] = fluid_sample(&rig.sim, 0.2, 0).pressure;

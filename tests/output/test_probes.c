@@ -336,7 +336,7 @@ static void a_point_rides_on_a_wall(void)
     static const int quantity[] = {PROBE_PRESSURE, PROBE_LEVEL, PROBE_VELOCITY};
     for (size_t k = 0; k < COUNT_OF(quantity); k++) {
         open_with("[wall flap]\nshape = box 0.3, 0, 0.33, 0.1\nmotion = swing\n"
-                  "[motion swing]\nkind = rotation\nangle = 1.5707963267948966\n"
+                  "[motion swing]\nturn = 1.5707963267948966*t\n"
                   "centre = 0.1, 0\n"
                   "[probe F]\nquantity = pressure\npoint = 0.06, 0.03\n"
                   "[probe R]\nquantity = pressure\non = flap\npoint = 0.13, 0.04\n",
@@ -353,7 +353,7 @@ static void a_point_rides_on_a_wall(void)
 static void a_line_rides_on_a_wall(void)
 {
     open_with("[wall flap]\nshape = box 0.3, 0, 0.33, 0.1\nmotion = swing\n"
-              "[motion swing]\nkind = rotation\nangle = 1.5707963267948966\ncentre = 0.1, 0\n"
+              "[motion swing]\nturn = 1.5707963267948966*t\ncentre = 0.1, 0\n"
               "[probe F]\nquantity = surface_pressure\npoint = 0.06, 0.03\nto = 0.03, 0.05\n"
               "[probe R]\nquantity = surface_pressure\non = flap\npoint = 0.13, 0.04\n"
               "to = 0.15, 0.07\n",
@@ -456,7 +456,7 @@ static void acceleration_of_a_falling_body(void)
 /* Newton's second law of the whole body: the reaction is what fluid, gravity and load leave. */
 static void reaction_balances(const char *set)
 {
-    open_with("[motion shake]\nkind = sine\namplitude = 0.001, 0.0005\nperiod = 0.05\nphase = 1\n"
+    open_with("[motion shake]\nx = 0.001*sin(40*pi*t + 1)\ny = 0.0005*sin(40*pi*t + 1)\n"
               "[load pull]\nbody = gate\nshape = box 0.1, 0, 0.13, 0.15\nforce = 3, 1\n"
               "[contact none]\nenabled = off\n[probe R]\nquantity = reaction\nbody = gate\n",
               set);

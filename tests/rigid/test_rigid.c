@@ -279,7 +279,7 @@ static void test_a_moving_wall_lifts_a_body(void)
 {
     rig_open(&rig,
              "gravity = 0, -10\n" FREE "[wall lift]\nshape = box -1, -0.12, 1, 0\nmotion = m\n"
-             "[motion m]\nvelocity = 0, 0.5\n"
+             "[motion m]\ny = 0.5*t\n"
              "[rigid a]\nshape = box 0, 0, 0.3, 0.3\nmass = 3\n",
              NULL);
     rig_run(&rig, 0.4);

@@ -60,7 +60,7 @@ static void test_a_belt_takes_a_box_along(void)
 {
     rig_open(&rig,
              "gravity = 0, -10\n" FREE "[wall belt]\nshape = box -1, -0.12, 3, 0\nmotion = m\n"
-             "[motion m]\nvelocity = 0.5, 0\n"
+             "[motion m]\nx = 0.5*t\n"
              "[rigid a]\nshape = box 0, 0, 0.3, 0.3\nmass = 3\n"
              "[contact c]\nbetween = a, belt\nfriction = 0.2\n",
              NULL);

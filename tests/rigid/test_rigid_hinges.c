@@ -168,7 +168,7 @@ static void test_a_hinge_is_driven(void)
 {
     rig_open(&rig,
              FREE
-             "[motion m]\nkind = rotation\nangle_amplitude = 0.5\nperiod = 1 s\ncentre = 9, 9\n"
+             "[motion m]\nturn = 0.5*sin(2*pi*t)\ncentre = 9, 9\n"
              "[rigid a]\nshape = box 0, -0.05, 1, 0.05\nmass = 2\nhinge = 0, 0\n"
              "hinge_motion = m\n"
              "[rigid b]\nshape = box 1, -0.05, 2, 0.05\nmass = 1\nhinge = 1, 0, a\n"
@@ -186,7 +186,7 @@ static void test_a_hinge_is_driven(void)
 static void test_a_hinge_on_a_carriage(void)
 {
 #define CARRIAGE                                                                            \
-    "[wall w]\nshape = box -0.1, 0, 0.1, 0.1\nmotion = m\n[motion m]\nkind = expression\n"  \
+    "[wall w]\nshape = box -0.1, 0, 0.1, 0.1\nmotion = m\n[motion m]\n"                     \
     "x = 0.05*(1 - cos(4*t))\n[rigid a]\nshape = box -0.05, -0.6, 0.05, 0\ndensity = 600\n" \
     "hinge = 0, 0, w\n"
     rig_open(&rig, FREE CARRIAGE, "motion m.x=0.5*t^2", NULL);
@@ -197,8 +197,7 @@ static void test_a_hinge_on_a_carriage(void)
     for (int driven = 0; driven < 2; driven++) {
         rig_open(&rig,
                  driven ? "gravity = 0, -9.81\n" FREE CARRIAGE
-                          "hinge_motion = n\n[motion n]\nkind = expression\n"
-                          "turn = 0.1*(1 - cos(20*t))\n"
+                          "hinge_motion = n\n[motion n]\nturn = 0.1*(1 - cos(20*t))\n"
                         : "gravity = 0, -9.81\n" FREE CARRIAGE,
                  NULL);
         energy_begin(&rig.sim);
@@ -211,7 +210,7 @@ static void test_a_hinge_on_a_carriage(void)
 static void test_drives_of_a_closed_loop(void)
 {
 #define LOOP(drive)                                                                               \
-    FREE "[motion m]\nkind = rotation\nangle_amplitude = 0.2\nperiod = 4 s\ncentre = 9, 9\n"      \
+    FREE "[motion m]\nturn = 0.2*sin(pi/2*t)\ncentre = 9, 9\n"                                     \
          "[rigid a]\nshape = box -0.06, 0, 0.06, 1\nmass = 2\nhinge = 0, 0\nhinge_motion = m\n"   \
          "[rigid b]\nshape = box 0.06, 0.94, 0.94, 1.06\nmass = 1\nhinge = 0.06, 0.96, a\n" drive \
          "[rigid c]\nshape = box 0.94, 0, 1.06, 1\nmass = 1\nhinge = 0.94, 0.96, b\n"             \
@@ -246,15 +245,15 @@ static void test_bad_input_is_refused(void)
     rig_refuses(FREE BOX "hinge = 0, 0, a\n", "is no [wall] and no other [rigid]");
     rig_refuses(FREE BOX "hinge = 0, 0, waal\n[wall wall]\nshape = box -2, -2, -1, -1\n",
                 "waal is no [wall] and no other [rigid]; did you mean `wall`?");
-    rig_refuses(FREE BOX "hinge_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `hinge`");
+    rig_refuses(FREE BOX "hinge_motion = m\n[motion m]\nx = t\n", "no `hinge`");
     rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\nhinge_friction = 1\n"
-                         "[motion m]\nkind = rotation\nangle = 1\n",
+                         "[motion m]\nturn = t\n",
                 "leave one out");
-    rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\n[motion m]\nvelocity = 1, 0\n",
+    rig_refuses(FREE BOX "hinge = 0, 0\nhinge_motion = m\n[motion m]\nx = t\n",
                 "has the `hinge_motion` m, which has no angle");
     rig_refuses(FREE BOX "hinge = 0, 0\nhinge = 0.5, 0, b\nhinge_motion = m\n"
                          "[rigid b]\nshape = box 2, 0, 3, 1\ndensity = 1\n"
-                         "[motion m]\nkind = rotation\nangle = 1\n",
+                         "[motion m]\nturn = t\n",
                 "has a `hinge_motion` and 2 hinges");
 }
 

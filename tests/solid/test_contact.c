@@ -338,7 +338,7 @@ static void test_block_on_a_floor(void)
 static const char press[] = "dp = 1 cm\nend_time = 1\n[contact all]\n"
                             "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
                             "[wall plate]\nshape = box -0.1, 0.04, 0.2, 0.07\nmotion = down\n"
-                            "[motion down]\nvelocity = 0, -10 mm/s\n"
+                            "[motion down]\ny = -10 mm/s*t\n"
                             "[solid a]\nshape = box 0, 0, 0.06, 0.04\ndensity = 1000\nyoung = "
                             "1e6\npoisson = 0\nlaw = svk\ndp = 5 mm\n";
 

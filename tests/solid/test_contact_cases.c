@@ -269,7 +269,7 @@ static void test_corner_on_corner(void)
 static void test_wall_on_a_beam(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall ram]\nshape = box 0.1, 0.02, 0.14, 0.04\n"
-                   "motion = down\n[motion down]\nvelocity = 0, -0.5\n"
+                   "motion = down\n[motion down]\ny = -0.5*t\n"
                    "[solid beam]\nshape = box 0, 0, 0.14, 0.02\nclamp = box 0, 0, 0.03, 0.02\n"
                    "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
                    NULL);
@@ -282,7 +282,7 @@ static void test_wall_on_a_beam(void)
 static void test_wall_into_a_clamp(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall ram]\nshape = box 0, 0.03, 0.04, 0.05\n"
-                   "motion = down\n[motion down]\nvelocity = 0, -0.5\n"
+                   "motion = down\n[motion down]\ny = -0.5*t\n"
                    "[solid block]\nshape = box 0, 0, 0.04, 0.02\nclamp = box 0, 0, 0.04, 0.02\n"
                    "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
                    NULL);
@@ -308,7 +308,7 @@ static void test_line_contact(void)
 {
     RIG_OPEN_SOLID("dp = 2.5 mm\nend_time = 1\n[wall floor]\nshape = box -0.05, -0.01, 0.05, 0\n"
                    "[wall plate]\nshape = box -0.05, 0.1, 0.05, 0.11\nmotion = down\n"
-                   "[motion down]\nvelocity = 0, -0.05\n"
+                   "[motion down]\ny = -0.05*t\n"
                    "[solid disc]\nshape = circle 0, 0.05, 0.05\ndensity = 1000\nyoung = 1 MPa\n"
                    "poisson = 0.3\nartificial_viscosity = 0.5\n",
                    NULL);

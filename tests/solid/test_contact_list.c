@@ -96,7 +96,7 @@ static void test_margin_covers_the_steps(void)
 static void test_a_clamp_that_moves_with_its_wall(void)
 {
     static const char post[] =
-        "dp = 1 cm\nend_time = 1\n[motion m]\nvelocity = 0.1, 0\n"
+        "dp = 1 cm\nend_time = 1\n[motion m]\nx = 0.1*t\n"
         "[wall floor]\nshape = box -0.2, -0.03, 0.24, 0\nmotion = m\n"
         "[wall other]\nshape = box -0.2, -0.3, 0.24, -0.25\n"
         "[solid a]\nshape = box 0, -0.03, 0.04, 0.1\nclamp = box 0, -0.03, 0.04, 0\n" RUBBER;

@@ -162,7 +162,7 @@ static void test_hinge_on_a_moving_wall(void)
     static const char text[] =
         TOP "gravity = 0, -9.81\n[contact none]\nenabled = off\n[wall top]\nshape = box -0.1, 0.2, "
             "0.1, 0.24\nmotion = m\n"
-            "[motion m]\nkind = polynomial\npoly_x = 0, 2, 1\n[solid rod]\n"
+            "[motion m]\nx = t^2*(2 + t)\n[solid rod]\n"
             "shape = box -0.02, 0, 0.02, 0.2\n" STEEL "hinge = 0.003, 0.2, top\n";
     static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
                                               "integrator=leapfrog"};

@@ -139,14 +139,12 @@ static void test_traction_on_fitted_cells(void)
     }
 }
 
-#define SHAKEN                                                                 \
-    BAR "clamp = box 0, 0, 0.03, 0.04\nclamp_motion = shake\n[motion shake]\n" \
-        "kind = polynomial\n"
+#define SHAKEN BAR "clamp = box 0, 0, 0.03, 0.04\nclamp_motion = shake\n[motion shake]\n"
 
 /* A clamp that moves takes the body along; a steady motion is no motion to the body itself. */
 static void test_clamp_moves_the_body(void)
 {
-    RIG_OPEN_SOLID(SHAKEN "poly_x = 0.5\npoly_y = -0.2\n", "bar.velocity=0.5, -0.2");
+    RIG_OPEN_SOLID(SHAKEN "x = 0.5*t\ny = -0.2*t\n", "bar.velocity=0.5, -0.2");
     rig_run(&rig, 0.1);
     for (int64_t i = 0; i < p->n; i++) {
         assert_near(1e-12, 0.05, p->ux[i], "ux");
@@ -160,7 +158,7 @@ static void test_work_of_a_clamp(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        RIG_OPEN_SOLID(SHAKEN "poly_y = 0, 5\n", integrators[k]);
+        RIG_OPEN_SOLID(SHAKEN "y = 5*t^2\n", integrators[k]);
         rig_run(&rig, 0.05);
         const struct ledger row = simulation_ledger(&rig.sim);
         TEST_ASSERT_TRUE(rig.sim.state.wall_work > 0.1);
@@ -190,7 +188,7 @@ static void test_zero_changes_no_bit(void)
     for (int k = 0; k < 2; k++) {
         const uint64_t plain =
             bits_after(BAR "clamp = box 0, 0, 0.03, 0.04\n", integrators[k], "bar.velocity=x, 3*x");
-        const uint64_t driven = bits_after(SHAKEN "poly_x = 0\n[load n]\nbody = bar\nforce = 0, 0\n"
+        const uint64_t driven = bits_after(SHAKEN "x = 0\n[load n]\nbody = bar\nforce = 0, 0\n"
                                                   "shape = box 0.1, 0, 0.2, 0.02\n",
                                            integrators[k], "bar.velocity=x, 3*x");
         TEST_ASSERT_EQUAL_HEX64(plain, driven);
@@ -198,7 +196,7 @@ static void test_zero_changes_no_bit(void)
 }
 
 static const char both[] =
-    SHAKEN "poly_y = 0.1, 5\n[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\n"
+    SHAKEN "y = t*(0.1 + 5*t)\n[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\n"
            "force = 20, 0\nhistory = sin(300*t)\n";
 
 static void test_restart_and_threads(void)
@@ -235,7 +233,7 @@ static void test_bad_input(void)
                 "contains no particle");
     rig_refuses(BAR "velocity = t, 0\n", "`t`");
     rig_refuses(BAR "clamp = box 0, 0, 0.02, 0.04\nclamp_motion = m\n", "no [motion] of that name");
-    rig_refuses(BAR "clamp_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `clamp`");
+    rig_refuses(BAR "clamp_motion = m\n[motion m]\nx = t\n", "no `clamp`");
 }
 
 /* Normals of the surface towards the fluid go where a clamp moves, and stay elsewhere. */
@@ -243,7 +241,7 @@ static void test_normals_of_driven_particles(void)
 {
     RIG_OPEN_SOLID(
         "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n"
-        "[motion m]\nvelocity = 0.1, 0\n[solid gate]\nshape = box 0.1, 0, 0.13, 0.2\n"
+        "[motion m]\nx = 0.1*t\n[solid gate]\nshape = box 0.1, 0, 0.13, 0.2\n"
         "clamp = box 0.1, 0.17, 0.13, 0.2\nclamp_motion = m\ndensity = 1100\nyoung = 1e6\n"
         "poisson = 0.4\n",
         "integrator=leapfrog");

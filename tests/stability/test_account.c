@@ -171,12 +171,11 @@ static void test_work_on_what_rests(void)
         "sound_speed = 20\nartificial_viscosity = 0.02\n[wall bed]\nshape = box -0.4, -0.02, 0.6, "
         "0\n"
         "[wall paddle]\nshape = box -0.03, 0.01, -0.01, 0.12\nmotion = m\n[motion m]\n"
-        "velocity = speed, 0\n";
+        "x = speed*t\n";
     static const char beam[] =
         "dp = 5 mm\nend_time = 1\n[solid beam]\nshape = box 0, 0, 0.02, 0.2\n"
         "clamp = box 0, 0, 0.02, 0.02\nclamp_motion = m\ndensity = 1000\n"
-        "young = 1 MPa\npoisson = 0.3\n[motion m]\nkind = polynomial\n"
-        "poly_x = 0, 0, 2.5\n";
+        "young = 1 MPa\npoisson = 0.3\n[motion m]\nx = 2.5*t^3\n";
     static const char *const integrators[] = {"integrator=leapfrog", "integrator=symplectic",
                                               "integrator=verlet"};
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -247,7 +246,7 @@ static void test_regions_add_up(void)
         "[solid a]\nshape = box 0, 0, 0.2, 0.04\nclamp = box 0, 0, 0.04, 0.04\nclamp_motion = m\n"
         "density = 1000\nyoung = 1e6\npoisson = 0.3\n[solid b]\nlike = a\n"
         "shape = box 1, 0, 1.2, 0.04\nclamp = box 1, 0, 1.04, 0.04\n[load pull]\nbody = b\n"
-        "shape = box 1.1, 0, 1.2, 0.04\nforce = 0, 5\n[motion m]\nvelocity = 0.2, 0.1\n";
+        "shape = box 1.1, 0, 1.2, 0.04\nforce = 0, 5\n[motion m]\nx = 0.2*t\ny = 0.1*t\n";
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(two, NULL, 0.1));
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
     const struct ledger row = simulation_ledger(&rig.sim);

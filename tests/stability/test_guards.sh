@@ -53,7 +53,7 @@ $tank
 shape = box 0, 0.1, 0.2, 0.14
 motion = push
 [motion push]
-velocity = 0, -3
+y = -3*t
 CASE
 
 # det F: a block thrown together faster than its material can hold.

@@ -47,7 +47,7 @@ static double pattern_after(const char *text, const char *set, const char *hourg
 static void test_pattern_without_stress(void)
 {
     static const char drawn[] = BAR "clamp = box 0.24, 0, 0.28, 0.16\nclamp_motion = draw\n"
-                                    "[motion draw]\nvelocity = -3, 0\n";
+                                    "[motion draw]\nx = -3*t\n";
     const struct {
         const char *text, *set, *name;
     } bodies[] = {{drawn, "constants.speed=0", "stretched"}, {BAR, "constants.speed=2", "bent"}};
@@ -67,7 +67,7 @@ static const char drawn_water[] =
     "[wall box]\nshape = box -0.02, -0.02, 0.15, 0\nshape = box -0.02, 0, 0, 0.1\n"
     "shape = box -0.02, 0.1, 0.15, 0.12\n"
     "[wall side]\nshape = box 0.1, 0, 0.12, 0.1\nmotion = away\n"
-    "[motion away]\nvelocity = speed, 0\nstop = 20 ms\n"
+    "[motion away]\nx = speed*t\nstop = 20 ms\n"
     "[domain]\nlower = -0.1, -0.1\nupper = 0.3, 0.3\n";
 
 static double closest(void)

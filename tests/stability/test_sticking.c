@@ -12,7 +12,7 @@ static const char shear[] =
     "laminar_viscosity = 1e-3\nvelocity = 2*y, 0\npressure = 20\n"
     "[wall top]\nshape = box -20 mm, 15 mm, 20 mm, 19 mm\nslip = none\nmotion = right\n"
     "[wall bottom]\nshape = box -20 mm, -19 mm, 20 mm, -15 mm\nslip = none\nmotion = left\n"
-    "[motion right]\nvelocity = 30 mm/s, 0\n[motion left]\nvelocity = -30 mm/s, 0\n"
+    "[motion right]\nx = 30 mm/s*t\n[motion left]\nx = -30 mm/s*t\n"
     "[solid cyl]\nshape = circle 0, 0, R\ndensity = 1000\nyoung = 200 kPa\npoisson = 0.3\nslip = "
     "none\n"
     "[contact none]\nenabled = off\n[domain]\nlower = -20 mm, -25 mm\nupper = 20 mm, 25 mm\n"

@@ -76,7 +76,8 @@ int fuzz_expr(const uint8_t *data, size_t size)
 static const char table_case[] =
     "dp = 1 cm\nend_time = 1\n[wall w]\nshape = box 0, 0, 0.03, 0.03\nmotion = m\n"
     "[fluid f]\nshape = box 0.03, 0, 0.05, 0.02\nsound_speed = 10\n"
-    "[motion m]\nkind = table\nfile = ";
+    "[motion m]\nx = a(t)\ny = b(t)\n[table a]\ncolumn = 2\nfile = ";
+static const char second_table[] = "\n[table b]\ncolumn = 3\nbetween = cubic\nfile = ";
 
 /* The table is a file of its own in memory, so that nothing is written to a disk. */
 int fuzz_motion(const uint8_t *data, size_t size)
@@ -85,8 +86,9 @@ int fuzz_motion(const uint8_t *data, size_t size)
     static struct scene scene;
     if (fd < 0) fd = memfd_create("table", 0);
     if (fd < 0 || ftruncate(fd, 0) != 0 || pwrite(fd, data, size, 0) != (ssize_t)size) return 0;
-    char text[sizeof table_case + 64];
-    snprintf(text, sizeof text, "%s/proc/self/fd/%d\n", table_case, fd);
+    char text[sizeof table_case + sizeof second_table + 64];
+    snprintf(text, sizeof text, "%s/proc/self/fd/%d%s/proc/self/fd/%d\n", table_case, fd,
+             second_table, fd);
     struct diag d = {.code = ERR_OK};
     const enum err e = scene_load_text(&scene, text, "x.cfg", 0, NULL, &d);
     judge(e, &d);

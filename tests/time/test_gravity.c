@@ -93,13 +93,19 @@ static void test_what_does_not_vary_keeps_its_bits(void)
                                 hash_after("gravity=1, -9.81 + 0*t", integrators[k]));
 }
 
+#define SHAKE                                                            \
+    "[table gx]\nfile = test_gravity.tmp\ncolumn = 2\n"                   \
+    "[table gy]\nfile = test_gravity.tmp\ncolumn = 3\n"
+
 static void open_with_table(const char *gravity, const char *rows)
 {
     FILE *const table = fopen("test_gravity.tmp", "w");
     TEST_ASSERT_NOT_NULL(table);
     fputs(rows, table);
     fclose(table);
-    rig_open(&rig, solid, gravity, "gravity_file=test_gravity.tmp", NULL);
+    char text[sizeof solid + sizeof SHAKE];
+    snprintf(text, sizeof text, "%s%s", solid, SHAKE);
+    rig_open(&rig, text, gravity, NULL);
     remove("test_gravity.tmp");
 }
 
@@ -108,7 +114,7 @@ static void test_a_table_between_its_rows(void)
 {
     static const double at[][3] = {{0, 2, 1},    {0.1, 2, 1},  {0.125, 1.5, 1.25}, {0.2, 0, 2},
                                    {0.35, 3, 0}, {0.5, 6, -2}, {9, 6, -2}};
-    open_with_table("gravity=1, -3", "0.1, 1, 4\n0.2, -1, 5\n0.5, 5, 1\n");
+    open_with_table("gravity=1 + gx(t), gy(t) - 3", "0.1, 1, 4\n0.2, -1, 5\n0.5, 5, 1\n");
     for (size_t k = 0; k < COUNT_OF(at); k++) {
         double g[2];
         scene_gravity_at(&rig.scene, at[k][0], g);
@@ -120,7 +126,7 @@ static void test_a_table_between_its_rows(void)
 /* v = 5 t^2 up to 0.05 s, and on with the last row's. */
 static void test_a_table_is_added(void)
 {
-    open_with_table("gravity=0, -1", "# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n");
+    open_with_table("gravity=gx(t), gy(t) - 1", "# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n");
     rig_run(&rig, 0.1);
     const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {

@@ -71,7 +71,7 @@ static void test_others_are_not(void)
     run(WATER BEAM("clamp = 0.2, 0.2\nvelocity = 0, 20*(x - 0.2)\n"), 0.1);
     run(WATER "periodic = x\n" SOLID("4, 0"), 0.5);
     run(WATER "[wall b]\nshape = box 0.2, 0.2, 0.3, 0.3\nmotion = m\n"
-              "[motion m]\nvelocity = 0, 4\n",
+              "[motion m]\ny = 4*t\n",
         0.5);
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
 }

@@ -11,7 +11,7 @@ static const char fluid[] =
     "[fluid w]\nshape = box 0, 0, 0.06, 0.04\nsound_speed = 20\nsurface = 0.04\n"
     "velocity = 20*y, -30*x + y\n"
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0.08; 0, 0; 0.06, 0; 0.06, 0.08\n"
-    "[motion still]\nkind = expression\nx = 0\n";
+    "[motion still]\nx = 0\n";
 
 static const char solid[] =
     "dp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = 1e-5\n"

@@ -109,7 +109,7 @@ static void test_forces_are_those_at_the_start(void)
         RIG_OPEN_SOLID(HEAD "[solid b]\nshape = box 0, 0, 0.2, 0.04\nclamp = box 0, 0, 0.02, 0.04\n"
                             "clamp_motion = m\n" BODY "[load l]\nbody = b\nforce = 0, 5\n"
                             "shape = box 0.19, 0, 0.2, 0.04\nhistory = sqrt(t)\n"
-                            "[motion m]\nvelocity = 1, 0\n[relax]\n",
+                            "[motion m]\nx = t\n[relax]\n",
                        NULL);
         if (k) rig.sim.state.time = kinetic;
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
@@ -123,7 +123,7 @@ static void test_forces_are_those_at_the_start(void)
 /* Gravity, walls and clamps that follow the time are held while the clock of the search runs. */
 static void test_beside_fluid_the_search_has_its_own_clock(void)
 {
-    static const char motion[] = "[motion m]\nvelocity = 0.1, 0\n";
+    static const char motion[] = "[motion m]\nx = 0.1*t\n";
     uint64_t hash[2];
     for (int k = 0; k < 2; k++) {
         char text[1500];
@@ -203,7 +203,7 @@ static void test_no_rest_is_said(void)
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL(strstr(rig.diag.text, "no state of rest within"));
     rig_refuses(HEAD "[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY
-                     "[relax]\n[motion m]\nstart = -1\nvelocity = 1, 0\n",
+                     "[relax]\n[motion m]\nstart = -1\nx = t\n",
                 "no motion may begin before t = 0");
     rig_refuses(HEAD "[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY "[relax]\ntolerance = 0\n"
                      "limit = 3\n",
