@@ -114,6 +114,7 @@ enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d
         for (int64_t i = 0; i < solid->n; i++) impulse_clear(solid, i);
     if ((sim->effects & FX_FLUID) && !order_fits(sim)) TRY(sort_again(sim, d));
     TRY(simulation_resume(sim, d));
+    memset(sim->guard.warned_left, 0, sizeof sim->guard.warned_left); /* a run of its own */
     if (sim->state.seeks_rest && !(sim->effects & FX_RELAX))
         relax_end(sim); /* a search that was cut */
     else

@@ -122,6 +122,8 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
             if (sim->kind[kind].capacity && (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
                 cells_rebuild(&sim->cells, (enum kind)kind, &sim->kind[kind]);
         if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
+        if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) /* the run has said it */
+            guards_warn_of_leaving(sim, &(struct diag){.warn = NULL});
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);
         if (sim->effects & FX_COUPLING) clear_fluid_sums(&sim->kind[KIND_SOLID]);

@@ -36,4 +36,12 @@ for integrator in symplectic verlet leapfrog; do
         restarts "$dir/$scene.cfg" "$dir/$scene-$integrator" 0.05 --set integrator=$integrator
     done
 done
+
+# That a body has left is said once in a run; a fork is another run.
+leave() { "$sphfsi" "$dir/beside.cfg" --quiet "$@" 2>&1 | grep -c 'box\] has left the domain'; }
+sed -i 's/^upper = .*/upper = 2, 0.6/; s/^end_time = .*/end_time = 0.3/
+        s/^spin = 2/velocity = 0, 8/' "$dir/beside.cfg"
+said=$(leave --out "$dir/left" --until 0.08)/$(leave --out "$dir/other" --fork "$dir/left")
+said=$said/$(leave --out "$dir/left" --restart)
+[ "$said" = 1/1/0 ] || fail "a body that has left is named $said times, not 1/1/0"
 [ $failures = 0 ]
