@@ -32,7 +32,7 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
             const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
-            const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
+            const vreal weight = fx_laminar(&q, k);
             sum_x[part] = vfma(weight, q.u, sum_x[part]);
             sum_y[part] = vfma(weight, q.v, sum_y[part]);
         }

@@ -12,6 +12,7 @@ static struct fluid_constants constants_of(const struct scene *scene)
         .rho0 = scene->rho0,
         .mass = scene->rho0 * square(scene->top.dp),
         .dp = scene->top.dp,
+        .second_moment = kernel_second_moment(scene->top.dp, scene->h),
         .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? scene->c0 / 10 : 0,
         .fills_domain =
             fluid->shifting_speed == SHIFTING_LARGEST || scene->domain.periodic == PERIODIC_XY,

@@ -84,6 +84,7 @@ struct fluid_constants {
     double c_u;  /* of L-7 */
     double mass; /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double dp;   /* particle spacing, m */
+    double second_moment;  /* M of L-1, 1 */
     double shifting_speed; /* m/s, the same for all particles; 0: each particle's own speed */
     bool fills_domain; /* the fluid has no free surface: a shift takes the density along (L-9) */
     double gravity[2];

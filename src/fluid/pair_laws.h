@@ -27,7 +27,7 @@ struct exchange {
 
 /* Constants of the sweep, in all SIMD lanes. */
 struct vector_constants {
-    vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
+    vreal laminar;        /* 2 nu rho0/(M h) of L-1, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
     vreal repulsion;      /* beta rho0 c_u^2 of fx_repulsion, Pa */
     vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
@@ -46,7 +46,8 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
     const double per_c2 = fk->h / square(fk->c0);
     const double slope = PAIR_SLOPE * fk->h / (fk->mass / fk->rho0);
     return (struct vector_constants){
-        .laminar = vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / fk->h)),
+        .laminar = vset(
+            (real)(2 * fk->model->laminar_viscosity * fk->rho0 / (fk->second_moment * fk->h))),
         .tensile = vset((real)fk->model->tensile_control),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
         .repulsion = vset((real)(fk->model->wall_repulsion * fk->rho0 * square(fk->c_u))),
@@ -136,12 +137,13 @@ SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
     return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
-/* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:
- *   rho_a dv_a/dt = sum of V_b 2 nu rho0 x_ab . grad W/(|x|^2 + eta^2) v_ab.
- * The factor of -v_ab. */
-SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vector_constants *k)
+/* L-1: Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0
+ * everywhere:
+ *   rho_a dv_a/dt = sum of V_b 2 nu rho0/M x_ab . grad W/|x|^2 v_ab.
+ * The factor of -v_ab. This kernel's gradient needs no division by |x|^2. */
+SPHFSI_INLINE vreal fx_laminar(const struct pair *q, const struct vector_constants *k)
 {
-    return k->laminar * (q->slope * (q->r2 * inv));
+    return k->laminar * q->slope;
 }
 
 /* Eq. 28b: the pair's rate of approach or separation. */

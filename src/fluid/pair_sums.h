@@ -65,7 +65,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     }
     if (PAIR_HAS(fx, TENSILE)) stress = stress + fx_tensile(a, q, k);
     e.radial = q->slope * stress;
-    if (PAIR_HAS(fx, LAMINAR)) e.drag = fx_laminar(q, inv, k);
+    if (PAIR_HAS(fx, LAMINAR)) e.drag = fx_laminar(q, k);
     *approach = vmax(*approach, fx_approach(q, inv));
     return e;
 }
@@ -135,7 +135,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     *approach = vmax(*approach, fx_approach(q, inv));
     if (PAIR_HAS(fx, THIN)) fx_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
     if (PAIR_HAS(fx, NO_SLIP)) {
-        e.drag = lane(b, PACKED_STICKS) * fx_laminar(q, inv, k);
+        e.drag = lane(b, PACKED_STICKS) * fx_laminar(q, k);
         q->u = a->u - lane(b, PACKED_MIRROR_U);
         q->v = a->v - lane(b, PACKED_MIRROR_V);
     }

@@ -26,3 +26,14 @@ SPHFSI_INLINE double kernel_slope(double r, double h)
     const double t = max2(0, 1 - 0.5 * r / h);
     return -KERNEL_SLOPE / square(h * h) * (t * t * t);
 }
+
+/* - sum of dp^2 x^2 f over a square lattice of spacing dp, 1 in the limit h/dp -> infinity. */
+SPHFSI_INLINE double kernel_second_moment(double dp, double h)
+{
+    const int reach = (int)(KERNEL_REACH * h / dp);
+    double sum = 0;
+    for (int i = -reach; i <= reach; i++)
+        for (int j = -reach; j <= reach; j++)
+            sum -= square(dp * dp * i) * kernel_slope(dp * sqrt(i * i + j * j), h);
+    return sum;
+}

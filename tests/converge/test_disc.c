@@ -65,7 +65,7 @@ static void test_oscillation(void)
     printf("found: added mass %+.2f %%, drag %+.2f %%\n", 100 * (r.mass / exact_mass - 1),
            100 * (r.drag / exact_drag - 1));
     assert_near(0.08 * exact_mass, exact_mass, r.mass, "added mass at 10 across");
-    assert_near(0.01 * exact_drag, exact_drag, r.drag, "drag at 10 across");
+    assert_near(0.03 * exact_drag, exact_drag, r.drag, "drag at 10 across");
 }
 
 int main(void)

@@ -41,18 +41,32 @@ static double tait_inverse(const struct twin *t, double p)
     return t->rho0 * pow(p * 7 / (t->c0 * t->c0 * t->rho0) + 1, 1.0 / 7);
 }
 
+/* M of L-1: - sum of V x . grad W/2 over a square lattice. */
+static double second_moment(double dp, double h)
+{
+    double sum = 0;
+    for (int i = -5; i <= 5; i++)
+        for (int j = -5; j <= 5; j++) {
+            const double r = dp * hypot(i, j), q = r / h;
+            if (q < 2)
+                sum += dp * dp * r * r / 2 * 35 / (4 * M_PI * pow(h, 4)) * pow(1 - q / 2, 3);
+        }
+    return sum;
+}
+
 void twin_copy(struct twin *t, const struct simulation *sim)
 {
     const struct scene *const scene = sim->scene;
     const struct scene_fluid *const f = &scene->fluid[0];
+    const double dp = scene->top.dp, h = scene->numerics.h_over_dp * dp;
     *t = (struct twin){.suction = scene->numerics.suction == SUCTION_ON,
-                       .h = scene->numerics.h_over_dp * scene->top.dp,
+                       .h = h,
                        .mass = f->density * scene->top.dp * scene->top.dp,
                        .c0 = f->sound_speed,
                        .rho0 = f->density,
                        .alpha = f->artificial_viscosity,
                        .delta = f->density_diffusion,
-                       .nu = f->laminar_viscosity,
+                       .nu = f->laminar_viscosity / second_moment(dp, h),
                        .tensile = f->tensile_control,
                        .repulsion = f->wall_repulsion,
                        .one_sided = scene->numerics.sides == SIDES_ONE,
@@ -151,7 +165,7 @@ static void renormalised_gradient(const struct twin *t, struct twin_point *a)
     a->sy = (L[0][0] * s[1] - L[1][0] * s[0]) / det;
 }
 
-/* Morris et al. 1997: what viscosity adds, by the factor x . grad W/(r^2 + eta^2). */
+/* L-1: what viscosity adds, by the factor x . grad W/r^2. */
 static void laminar_pair(const struct twin *t, struct twin_point *a, const struct twin_point *b,
                          bool mirrored, double factor)
 {
@@ -218,7 +232,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     }
     a->ax += factor * gx;
     a->ay += factor * gy;
-    if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
+    if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r));
     a->cx += V * gx;
     a->cy += V * gy;
     a->div_r -= V * (dx * gx + dy * gy);
@@ -245,7 +259,7 @@ static void solid_force(const struct twin *t, struct twin_point *s)
         s->fy += factor * slope * dy;
         if (s->sticks) {
             const double drag = (t->one_sided ? 2 : 1) * s->m * f->m * 2 * t->nu * t->rho0 /
-                                (s->rho * f->rho) * slope * r * r / (r * r + 0.01 * t->h * t->h);
+                                (s->rho * f->rho) * slope;
             s->fx += drag * (s->mu - f->u);
             s->fy += drag * (s->mv - f->v);
             s->size_f += fabs(drag) * (hypot(s->mu, s->mv) + hypot(f->u, f->v));
