@@ -58,8 +58,7 @@ def draw_accuracy():
         seconds, off = line_of(study.of(case, "base"), error)
         axes.loglog(seconds, off, "o-", color=colour, markersize=4)
         axes.loglog(*line_of(study.of(case, "scheme", "paper"), error), "--", color=colour, lw=1)
-        # The last point of still water lies on another line: its name is below the first one.
-        end, place = (0, (-30, -46)) if case == "still" else (-1, (7, 3))
+        end, place = (0, (-30, -46)) if case == "still" else (-1, (7, 3))  # beside its line
         axes.annotate(label, (seconds[end], off[end]), xytext=place, textcoords="offset points",
                       color=colour, va="center", fontsize=9, bbox={"fc": "w", "lw": 0, "pad": 0.5})
     axes.set(xlabel="CPU time (s)", ylabel="error (%)", xlim=(0.02, 4e3))
