@@ -78,8 +78,9 @@ static double bound_at(const struct simulation *sim, int k, const struct fluid_e
     const bool fixed = sim->scene->numerics.fixed_step > 0;
     const effect_set effect = bound_table[k].effect;
     bool owned = effect == 0 || sim->effects & effect;
-    if (!(sim->effects & FX_FLUID)) /* dt_solid is that of rigid bodies and beams, too */
-        owned = k == BOUND_solid || k == BOUND_contact || k == BOUND_fixed;
+    if (!(sim->effects & FX_FLUID)) /* without solids dt_solid is that of rigid bodies and beams */
+        owned = k == BOUND_solid || k == BOUND_contact || k == BOUND_fixed ||
+                (k == BOUND_spring && sim->effects & FX_SOLID && sim->effects & FX_RIGID);
     return owned && (!fixed || k == BOUND_fixed) ? bound_value(sim, (enum bound)k, now)
                                                  : (double)INFINITY;
 }
@@ -104,7 +105,9 @@ enum bound timestep_binding(const struct simulation *sim)
 double timestep_longest(const struct simulation *sim)
 {
     const double fixed = sim->scene->numerics.fixed_step;
-    return sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : fixed > 0 ? fixed : sim->dt_solid;
+    if (sim->effects & FX_FLUID) return timestep_fluid_limit(sim);
+    if (fixed > 0) return fixed;
+    return min2(sim->dt_solid, bound_at(sim, BOUND_spring, &sim->fluid.extremes));
 }
 
 const char *timestep_shorter(const struct simulation *sim, double *half)
