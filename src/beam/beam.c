@@ -416,7 +416,8 @@ struct body_energy beam_energy(const struct beams *beams, int beam)
 {
     const struct beam *const b = &beams->beam[beam];
     const double *const g = beams->scene->top.gravity;
-    struct body_energy sum = {.elastic = beam_spring_energy(beams, beam)};
+    struct body_energy sum = {0};
+    beam_add_spring_energy(beams, beam, &sum);
     for (int k = b->first_node; k < b->end_node; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_state *const s = &beams->state[k];

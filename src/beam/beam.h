@@ -236,8 +236,8 @@ void beams_set_stiffness(struct beams *beams, int spring, double omega2);
 
 /* --- for output --- */
 
-/* Energy of the springs of a beam, J/m. */
-double beam_spring_energy(const struct beams *beams, int beam);
+/* Adds that of the springs of a beam. */
+void beam_add_spring_energy(const struct beams *beams, int beam, struct body_energy *sum);
 
 /* The force of a [spring] at its end `to`; false: it is not of a beam. */
 bool beam_spring_force(const struct beams *beams, int spring, double force[2]);

@@ -95,16 +95,15 @@ void beams_add_springs(struct beams *beams, double dt)
         if (beams->spring[k].node >= 0) add_spring(beams, &beams->spring[k], dt);
 }
 
-double beam_spring_energy(const struct beams *beams, int beam)
+void beam_add_spring_energy(const struct beams *beams, int beam, struct body_energy *sum)
 {
-    double sum = 0, reach[2];
+    double reach[2];
     for (int k = 0; k < beams->n_springs; k++) {
         const struct beam_spring *const s = &beams->spring[k];
         if (s->node < 0 || beams->node[s->node].beam != beam) continue;
         const double length = reach_of(beams, s, beams->state[s->node].x, reach);
-        sum += spring_energy(s->given, elongation(s, length));
+        spring_add_energy(s->given, elongation(s, length), sum);
     }
-    return sum;
 }
 
 bool beam_spring_force(const struct beams *beams, int spring, double force[2])

@@ -288,12 +288,20 @@ double scene_open_flow(const struct scene_open *o, double time);
  * equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Of a spring at an elongation, per depth: the elastic force (N/m), its slope (N/m^2), and its
- * potential (J/m); and the part `taut` of its mean between two elongations. */
+/* Energy and momentum of a rigid body or beam, per depth; `waiting`: the work that the fluid has
+ * still to receive. */
+struct body_energy {
+    double kinetic, potential, elastic, momentum[2], mass, waiting;
+};
+
+/* Of a spring at an elongation, per depth: the elastic force (N/m), its slope (N/m^2); and the part
+ * `taut` of its mean between two elongations. */
 double spring_force(const struct scene_spring *spring, double e);
 double spring_slope(const struct scene_spring *spring, double e);
-double spring_energy(const struct scene_spring *spring, double e);
 double spring_mean(const struct scene_spring *spring, double from, double to, double taut);
+/* Adds its elastic energy. That of a force law is a potential: its zero and sign are arbitrary, as
+ * those of weight are. */
+void spring_add_energy(const struct scene_spring *spring, double e, struct body_energy *sum);
 
 /* The motion of a wall; -1: none, also of wall -1. */
 int scene_wall_motion(const struct scene *scene, int wall);

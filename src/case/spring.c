@@ -15,10 +15,13 @@ double spring_slope(const struct scene_spring *spring, double e)
     return law ? expr_jet_at(law, e).d1 : spring->stiffness;
 }
 
-double spring_energy(const struct scene_spring *spring, double e)
+void spring_add_energy(const struct scene_spring *spring, double e, struct body_energy *sum)
 {
     const struct expr *const law = spring->force.e[0];
-    return law ? expr_integral(law, 0, e) : 0.5 * spring->stiffness * square(e);
+    if (law)
+        sum->potential += expr_integral(law, 0, e);
+    else
+        sum->elastic += 0.5 * spring->stiffness * square(e);
 }
 
 double spring_mean(const struct scene_spring *spring, double from, double to, double taut)

@@ -85,8 +85,9 @@ struct expr_jet {
     double value, d1, d2;
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
-/* The integral of one in t or e alone. Its relative error is about 1e-10 for each kink, and
- * round-off for polynomials of order 3. */
+/* The integral of one in t or e alone, in parts between the rows of tables of this coordinate. The
+ * relative error is about 1e-10 for each other kink, and round-off for polynomials of order 3. A
+ * feature between the five points of a part is missed. */
 double expr_integral(const struct expr *e, double from, double to);
 
 /* Whether its value jumps by more than `size` between two times, or has no value, at time `at`. The

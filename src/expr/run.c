@@ -269,11 +269,30 @@ static double integral_of(const struct expr *e, const struct expr_jet *a, const 
            integral_of(e, &m, b, middle, to, size, halvings - 1);
 }
 
+/* The next row, before an end, of the tables of the coordinate alone. */
+static double next_row(const struct expr *e, double from, double end)
+{
+    for (int k = 1; k < e->n; k++) {
+        if (e->op[k].code != OP_TABLE || e->op[k - 1].code != OP_X) continue;
+        const struct expr_table *const table = e->op[k].table;
+        const int row = from < table->x[0] ? 0 : table_row(table, from, false) + 1;
+        if (table->x[row] > from) end = min2(end, table->x[row]);
+    }
+    return end;
+}
+
 double expr_integral(const struct expr *e, double from, double to)
 {
     enum { HALVINGS = 18 };
-    const struct expr_jet a = expr_jet_at(e, from), b = expr_jet_at(e, to);
-    return integral_of(e, &a, &b, from, to, 0, HALVINGS);
+    if (to < from) return -expr_integral(e, to, from);
+    double sum = 0;
+    for (double at = from, next; at < to; at = next) {
+        next = next_row(e, at, to);
+        /* With the slopes within the part, not after it. */
+        const struct expr_jet a = expr_jet_at(e, at), b = expr_jet_at(e, nextafter(next, at));
+        sum += integral_of(e, &a, &b, at, next, 0, HALVINGS);
+    }
+    return sum;
 }
 
 /* --- jumps --- */

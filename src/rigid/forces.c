@@ -340,16 +340,14 @@ void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], 
     }
 }
 
-double rigid_spring_energy(const struct rigid *rigid, int k)
+void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energy *sum)
 {
-    double sum = 0;
     for (int j = 0; j < rigid->n_springs; j++) {
         if (rigid->spring[j].body[0] != k) continue;
         const struct spring_now now = spring_now(rigid, &rigid->spring[j]);
         const bool slack = rigid->spring[j].given->slack && now.longer <= 0;
-        sum += slack ? 0 : spring_energy(rigid->spring[j].given, now.longer);
+        if (!slack) spring_add_energy(rigid->spring[j].given, now.longer, sum);
     }
-    return sum;
 }
 
 double rigid_hinge_power(const struct rigid *rigid, int k, double time)

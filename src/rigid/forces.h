@@ -6,8 +6,8 @@
 
 enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Energy of the springs whose first end a body has, J/m. */
-double rigid_spring_energy(const struct rigid *rigid, int k);
+/* Adds that of the springs whose first end a body has. */
+void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energy *sum);
 
 /* Power of the motion of a wall on the body that is hinged to it, W/m. */
 double rigid_hinge_power(const struct rigid *rigid, int k, double time);

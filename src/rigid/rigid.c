@@ -334,6 +334,7 @@ struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt)
         e.potential -=
             body->given->gravity ? body->mass[c] * g[c] * (body->centre[c] + s->x[c]) : 0;
     }
-    e.elastic = rigid_hinge_energy(rigid, k) + rigid_spring_energy(rigid, k);
+    e.elastic = rigid_hinge_energy(rigid, k);
+    rigid_add_spring_energy(rigid, k, &e);
     return e;
 }

@@ -119,9 +119,4 @@ double rigid_hinge_gap(const struct rigid *rigid, int *worst);
 /* Whether a hinge joins two bodies: they may overlap there. */
 bool rigid_share_hinge(const struct rigid *rigid, int one, int other);
 
-/* Energy and momentum of a body, per depth; `waiting`: the work that the fluid has still to
- * receive. */
-struct body_energy {
-    double kinetic, potential, elastic, momentum[2], mass, waiting;
-};
 struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt);

@@ -9,9 +9,10 @@
 #define LEDGER_COLUMNS(LEDGER)                                                                   \
     LEDGER(time, "s", "simulated time")                                                          \
     LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                              \
-    LEDGER(potential, "J_per_m", "potential energy in gravity at t = 0, relative to the origin") \
+    LEDGER(potential, "J_per_m",                                                                 \
+           "in gravity at t = 0, relative to the origin; and of springs with a `force`")         \
     LEDGER(internal, "J_per_m", "compression energy of the fluid")                               \
-    LEDGER(elastic, "J_per_m", "strain energy of solids, and of springs")                        \
+    LEDGER(elastic, "J_per_m", "strain energy of solids and beams, and of springs")              \
     LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                \
     LEDGER(contact, "J_per_m", "energy of the contact forces")                                   \
     LEDGER(dissipated, "J_per_m",                                                                \

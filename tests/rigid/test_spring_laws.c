@@ -187,6 +187,31 @@ static void test_a_slack_line(void)
     assert_near(1e-12, x[0], x[1], "place");
 }
 
+/* A force whose potential falls below its value at the start is no gain of energy. */
+static void test_a_constant_force(void)
+{
+    rig_open(&rig, BODY SPRING "force = 10\n", NULL);
+    const double x = place_of_body();
+    rig_run(&rig, 0.1);
+    const double t = rig.sim.state.time;
+    assert_near(1e-4, 0.5 * (10.0 / 2) * t * t, fabs(place_of_body() - x), "way");
+}
+
+/* What a body passes between two rows of a table stays in the energy. */
+static void test_a_narrow_feature_of_a_table(void)
+{
+    FILE *const f = fopen("test_spring_laws.tmp", "w");
+    TEST_ASSERT_NOT_NULL(f);
+    fprintf(f, "-1, 0\n0.02, 0\n0.025, 50\n0.03, 0\n1, 0\n");
+    TEST_ASSERT_EQUAL(0, fclose(f));
+    rig_open(&rig, BODY "velocity = 1, 0\n" SPRING "force = law(e)\n" TABLE, NULL);
+    const double before = total();
+    while (fabs(place_of_body()) < 0.2) {
+        rig_steps(&rig, 1, 1e6);
+        assert_near(1e-4 * before, before, total(), "energy");
+    }
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(BODY SPRING, "needs `stiffness`, `force` or `damping`");
@@ -208,6 +233,8 @@ int main(void)
     RUN_TEST(test_a_beam_keeps_the_energy_and_has_the_period);
     RUN_TEST(test_a_stop_shortens_the_step);
     RUN_TEST(test_a_slack_line);
+    RUN_TEST(test_a_constant_force);
+    RUN_TEST(test_a_narrow_feature_of_a_table);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
