@@ -105,6 +105,8 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     if (strcmp(name, "t") == 0)
         snprintf(why, EXPR_WHY,
                  "unknown name `t`: the time is known only in keys that take an expression in t");
+    else if (scene_find(r->scene, SECTION_table, name) >= 0)
+        snprintf(why, EXPR_WHY, "`%s` is a [table]; write `%s(t)`", name, name);
     else
         snprintf(why, EXPR_WHY, "unknown name `%s`%s", name,
                  near.name ? nearest_hint(&near) : "; define it in [constants]");

@@ -74,12 +74,16 @@ enum err case_load_functions(struct reader *r)
     return ERR_OK;
 }
 
-/* One whose file is bad is a problem that is stored already. */
+/* One whose file is bad is a problem stored already. There are none while [table] is read. */
 const struct expr_table *case_function(void *context, const char *name, char why[EXPR_WHY])
 {
     struct reader *const r = context;
     const struct scene *const scene = r->scene;
     const int k = scene_find(scene, SECTION_table, name);
+    if (k >= 0 && !scene->function) {
+        snprintf(why, EXPR_WHY, "a value of a [table] cannot depend on the table `%s`", name);
+        return NULL;
+    }
     if (k >= 0 && scene->function[k].n > 0) return &scene->function[k];
     r->cause_named |= k >= 0 || r->incomplete;
     struct nearest near = {0};

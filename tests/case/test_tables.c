@@ -184,7 +184,21 @@ static void test_bad_names_are_refused(void)
     refuses(MOVES("wat(t)"), rows,
             "t.cfg:10: x = wat(t): unknown function `wat`; did you mean `way`?");
     refuses(MOVES("foobar(t)"), rows, "t.cfg:10: x = foobar(t): unknown function `foobar`");
-    refuses(MOVES("way"), rows, "t.cfg:10: x = way: unknown name `way`; define it in [constants]");
+    refuses(MOVES("way"), rows, "t.cfg:10: x = way: `way` is a [table]; write `way(t)`");
+}
+
+static void test_a_table_cannot_depend_on_a_table(void)
+{
+#define BY(column) \
+    CASE "[motion move]\n[table way]\ncolumn = " column "\nfile = test_tables.tmp\n[constants]\n"
+    refuses(BY("way(0)"), rows,
+            "t.cfg:11: column = way(0): a value of a [table] cannot depend on the table `way`");
+    refuses(BY("n") "n = way(0)\n", rows,
+            "t.cfg:11: column = n: a value of a [table] cannot depend on the table `way`, needed "
+            "for `n`");
+    refuses(BY("n") "n = 2*h\nh = way(1)\n", rows,
+            "t.cfg:11: column = n: a value of a [table] cannot depend on the table `way`, needed "
+            "for `h`");
 }
 
 int main(void)
@@ -198,5 +212,6 @@ int main(void)
     RUN_TEST(test_the_effective_case_finds_the_file);
     RUN_TEST(test_bad_tables_are_refused);
     RUN_TEST(test_bad_names_are_refused);
+    RUN_TEST(test_a_table_cannot_depend_on_a_table);
     return UNITY_END();
 }
