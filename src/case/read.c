@@ -89,11 +89,11 @@ static const char *instead_of(enum section_id id, const char *key)
         const char *keys, *instead;
     } gone[] = {
         {SECTION_top, " gravity_file ",
-         "; write gravity = NAME(t), OTHER(t) with a [table] of the file for each of the two"},
-        {SECTION_motion,
-         " kind velocity poly_x poly_y amplitude period phase angle angle_amplitude file ",
-         "; write x, y or turn as an expression in t, such as y = 1.5 m/s*t, or y = NAME(t) with a "
-         "[table NAME] of a file"},
+         "; write gravity = NAME(t), OTHER(t) - 9.81 m/s^2 with a [table] for each component"},
+        {SECTION_motion, " angle angle_amplitude ",
+         "; write turn, the angle about `centre`, such as turn = 2 rad/s*t"},
+        {SECTION_motion, " kind velocity poly_x poly_y amplitude period phase file ",
+         "; write displacements x, y, such as y = 1.5 m/s*t, or y = NAME(t) with a [table]"},
     };
     char word[SCENE_NAME + 2];
     snprintf(word, sizeof word, " %s ", key);

@@ -46,15 +46,24 @@ static void warn_of_sliding(struct check *check)
 static void warn_of_motion_of_nothing(struct check *check, const struct scene_motion *motion)
 {
     const struct scene *const scene = check->scene;
-    for (const struct param *key = param_table; key < param_table + PARAM_COUNT; key++)
+    bool named = false, moves = false;
+    for (const struct param *key = param_table; key < param_table + PARAM_COUNT; key++) {
+        const bool own = key->section == SECTION_motion && param_expr(key, motion, 0);
+        moves |= own && !expr_is_number(param_expr(key, motion, 0));
         for (int k = 0; key->kind == SECTION_motion && k < section_count(scene, key->section);
              k++) {
             const char *const section = section_at(scene, key->section, k);
-            if (strcmp(section + key->offset, motion->common.name) == 0) return;
+            named |= strcmp(section + key->offset, motion->common.name) == 0;
         }
-    warn_section(check, &motion->common,
-                 "moves nothing: name it by `motion` of a [wall] or [beam], by `clamp_motion` of a "
-                 "[solid] or by `hinge_motion` of a [rigid]");
+    }
+    if (!named)
+        warn_section(check, &motion->common,
+                     "moves nothing: name it by `motion` of a [wall] or [beam], by `clamp_motion` "
+                     "of a [solid] or by `hinge_motion` of a [rigid]");
+    else if (!moves)
+        warn_section(check, &motion->common,
+                     "moves nothing, unless a program sets it: x, y and turn are displacements as "
+                     "expressions in t, for example y = 1.5 m/s*t");
 }
 
 /* A table that ends in motion, while the run goes on: the wall stops at once. */
@@ -63,8 +72,12 @@ static void warn_of_motion_table(struct check *check, int k, const char *key)
     const struct scene *const scene = check->scene;
     const struct scene_motion *const motion = &scene->motion[k];
     const struct expr *const e = param_expr(param_find(SECTION_motion, key), motion, 0);
-    const double end = motion->start + (e ? expr_table_end(e) : (double)INFINITY);
+    const double last = e ? expr_table_end(e) : (double)INFINITY, end = motion->start + last;
     if (end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
+    /* A change of speed that the acceleration explains is no stop: a cubic ends at rest. */
+    const double dt = 1e-6 * fabs(last), after = expr_jet_at(e, last).d1;
+    const struct expr_jet before = expr_jet_at(e, last - dt);
+    if (fabs(after - before.d1) <= 2 * fabs(before.d2) * dt) return;
     warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, key),
             "[motion %s] %s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and "
             "its last two rows differ: the motion stops there within a step; continue the table, "
@@ -125,7 +138,7 @@ void warn_of_values(struct check *check)
     const struct scene *const scene = check->scene;
     for (int k = 0; k < scene->n_fluid; k++) warn_of_fluid_keys(check, &scene->fluid[k]);
     warn_of_sliding(check);
-    for (int k = 0; k < scene->n_motion; k++) {
+    for (int k = 0; k < scene->n_motion - scene->n_rigid; k++) {
         warn_of_motion_of_nothing(check, &scene->motion[k]);
         warn_of_motion_table(check, k, "x");
         warn_of_motion_table(check, k, "y");

@@ -171,7 +171,7 @@ static const struct {
      "finite at all times up to end_time"},
     {TOP "gravity_file = none.csv\n" SOLID, NULL,
      "bad.cfg:3: unknown key `gravity_file` at the top of the file; write gravity = NAME(t), "
-     "OTHER(t) with a [table] of the file for each of the two"},
+     "OTHER(t) - 9.81 m/s^2 with a [table] for each component"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
@@ -285,8 +285,11 @@ static const struct {
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
      "bad.cfg:7: motion = lift: there is no [motion] of that name"},
     {TOP FLUID "[motion lift]\npoly_y = 0, 1\n", NULL,
-     "bad.cfg:7: unknown key `poly_y` in [motion]; write x, y or turn as an expression in t, such "
-     "as y = 1.5 m/s*t, or y = NAME(t) with a [table NAME] of a file"},
+     "bad.cfg:7: unknown key `poly_y` in [motion]; write displacements x, y, such as y = 1.5 "
+     "m/s*t, or y = NAME(t) with a [table]"},
+    {TOP FLUID "[motion lift]\nangle = 0, 2\n", NULL,
+     "bad.cfg:7: unknown key `angle` in [motion]; write turn, the angle about `centre`, such as "
+     "turn = 2 rad/s*t"},
     {TOP FLUID "[table lift]\nfile = none/such.txt\n", NULL,
      "bad.cfg:7: [table lift] file: none/such.txt: cannot be read: No such file or directory"},
     {TOP FLUID "[motion lift]\nstart = 2\nstop = 1\n", NULL,

@@ -207,8 +207,8 @@ static void test_bad_expressions(void)
             "motion.cfg:9: [motion move] sqrt(t^2): displacement, velocity or acceleration is not "
             "finite 0 s after `start`; change the expression");
     refuses("velocity = 1, 0\nx = t\n",
-            "motion.cfg:10: unknown key `velocity` in [motion]; write x, y or turn as an "
-            "expression in t, such as y = 1.5 m/s*t, or y = NAME(t) with a [table NAME] of a file");
+            "motion.cfg:10: unknown key `velocity` in [motion]; write displacements x, y, such as "
+            "y = 1.5 m/s*t, or y = NAME(t) with a [table]");
 }
 
 /* A body is nowhere moved without a velocity; what is steep, quick or has a kink is not a jump. */
@@ -285,6 +285,28 @@ static void test_a_table_that_ends_in_motion_is_warned_of(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
     read_warned(moved, "0, 0\n1, 1e-3\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);
+    read_warned(HEAD "x = way(t)\n[table way]\nbetween = cubic\nfile = test_motion.tmp\n",
+                "0, 0\n0.2, 1e-4\n0.5, 1e-3\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read_warned(HEAD "x = t^3 + way(t)\n[table way]\nfile = test_motion.tmp\n",
+                "0, 0\n0.5, 1e-3\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "its table ends at t = 0.5 s"), warnings);
+}
+
+static void test_a_motion_at_rest_is_warned_of(void)
+{
+    static const char *const rest[] = {"", "y = 2\n", "x = 2*3 mm\nturn = 1\n"};
+    for (size_t k = 0; k < COUNT_OF(rest); k++) {
+        char text[512];
+        snprintf(text, sizeof text, "%s%s", HEAD, rest[k]);
+        read_warned(text, "");
+        TEST_ASSERT_EQUAL_STRING(
+            "motion.cfg:9: [motion move] moves nothing, unless a program sets it: x, y and turn "
+            "are displacements as expressions in t, for example y = 1.5 m/s*t",
+            warnings);
+    }
+    read_warned(HEAD "x = 0.1\nturn = t\n", "");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
 static void test_no_motion_is_rest(void)
@@ -308,6 +330,7 @@ int main(void)
     RUN_TEST(test_bad_expressions);
     RUN_TEST(test_jumps_and_poles);
     RUN_TEST(test_a_table_that_ends_in_motion_is_warned_of);
+    RUN_TEST(test_a_motion_at_rest_is_warned_of);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
 }
