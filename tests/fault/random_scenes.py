@@ -115,14 +115,14 @@ def solid_rows(s, shape, clamp=None):
 def motion(s, name, speed):
     """A motion that starts where the body is, no faster than `speed`."""
     d = s.dice
-    kind = d.choice(["velocity", "polynomial", "table", "sine", "rotation", "expression"])
+    course = d.choice(["line", "parabola", "table", "sine", "turn", "kink"])
     rows = []
     v = [s.number(-speed, speed), s.number(-speed, speed)]
-    if kind == "velocity":
+    if course == "line":
         rows += [("x", f"{v[0]}*t"), ("y", f"{v[1]}*t")]
-    elif kind == "polynomial":
+    elif course == "parabola":
         rows += [("x", f"t*({v[0]} + t)"), ("y", f"{v[1]}*t")]
-    elif kind == "table":
+    elif course == "table":
         times = [k * s.end / 4 for k in range(6)]
         lines = "".join(f"{t:.6g}, {v[0] * t * t / times[-1]:.6g}, {v[1] * t * t / times[-1]:.6g}\n"
                         for t in times)
@@ -131,12 +131,12 @@ def motion(s, name, speed):
             s.add("table", f"{name}_{key}", [("file", f"{name}.csv"), ("column", column),
                                              ("between", d.choice(["line", "cubic"]))])
             rows += [(key, f"{name}_{key}(t)")]
-    elif kind == "sine":
+    elif course == "sine":
         period = s.number(2, 8) * s.end
         a = speed * period / (2 * math.pi)
         wave = f"sin(2*pi*t/{period} + {d.choice([0, -1.5707963])})"
         rows += [("x", f"{a * d.choice([-1, 0, 1]):.4g}*{wave}"), ("y", f"{a:.4g}*{wave}")]
-    elif kind == "rotation":
+    elif course == "turn":
         rows += [("centre", f"{s.number(0, 0.2)}, {s.number(0, 0.1)}"),
                  ("turn", f"{s.number(-1, 1) * speed / 0.3:.4g}*t")]
     else:
@@ -144,7 +144,7 @@ def motion(s, name, speed):
                  ("turn", f"{speed}*sin(t)")]
     if s.chance(0.3):
         rows += [("start", s.number(0.1, 0.5) * s.end)]
-    s.features.add(f"motion by {kind}")
+    s.features.add(f"motion by a {course}")
     s.add("motion", name, rows)
 
 
