@@ -25,7 +25,7 @@ static const char scene[] = "title = Wall on a spring\n"
                             "[wall piston]\n"
                             "shape = box 0.2, 0, 0.22, 0.2\n"
                             "motion = spring\n"
-                            "[motion spring]\n" /* replaced by spring_motion */
+                            "[motion spring]\nx = 0*t\n" /* replaced by spring_motion */
                             "[domain]\n"
                             "lower = -0.03, -0.03\n"
                             "upper = 0.41, 0.4\n"
