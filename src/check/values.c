@@ -74,10 +74,6 @@ static void warn_of_motion_table(struct check *check, int k, const char *key)
     const struct expr *const e = param_expr(param_find(SECTION_motion, key), motion, 0);
     const double last = e ? expr_table_end(e) : (double)INFINITY, end = motion->start + last;
     if (end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    /* A change of speed that the acceleration explains is no stop: a cubic ends at rest. */
-    const double dt = 1e-6 * fabs(last), after = expr_jet_at(e, last).d1;
-    const struct expr_jet before = expr_jet_at(e, last - dt);
-    if (fabs(after - before.d1) <= 2 * fabs(before.d2) * dt) return;
     warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, key),
             "[motion %s] %s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and "
             "its last two rows differ: the motion stops there within a step; continue the table, "

@@ -187,8 +187,9 @@ double coupling_drag_step(const struct coupling *coupling)
     for (int k = 0; k < coupling->solid->n_bodies; k++) {
         if (scene->solid[k].slip != SLIP_NONE) continue;
         const double finer = scene->top.dp / scene_solid_dp(scene, k);
-        rate = max2(rate, 8.6 * finer * fluid->model->laminar_viscosity * scene->rho0 /
-                              (square(fluid->h) * coupling->solid->body[k].density));
+        const double denser = coupling->solid->body[k].density / scene->rho0;
+        rate = max2(rate, 8.6 * finer * fluid->model->laminar_viscosity /
+                              (denser * fluid->second_moment * square(fluid->h)));
     }
     return rate > 0 ? 0.9 / (2 * (1 + extrapolated_halves(coupling)) * rate) : (double)INFINITY;
 }

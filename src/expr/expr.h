@@ -106,7 +106,7 @@ enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, st
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
 
 /* The last row of the table of t alone in it that ends first and whose value still changes there;
- * infinite: there is none. */
+ * infinite: there is none. A cubic ends at rest. */
 double expr_table_end(const struct expr *e);
 
 /* Whether it is a constant number. */

@@ -141,7 +141,7 @@ double expr_table_end(const struct expr *e)
         const struct expr_table *const table = e->op[k].table;
         if (e->op[k].code != OP_TABLE || e->op[k - 1].code != OP_X) continue;
         const int last = table->n - 1;
-        if (table->y[last] != table->y[last - 1]) end = min2(end, table->x[last]);
+        if (!table->slope && table->y[last] != table->y[last - 1]) end = min2(end, table->x[last]);
     }
     return end;
 }

@@ -42,7 +42,8 @@ static double bound_value(const struct simulation *sim, enum bound k,
         return square(f->h / f->dp) * f->h / (8.1 * sqrt(f->model->wall_repulsion) * f->c_u);
     case BOUND_viscous: { /* L-6b gives pairs with a surface twice the weight */
         const double weight = sim->effects & FX_NO_SLIP && sim->effects & FX_ONE_SIDED ? 2 : 1;
-        const double inside = 0.125 * square(f->h) / (weight * f->model->laminar_viscosity);
+        const double inside = 0.125 * square(f->h) * f->second_moment /
+                              (weight * f->model->laminar_viscosity);
         return sim->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&sim->coupling))
                                           : inside;
     }
