@@ -94,6 +94,7 @@ struct beam_spring {
     const struct scene_spring *given;
     int node;
     double length;    /* without force, m */
+    double longer;    /* elongation where the last step has found the force, m */
     double stiffness; /* that the longest step takes into account, at least, N/m^2 */
 };
 

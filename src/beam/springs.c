@@ -70,7 +70,7 @@ double beams_stiffer_step(const struct beams *beams)
 }
 
 /* T-108 */
-static void add_spring(struct beams *beams, const struct beam_spring *s, double dt)
+static void add_spring(struct beams *beams, struct beam_spring *s, double dt)
 {
     struct beam_step *const step = &beams->step[s->node];
     const double after[2] = {step->x[0] + step->d[0], step->x[1] + step->d[1]};
@@ -81,6 +81,7 @@ static void add_spring(struct beams *beams, const struct beam_spring *s, double 
     const double taut = l0 == l1 ? e1 != 0 || !s->given->slack : (e1 - e0) / (l1 - l0),
                  stiff = 0.5 * taut * spring_slope(s->given, e1), damp = s->given->damping / dt,
                  tension = spring_mean(s->given, e0, e1, taut) + damp * (l1 - l0);
+    s->longer = e1;
     if (s->given->slack && (taut == 0 || tension <= 0)) return;
     for (int c = 0; c < 2; c++) {
         along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);

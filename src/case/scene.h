@@ -299,6 +299,8 @@ struct body_energy {
 double spring_force(const struct scene_spring *spring, double e);
 double spring_slope(const struct scene_spring *spring, double e);
 double spring_mean(const struct scene_spring *spring, double from, double to, double taut);
+/* Whether force and slope are finite numbers. */
+bool spring_is_finite(const struct scene_spring *spring, double e);
 /* Adds its elastic energy. That of a force law is a potential: its zero and sign are arbitrary, as
  * those of weight are. */
 void spring_add_energy(const struct scene_spring *spring, double e, struct body_energy *sum);

@@ -31,16 +31,23 @@ double spring_mean(const struct scene_spring *spring, double from, double to, do
     return taut * (from == to ? expr_at(law, to, 0) : expr_integral(law, from, to) / (to - from));
 }
 
-/* Finite with its slope at elongations up to its length, and no push of a line that only pulls. */
+bool spring_is_finite(const struct scene_spring *spring, double e)
+{
+    return isfinite(spring_force(spring, e)) && isfinite(spring_slope(spring, e));
+}
+
+/* Finite at elongations up to its length and that of the start, and no push of a line that only
+ * pulls. */
 static enum err check_force(struct reader *r, const struct scene_spring *spring)
 {
     enum { PARTS = 1000 };
     const double start =
         elementary_hypot(spring->to[0] - spring->from[0], spring->to[1] - spring->from[1]);
-    const double length = spring->length > 0 ? spring->length : start;
+    const double length = spring->length >= 0 ? spring->length : start;
+    const double most = max2(length, start - length);
     for (int k = -PARTS; k <= PARTS; k++) {
-        const double e = length * k / PARTS, force = spring_force(spring, e);
-        if (!isfinite(force) || !isfinite(spring_slope(spring, e)))
+        const double e = (k < 0 ? length : most) * k / PARTS, force = spring_force(spring, e);
+        if (!spring_is_finite(spring, e))
             return bad_key(r, "force", NULL,
                            "force = %.200s is not finite, or its slope is not, at e = %g m; "
                            "change the expression",

@@ -318,8 +318,9 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
 void rigid_add_springs(struct rigid *rigid)
 {
     for (int k = 0; k < rigid->n_springs; k++) {
-        const struct rigid_spring *const spring = &rigid->spring[k];
+        struct rigid_spring *const spring = &rigid->spring[k];
         const struct spring_now now = spring_now(rigid, spring);
+        spring->longer = now.longer;
         if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
         row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
@@ -367,13 +368,14 @@ static double end_yields(const struct rigid *rigid, const struct rigid_spring *s
     return 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
 }
 
-/* The larger slope of a spring's force now and after such a step. */
+/* The larger slope of a spring's force now and after such a step, if it is finite there: the guards
+ * judge where the spring comes to. */
 static double stiffness_in(const struct rigid *rigid, const struct rigid_spring *spring, double dt)
 {
     if (!spring->given->force.e[0]) return spring->given->stiffness;
     const struct spring_now now = spring_now(rigid, spring);
-    return max2(max2(spring_slope(spring->given, now.longer), 0),
-                spring_slope(spring->given, now.longer + dt * now.rate));
+    const double slope = spring_slope(spring->given, now.longer + dt * now.rate);
+    return max2(max2(spring_slope(spring->given, now.longer), 0), isfinite(slope) ? slope : 0);
 }
 
 double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)

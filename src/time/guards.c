@@ -374,6 +374,27 @@ static void check_beams_in_solids(struct simulation *sim, struct diag *d)
               solid->x[i], solid->y[i]);
 }
 
+/* Beyond the elongations that the case was checked for. */
+static enum err check_springs(struct simulation *sim, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    for (int k = 0; k < scene->n_spring; k++) {
+        const struct scene_spring *const s = &scene->spring[k];
+        const bool of_beam = scene_find(scene, SECTION_beam, s->body) >= 0;
+        const double e = of_beam ? sim->beams.spring[k].longer : sim->rigid.spring[k].longer;
+        if (!isfinite(e) || spring_is_finite(s, e)) continue;
+        sim->guard.case_at_fault = true;
+        return diag_fail(d, ERR_GUARD,
+                         "%s: %s: [spring %s] has a force of %g N/m with a slope of %g N/m^2 at e "
+                         "= %.6g m; both must be finite, so change `force`: min(e, E) in place "
+                         "of e keeps the force of E above E",
+                         scene_place(scene, scene_line(scene, SECTION_spring, k, "force")).text,
+                         time_text(sim).text, s->common.name, spring_force(s, e),
+                         spring_slope(s, e), e);
+    }
+    return ERR_OK;
+}
+
 static enum err check_newton(const struct simulation *sim, struct diag *d)
 {
     const struct implicit *const by = sim->solid.implicit;
@@ -390,6 +411,7 @@ static enum err check_newton(const struct simulation *sim, struct diag *d)
 
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
+    TRY(check_springs(sim, d));
     TRY(check_newton(sim, d));
     if (sim->effects & FX_BEAM) warn_of_crowded(sim, d);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);

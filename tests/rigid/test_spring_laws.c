@@ -212,6 +212,34 @@ static void test_a_narrow_feature_of_a_table(void)
     }
 }
 
+/* An elongation that the check of the case has not reached: bodies in whole and half steps, and
+ * Newton's method of a beam. */
+static void test_a_force_that_is_not_finite_stops_the_run(void)
+{
+    static const struct {
+        const char *text, *law, *set;
+        int line;
+    } each[] = {{BODY "velocity = 1, 0\n" SPRING, "e*log(1.1 - e)", "integrator=leapfrog", 16},
+                {BODY "velocity = 1, 0\n" SPRING, "e*sqrt(1.1 - e)", NULL, 16},
+                {BAR "velocity = 1, 0\n" SPRING, "e*sqrt(1.1 - e)", NULL, 13}};
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        char text[1000], at[100];
+        snprintf(text, sizeof text, "%sforce = %s\n", each[k].text, each[k].law);
+        rig_open(&rig, text, each[k].set, NULL);
+        enum err e = ERR_OK;
+        for (int n = 0; n < 200000 && !e; n++) e = simulation_step(&rig.sim, 1e6, &rig.diag);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_GUARD, e, each[k].law);
+        snprintf(at, sizeof at, "rig.cfg:%d: t = ", each[k].line);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, at), rig.diag.text);
+        const char *const found = strstr(rig.diag.text, " m; both must be finite");
+        TEST_ASSERT_NOT_NULL_MESSAGE(found, rig.diag.text);
+        double longer = 0;
+        TEST_ASSERT_EQUAL_INT(1, sscanf(strstr(rig.diag.text, "e = "), "e = %lf", &longer));
+        assert_near(2e-3, 1.1, longer, "elongation");
+        rig_close(&rig);
+    }
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(BODY SPRING, "needs `stiffness`, `force` or `damping`");
@@ -219,6 +247,8 @@ static void test_bad_input_is_refused(void)
     rig_refuses(BODY SPRING "force = 3*x\n", "`x` is known only in keys");
     rig_refuses(BODY SPRING "force = 1/(e - 0.5)\n",
                 "force = 1/(e - 0.5) is not finite, or its slope is not, at e = 0.5 m");
+    rig_refuses(BODY SPRING "length = 0.05\nforce = sqrt(0.9 - e)\n",
+                "force = sqrt(0.9 - e) is not finite, or its slope is not, at e = 0.9");
     rig_refuses(BODY SPRING "slack = on\nforce = e*(0.5 - e)\n",
                 "at e = 0.501 m, but slack = on lets the spring only pull");
     rig_refuses(BODY SPRING "force = e, e\n", "one expression is expected");
@@ -235,6 +265,7 @@ int main(void)
     RUN_TEST(test_a_slack_line);
     RUN_TEST(test_a_constant_force);
     RUN_TEST(test_a_narrow_feature_of_a_table);
+    RUN_TEST(test_a_force_that_is_not_finite_stops_the_run);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
