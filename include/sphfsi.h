@@ -254,7 +254,8 @@ SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *option
  */
 SPHFSI_API enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options);
 
-/** Writes the case in effect, every default spelled out, to a file ("/dev/stdout" is one). */
+/** Writes the case in effect, every default spelled out, to a file ("/dev/stdout" is one). Names of
+ * files in it are relative to that file; in one of /dev they are absolute. */
 SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
                                                const char *path);
 

@@ -124,9 +124,12 @@ class Case:
         return Call(case_path=self.path, case_text=self.text, sets=_sets(self.changes), **options)
 
     def effective(self, *, until: float = 0.0) -> str:
-        """The case in effect, every default spelled out in SI units."""
-        with tempfile.TemporaryDirectory() as folder:
-            return self.write_effective(Path(folder) / "case.cfg", until=until)
+        """The case in effect, every default spelled out in SI units, with absolute names of
+        files."""
+        call = self._call(until=until)
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as out:
+            call.finish(lib.sphfsi_effective(call.options, os.fsencode(f"/dev/fd/{out.fileno()}")))
+            return out.read()
 
     def write_effective(self, path: str | os.PathLike, *, until: float = 0.0) -> str:
         """Writes the case in effect to a file; names of files in it are relative to that file."""

@@ -22,10 +22,13 @@ static bool is_one_of(const char *text, const char *const *words, const char *en
     return false;
 }
 
-/* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. */
+/* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. Of a
+ * file its contents, which are in a comment, and not its path: a run may be moved. */
 static bool matters_to_restart(const struct line *line)
 {
     static const char *const datasets[] = {"snapshot_fields", "snapshot_precision", NULL};
+    static const char *const of_files[] = {"[table", "[reference", NULL};
+    if (is_one_of(line->section, of_files, " ") && is_word(line->text, "file", " ")) return false;
     if (!line->section[0]) return !is_word(line->text, "end_time", " ");
     return !is_word(line->section, "[output", "] ") || is_one_of(line->text, datasets, " ");
 }
@@ -39,7 +42,8 @@ static bool matters_to_fork(const struct line *line)
         "shape",     "minus",        "clamp",         "density",         "sound_speed",
         "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge",
         NULL};
-    static const char *const free_sections[] = {"[output", "[probe", "[reference", "[motion", NULL};
+    static const char *const free_sections[] = {"[output", "[probe",  "[reference",
+                                                "[motion", "[table", NULL};
     if (is_one_of(line->section, free_sections, "] ")) return false;
     return line->text[0] == '[' || is_one_of(line->text, kept, " ");
 }
@@ -54,7 +58,8 @@ static void next_line(struct line *line, bool fork)
         line->next += line->length + (line->text[line->length] == '\n');
         if (line->text[0] == '[')
             snprintf(line->section, sizeof line->section, "%.*s", line->length, line->text);
-        matters = line->length > 0 && line->text[0] != '#' &&
+        matters = line->length > 0 &&
+                  (line->text[0] != '#' || is_word(line->section, "[table", " ")) &&
                   (fork ? matters_to_fork(line) : matters_to_restart(line));
     } while (!matters && *line->next);
     if (!matters) line->length = 0;

@@ -39,7 +39,7 @@ const char *csv_field(const char *line, int k, size_t *length)
 enum err csv_open(struct csv *c, const char *file)
 {
     TRY(text_read(file, c->path, "a table", &c->text, c->diag));
-    c->at = c->text;
+    c->at = c->text + (strncmp(c->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0); /* a byte-order mark */
     c->line = 0;
     c->lines = !*c->text;
     c->begun = false;

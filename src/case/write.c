@@ -4,6 +4,7 @@
 #include "base/csv.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdlib.h>
 
@@ -71,22 +72,23 @@ static bool real_directory(const char *path, char folder[PATH_MAX])
     return true;
 }
 
-/* A file given relative to the case, as a path relative to the folder of the effective case. */
+/* A file given relative to the case, as a path relative to the folder of the effective case; for
+ * the standard output, which has none, an absolute one. */
 static void relocate(const struct scene *scene, const char *name, const char *path,
-                     char text[SCENE_TEXT])
+                     char moved[2 * PATH_MAX])
 {
-    char file[PATH_MAX], there[PATH_MAX], here[PATH_MAX], moved[2 * PATH_MAX] = "";
+    char file[PATH_MAX], there[PATH_MAX], here[PATH_MAX];
     const char *const slash = strrchr(name, '/');
     size_t common = 0, n = 0;
     if (!*name || name[0] == '/' || !scene_file(scene, name, file, sizeof file) ||
         !real_directory(file, there) || !real_directory(path, here))
         return;
+    if (strncmp(path, "/dev/", 5) == 0) *here = '\0';
     for (size_t k = 0; here[k] && here[k] == there[k]; k++)
         if (here[k] == '/') common = k + 1;
     for (const char *c = here + common; (c = strchr(c, '/')) != NULL && n < PATH_MAX; c++)
-        n += (size_t)snprintf(moved + n, sizeof moved - n, "../");
-    snprintf(moved + n, sizeof moved - n, "%s%s", there + common, slash ? slash + 1 : name);
-    if (strlen(moved) < SCENE_TEXT) snprintf(text, SCENE_TEXT, "%.255s", moved);
+        n += (size_t)snprintf(moved + n, 2 * PATH_MAX - n, "../");
+    snprintf(moved + n, 2 * PATH_MAX - n, "%s%s", there + common, slash ? slash + 1 : name);
 }
 
 static void write_param(FILE *out, const struct scene *scene, const struct param *param,
@@ -96,7 +98,7 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     const double *const number = value;
     const struct shape_list *const shapes = value;
     const struct hinge_list *const hinges = value;
-    char text[SCENE_TEXT];
+    char text[2 * PATH_MAX];
     const bool may_be_absent =
         param->type > PARAM_VECTOR || isnan(param->number.value) || isnan(param->vector_default[0]);
     if (may_be_absent && param_is_default(param, section)) return;
@@ -135,11 +137,21 @@ static void write_param(FILE *out, const struct scene *scene, const struct param
     fprintf(out, "\n");
 }
 
+/* By which a restart sees that the file has changed. */
+static void write_contents(FILE *out, const struct expr_table *table)
+{
+    const size_t bytes = (size_t)table->n * sizeof *table->x;
+    const uint64_t x = hash_bytes(HASH_START, table->x, bytes);
+    fprintf(out, "# file of %d rows, checksum %" PRIx64 "\n", table->n,
+            hash_bytes(x, table->y, bytes));
+}
+
 static void write_section(FILE *out, const struct scene *scene, enum section_id id, int index,
                           const char *path)
 {
     const void *const section = section_at(scene, id, index);
     if (id != SECTION_top) fprintf(out, "\n%s\n", section_title(section).text);
+    if (id == SECTION_table) write_contents(out, &scene->function[index]);
     for (int k = 0; k < PARAM_COUNT; k++)
         if (param_table[k].section == id && strcmp(param_table[k].key, "like") != 0)
             write_param(out, scene, &param_table[k], section, path);

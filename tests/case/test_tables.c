@@ -127,6 +127,16 @@ static void test_the_effective_case_finds_the_file(void)
     TEST_ASSERT_EQUAL_DOUBLE(motion_at(&scene, 0, 0.17).d[0], motion_at(&again, 0, 0.17).d[0]);
 }
 
+/* As a spreadsheet writes a file, with a byte-order mark, semicolons and CRLF. */
+static void test_a_file_of_a_spreadsheet(void)
+{
+    must_read(MOVES("way(t)"), "\xEF\xBB\xBFt;d\r\n0.1;0.01\r\n0.2;0.04\r\n");
+    expect(0.15, 0.015, 0.3, 0);
+    scene_free(&scene);
+    must_read(MOVES("way(t)"), "\xEF\xBB\xBF" "0.1\t0.01\r\n0.2\t0.04\r\n");
+    expect(0.15, 0.015, 0.3, 0);
+}
+
 static void refuses(const char *text, const char *numbers, const char *message)
 {
     diag = (struct diag){0};
@@ -210,6 +220,7 @@ int main(void)
     RUN_TEST(test_a_cubic_is_smooth_and_does_not_overshoot);
     RUN_TEST(test_columns);
     RUN_TEST(test_the_effective_case_finds_the_file);
+    RUN_TEST(test_a_file_of_a_spreadsheet);
     RUN_TEST(test_bad_tables_are_refused);
     RUN_TEST(test_bad_names_are_refused);
     RUN_TEST(test_a_table_cannot_depend_on_a_table);

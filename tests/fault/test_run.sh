@@ -66,6 +66,29 @@ cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused restart change
 expect 0 'restart from' "$case" --out "$run" --restart --until 0.03
 [ "$(wc -l <"$run/probes.csv")" = 302 ] || fail "a longer run has $(wc -l <"$run/probes.csv") rows"
 
+# --- files of a case: their contents belong to it, their paths do not ---
+mkdir "$dir/files" "$dir/elsewhere"
+push() { printf 't,g\n0,-9\n0.02,%s\n' "$1" >"$dir/files/push.csv"; }
+case=$dir/files/case.cfg
+sed 's/^gravity = .*/gravity = 0, push(t)/' tests/fault/tiny.cfg >"$case"
+printf '[table push]\nfile = push.csv\n' >>"$case"
+push -10
+completes "$case" --out "$dir/files/run" --until 0.01
+push -11
+expect 1 "the case has changed.*\[table push\] '# file of 2 rows, checksum .*' is now '# file" \
+    "$case" --out "$dir/files/run" --restart
+completes "$case" --out "$dir/files/fork" --fork "$dir/files/run"
+push -10.0
+mv "$dir/files/run" "$dir/elsewhere/run"
+completes "$case" --out "$dir/elsewhere/run" --restart
+completes "$dir/elsewhere/run/case.cfg" --out "$dir/files/again"
+"$sphfsi" "$case" --effective >"$dir/elsewhere/copy.cfg"
+completes "$dir/elsewhere/copy.cfg" --out "$dir/files/copy"
+for other in again copy; do
+    [ "$(hash "$dir/elsewhere/run")" = "$(hash "$dir/files/$other")" ] || fail "table: $other"
+done
+case=tests/fault/tiny.cfg
+
 # --- folders that cannot be used ---
 : >"$dir/file"
 expect 1 "$dir/file" "$case" --out "$dir/file/run"

@@ -95,6 +95,12 @@ def test_values():
         assert line in text, (line, text)
     again = case.with_changes(gate={"poisson": 0.3}).effective()
     assert "young = 2000000 Pa" in again and "poisson = 0.3" in again
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "push.csv").write_text("0, -9\n1, -10\n", encoding="utf-8-sig")
+        here = Path(folder, "case.cfg")
+        here.write_text(DROP + "[table push]\nfile = push.csv\n", encoding="utf-8-sig")
+        text = sphfsi.Case(here, gravity="0, push(t)").effective()
+        assert sphfsi.Case(text=text).explain()
     assert set(sphfsi.templates()) >= {"tank", "gate"}
     assert "end_time" in sphfsi.new("tank")
     raises(sphfsi.InputError, "there is no template 'tanc'", sphfsi.new, "tanc")
