@@ -400,9 +400,10 @@ static void test_what_may_help_is_said(void)
     advises(scene,
             "; a smaller dp or numerics.fixed_step = 5e-05 or a larger gap in [contact] may help",
             "gate.young=1e8", fixed);
-    /* 0.125 h^2/nu with h = 1.35 cm: half of it, as no key but fixed_step shortens it. */
+    /* 0.125 M h^2/nu with h = 1.35 cm, M = 0.983: half of it, as no key but fixed_step shortens
+     * it. */
     advises(water,
-            "; a smaller dp or numerics.fixed_step = 2.28e-05 or numerics.suction = on may help",
+            "; a smaller dp or numerics.fixed_step = 2.24e-05 or numerics.suction = on may help",
             "water.laminar_viscosity=0.5", NULL);
 }
 
