@@ -46,11 +46,10 @@ MORE_PROBES = """
 quantity = force
 body = tank
 interval = 0.13 ms
-[probe mean]
+[probe inside]
 quantity = pressure
 point = 0.05, 0.02
 interval = 0.9 ms
-average = 0.31 ms
 """
 WATCHED = (["output.probe_interval=0.37 ms"], ["output.ledger_interval=7 us"],
            ["output.snapshot_interval=0.7 ms"], ["output.checkpoint_interval=0.11 ms"],
