@@ -443,6 +443,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     find_energies(sim, of);
     if (sim->effects & FX_SOLID) add_late_work(sim, &of[energy_entry(KIND_SOLID, 0)]);
     join_neighbours(sim);
+    memset(account->now, 0, sizeof account->now);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         const int region = region_of(account, k);
         if (region < 0) continue;
@@ -457,6 +458,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
         of[k].tolerance +=
             e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
         add_energies(&sum[region], &of[k]);
+        for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += term[t];
     }
     for (int k = 0; k < ENERGY_ENTRIES; k++)
         if (region_of(account, k) == k) find_gain_of_region(account, k, &sum[k], driven, &worst);

@@ -68,6 +68,7 @@ struct energy_account {
     struct energy_entry entry[ENERGY_ENTRIES];
     double most[ENERGY_TERMS]; /* that a region has gained by each term, J/m */
     double largest_available;  /* energy of any region, J/m */
+    double now[ENERGY_TERMS];  /* sums over all sections at the last test, J/m; for tests */
     double pending;            /* time that the last evaluation still counts for, s */
     double open;               /* energy through open boundaries as far as it is counted, J/m */
     double tested_at, tested_steps; /* time and steps at the last test */
