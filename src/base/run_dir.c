@@ -21,17 +21,6 @@ static bool is_result(const char *name)
     return length >= ending && strcmp(name + length - ending, checkpoint) == 0;
 }
 
-/* Finds the name of a result in the folder. */
-static bool find_result(DIR *dir, char name[256])
-{
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;)
-        if (is_result(entry->d_name)) {
-            snprintf(name, 256, "%s", entry->d_name);
-            return true;
-        }
-    return false;
-}
-
 enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
 {
     enum { LONGEST = PATH_BYTES - 301 }; /* names of files follow */
@@ -47,10 +36,11 @@ enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
     if (!dir)
         return diag_fail(d, ERR_INPUT, "%s: cannot be used as the folder of a run: %s", path,
                          strerror(errno));
-    char name[256];
-    const bool found = find_result(dir, name);
+    char name[256] = "";
+    for (const struct dirent *entry; !*name && (entry = readdir(dir)) != NULL;)
+        if (is_result(entry->d_name)) snprintf(name, sizeof name, "%s", entry->d_name);
     closedir(dir);
-    if (found && use == RUN_DIR_FRESH)
+    if (*name && use == RUN_DIR_FRESH)
         return diag_fail(
             d, ERR_INPUT,
             "%s: contains the results of a run (%s), which are not overwritten; continue it with "

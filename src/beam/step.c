@@ -300,21 +300,6 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 
 /* --- the longest period --- */
 
-/* Motions that bend nothing. */
-static int64_t count_free(const struct beams *beams)
-{
-    int64_t n = 0;
-    for (int k = 0; k < beams->n; k++) {
-        int hinges = 0, clamps = 0;
-        for (int j = beams->beam[k].first_node; j < beams->beam[k].end_node; j++) {
-            hinges += beams->node[j].row[0] < 0;
-            clamps += beams->node[j].row[2] < 0;
-        }
-        n += clamps || hinges > 1 ? 0 : hinges ? 1 : 3;
-    }
-    return n;
-}
-
 /* Frequencies below omega, of beams as they are at the start (Sylvester), with springs or without.
  */
 static int64_t count_below(struct beams *beams, double omega2, bool springs)
@@ -332,19 +317,12 @@ static int64_t count_below(struct beams *beams, double omega2, bool springs)
     return envelope_factor(&beams->matrix);
 }
 
-static bool is_above_lowest(struct beams *beams, double omega2, const int64_t free[2])
-{
-    return count_below(beams, omega2, false) > free[0] &&
-           (beams->n_springs == 0 || count_below(beams, omega2, true) > free[1]);
-}
-
 /* As of solids, a hundredth of the longest period (T-93): that which bends beams without springs,
  * or that of beams with springs if this is shorter. Soft springs add long periods, in which beams
  * move as a whole. Stiff ones shorten those that bend. */
 double beams_longest_step(struct beams *beams)
 {
     enum { PARTS = 100 };
-    bool joined = false;
     const double *const g = beams->scene->top.gravity;
     double high = 0, length = 0;
     find_start(beams);
@@ -355,12 +333,13 @@ double beams_longest_step(struct beams *beams)
         length += e->length;
     }
     double low = ROUNDING * high;
-    for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined[0] >= 0;
-    const int64_t free[] = {joined ? count_below(beams, low, false) : count_free(beams),
-                            count_below(beams, low, true)};
+    const int64_t free[] = {count_below(beams, low, false), count_below(beams, low, true)};
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
-        *(is_above_lowest(beams, middle, free) ? &high : &low) = middle;
+        const bool above =
+            count_below(beams, middle, false) > free[0] &&
+            (beams->n_springs == 0 || count_below(beams, middle, true) > free[1]);
+        *(above ? &high : &low) = middle;
     }
     for (int k = 0; k < beams->n_springs; k++) beams_set_stiffness(beams, k, high);
     const double swing = max2(elementary_hypot(g[0], g[1]) / length, 1e-300);

@@ -147,14 +147,6 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double along[2])
         for (int c = 0; c < 6; c++) beams->added[element][r][c] += by * normal[r] * normal[c];
 }
 
-/* T-35c: the share of a step in a mean over the time in which sound crosses h, less the age of the
- * acceleration. */
-static double mean_weight(const struct beams *beams, double dt)
-{
-    const double time = beams->scene->h / beams->scene->c0;
-    return dt / (dt + max2(0.25 * time, time - (1 + beams->ahead) * dt));
-}
-
 /* T-36a: the force in the middle of the step, with all that the fluid gets for `kick`. */
 static void extrapolate(struct beams *beams, const struct beam_times *times)
 {
@@ -206,7 +198,9 @@ void beams_return_impulse(struct beams *beams, const struct beam_times *times)
 {
     const double dt = times->dt, before = beams->state[0].exchange, after = max2(dt, before - dt),
                  left = 1 - times->kick / before;
-    const double weight = mean_weight(beams, dt);
+    /* T-35c: the mean is over the time in which sound crosses h, less the acceleration's age. */
+    const double time = beams->scene->h / beams->scene->c0,
+                 weight = dt / (dt + max2(0.25 * time, time - (1 + beams->ahead) * dt));
     for (int k = 0; k < beams->n_nodes; k++) {
         struct beam_state *const now = &beams->state[k];
         struct beam_step *const s = &beams->step[k];

@@ -209,15 +209,6 @@ SPHFSI_INLINE void pack_sliding(const struct fluid *fluid, const struct dummies 
     }
 }
 
-/* What the effects of a surface need. */
-SPHFSI_INLINE void dummies_surface(const struct fluid *fluid, const struct particles *particles,
-                                   const struct dummies *d, const struct neighbours *neighbours,
-                                   const struct cell_sides *sides)
-{
-    pack_surface_fields(fluid, particles, d, sides);
-    if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, d, neighbours, sides);
-}
-
 /* A cluster of a cell. */
 SPHFSI_INLINE struct dummies dummies_at(const struct fluid *fluid, const struct cells *cells,
                                         enum kind kind, int32_t cell, int32_t m)
@@ -294,8 +285,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (fluid->effects & SURFACE_EFFECTS)
-            dummies_surface(fluid, particles, &d, &neighbours, &sides);
+        if (fluid->effects & SURFACE_EFFECTS) pack_surface_fields(fluid, particles, &d, &sides);
+        if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
         if (thin) pack_sliding(fluid, &d, &neighbours, &sides);
         if (neighbours.n > 0) {
             dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);

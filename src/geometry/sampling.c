@@ -13,11 +13,6 @@ static const double max_cells = 1e9; /* of the boxes around shapes, or away from
 
 /* --- regions --- */
 
-static double piece_area(const struct outline *o)
-{
-    return o->n ? fabs(polygon_area(o->n, o->pt)) : PI * square(o->radius);
-}
-
 /* Refuses scenes that do not fit into memory before allocating anything of that size. */
 static enum err check_size(struct sampler *sampler)
 {
@@ -27,8 +22,9 @@ static enum err check_size(struct sampler *sampler)
         const struct region *const region = &sampler->regions[k];
         const double own = region->lattice.dp, *const origin = region->lattice.origin,
                      *const low = region->box.low, *const high = region->box.high;
-        for (int j = 0; j < region->add.n; j++)
-            particles += piece_area(&region->add.item[j]) / square(own);
+        for (const struct outline *o = region->add.item; o < region->add.item + region->add.n; o++)
+            particles +=
+                (o->n ? fabs(polygon_area(o->n, o->pt)) : PI * square(o->radius)) / square(own);
         cells += ((high[0] - low[0]) / own + 3) * ((high[1] - low[1]) / own + 3);
         for (int c = 0; c < 2; c++)
             cells = max2(cells, max2(fabs(low[c] - origin[c]), fabs(high[c] - origin[c])) / own);

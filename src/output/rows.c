@@ -32,14 +32,6 @@ void due_pass(struct due *u, double time)
 
 /* --- states --- */
 
-static void read_state(const struct row_files *r, struct rows *f, struct simulation *sim)
-{
-    if (f->file < 0)
-        *(struct ledger *)(void *)f->now = simulation_ledger(sim);
-    else
-        probes_sample(r->probes, sim, f->file, f->now, f->now_rate);
-}
-
 /* T-76a: a column between both states, by the cubic of Hermite where its rate is known, else by a
  * straight line. */
 static double between(const struct rows *f, int c, double time)
@@ -87,7 +79,10 @@ static enum err follow_file(const struct row_files *r, struct rows *f, struct si
         memcpy(f->before, f->now, bytes);
         memcpy(f->before_rate, f->now_rate, bytes);
     }
-    read_state(r, f, sim);
+    if (f->file < 0)
+        *(struct ledger *)(void *)f->now = simulation_ledger(sim);
+    else
+        probes_sample(r->probes, sim, f->file, f->now, f->now_rate);
     return write_rows(r, f, d);
 }
 

@@ -190,12 +190,7 @@ double rigid_hinge_gap(const struct rigid *rigid, int *worst)
             for (int c = 0; c < 2; c++)
                 place[side][c] += rigid->body[k].centre[c] + rigid->state[k].x[c];
         }
-        if (h->drive >= 0) {
-            const struct motion_state wall = motion_at(rigid->scene, h->wall_motion, rigid->end),
-                                      drive = motion_at(rigid->scene, h->drive, rigid->end);
-            off = angle_of(rigid, h, wall.angle) - drive.angle +
-                  motion_at(rigid->scene, h->drive, 0).angle;
-        }
+        if (h->drive >= 0) off = angle_of(rigid, h, 0) - h->end_angle;
         const double gap =
             max2(fabs(off) * sqrt(body->mass[2] / body->mass[0]),
                  elementary_hypot(place[0][0] - place[1][0], place[0][1] - place[1][1]));

@@ -121,16 +121,6 @@ static double part_of(const struct rigid *rigid, int k, double kick)
     return rigid->mean_time > 0 ? kick / rigid->state[k].exchange : 0;
 }
 
-/* The published motion goes on as without contact. */
-static void publish_free(const struct rigid *rigid, int k, double kick)
-{
-    const double *const change = rigid->eq[k].change;
-    struct motion_state *const now = &rigid->scene->rigid_motion[k].now;
-    now->a[0] = change[0] / kick;
-    now->a[1] = change[1] / kick;
-    now->angular_acceleration = change[2] / kick;
-}
-
 static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
                          double kick)
 {
@@ -238,11 +228,14 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
     for (int k = 0; k < rigid->n; k++) {
         struct rigid_body *const body = &rigid->body[k];
+        struct motion_state *const published = &rigid->scene->rigid_motion[k].now;
         memset(body->pushed, 0, sizeof body->pushed);
         memset(body->moved, 0, sizeof body->moved);
         prepare_body(rigid, k, gravity, now, dt, kick);
         rigid_solve(rigid, k, rigid->end, kick);
-        publish_free(rigid, k, kick);
+        /* The published motion goes on as without contact. */
+        for (int c = 0; c < 2; c++) published->a[c] = rigid->eq[k].change[c] / kick;
+        published->angular_acceleration = rigid->eq[k].change[2] / kick;
     }
 }
 

@@ -444,20 +444,12 @@ static void set_initial_distances(struct contact *contact)
     contact->stale = 1;
 }
 
-static bool meets_walls(const struct scene *scene)
-{
-    for (int a = 0; a < scene->n_solid; a++)
-        for (int b = 0; b < scene->n_wall; b++)
-            if (scene_contact_of(scene, a, scene->n_solid + b)) return true;
-    return false;
-}
-
 /* Bonded solids form one group; so do walls that move together or are at rest. */
 static enum err bodies_create(struct contact *contact, struct arena *a, struct diag *d)
 {
     const struct scene *const scene = contact->scene;
     contact->n_solids = scene->n_solid;
-    contact->n_walls = meets_walls(scene) ? scene->n_wall : 0;
+    contact->n_walls = effects_of_scene(scene) & FX_CONTACT_WALL ? scene->n_wall : 0;
     contact->n_bodies = contact->n_solids + contact->n_walls;
     const size_t n = (size_t)contact->n_bodies;
     TRY(arena_array(a, &contact->law, n * n, "contact", d));

@@ -350,15 +350,6 @@ static enum err check_hinges(struct simulation *sim, struct diag *d)
         time_text(sim).text, sim->scene->rigid[k].common.name, gap);
 }
 
-static void warn_of_crowded(struct simulation *sim, struct diag *d)
-{
-    if (!sim->beams.crowded) return;
-    warn_once(sim, &sim->guard.warned_beams, d,
-              "beams touch at more than %d places, and at further ones they pass through; use a "
-              "larger `element`",
-              BEAM_TOUCHES);
-}
-
 /* A beam and a solid do not see each other. */
 static void check_beams_in_solids(struct simulation *sim, struct diag *d)
 {
@@ -413,7 +404,11 @@ enum err guards_check(struct simulation *sim, struct diag *d)
 {
     TRY(check_springs(sim, d));
     TRY(check_newton(sim, d));
-    if (sim->effects & FX_BEAM) warn_of_crowded(sim, d);
+    if (sim->beams.crowded)
+        warn_once(sim, &sim->guard.warned_beams, d,
+                  "beams touch at more than %d places, and at further ones they pass through; use "
+                  "a larger `element`",
+                  BEAM_TOUCHES);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
     if (sim->effects & FX_RIGID) TRY(check_hinges(sim, d));
