@@ -31,6 +31,8 @@ struct thin_line {
     } * piece; /* its parts between its extensions, which may have no length */
     double length;
     struct box2 box;
+    double extend[2];  /* how far it continues into a wall beyond its ends, m */
+    bool tip[2];       /* whether it ends there: fluid may flow round it */
     bool bends;        /* of a beam */
     double carried[4]; /* velocity and acceleration of the beam's carrier (T-111a) */
 };

@@ -125,15 +125,14 @@ static void place_pieces(struct thin_line *line)
         memcpy(line->piece[k + 1].to, line->end[2 * k + 1].x, sizeof line->piece->to);
     }
     const struct line_end *const start = &line->end[0], *const last = &line->end[2 * parts - 1];
-    const double *const extend = line->scene->extend;
     struct line_piece *const before = &line->piece[0], *const after = &line->piece[parts + 1];
     for (int c = 0; c < 2; c++) {
         const double along[2] = {c ? -start->normal[0] : start->normal[1],
                                  c ? -last->normal[0] : last->normal[1]};
-        before->from[c] = start->x[c] - extend[0] * along[0];
+        before->from[c] = start->x[c] - line->extend[0] * along[0];
         before->to[c] = start->x[c];
         after->from[c] = last->x[c];
-        after->to[c] = last->x[c] + extend[1] * along[1];
+        after->to[c] = last->x[c] + line->extend[1] * along[1];
     }
     line->n_pieces = parts + 2;
     line->length = 0;
@@ -181,6 +180,8 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
         line->scene = &scene->line[k];
         const int parts = parts_of(line);
         line->first = line->scene->first;
+        memcpy(line->extend, line->scene->extend, sizeof line->extend);
+        memcpy(line->tip, line->scene->tip, sizeof line->tip);
         for (int64_t j = 0; j < line->scene->n_dummies; j++)
             lines->of_wall[line->first + j] = k + 1;
         TRY(arena_array(a, &line->end, 2 * (size_t)parts, what, d));
@@ -200,8 +201,8 @@ static double passes_piece(const struct thin_line *line, const struct line_piece
 {
     const double a = way[0] * from[1] - way[1] * from[0], b = way[0] * to[1] - way[1] * to[0];
     const double along = piece->start + piece->length * a / (a - b);
-    const double first = line->scene->tip[0] ? along : reach,
-                 last = line->scene->tip[1] ? line->length - along : reach;
+    const double first = line->tip[0] ? along : reach,
+                 last = line->tip[1] ? line->length - along : reach;
     return max2(0, 1 - min2(first, last) / reach);
 }
 

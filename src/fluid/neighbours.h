@@ -125,7 +125,7 @@ static int near_pieces(const struct fluid *fluid, const struct cells *cells, int
                                          .length = (real)(line->piece[j].length * inv_h)};
                 for (int last = 0; last < 2; last++)
                     p->tip[last] =
-                        line->scene->tip[last]
+                        line->tip[last]
                             ? (real)(fabs(line->piece[j].start - last * line->length) * inv_h)
                             : (real)FAR;
             }
