@@ -261,7 +261,7 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
             (kind == KIND_WALL ? simulation_wall_forces : simulation_refresh)(sim);
         const void *const data = field_array(particles, f); /* integrators exchange arrays */
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
-            solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+            solid_write_stress(&sim->solid, &sim->kind[KIND_SOLID]);
         if (kind == KIND_FLUID && data == particles->p)
             fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
         const enum sphfsi_type type = strcmp(f->type, "double") == 0 ? SPHFSI_DOUBLE

@@ -241,9 +241,9 @@ enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options)
 /* --- publications: src/app/data/citations.txt --- */
 
 /* Conditions on a scene that are no effects. */
-static bool meets_condition(const struct scene *scene, effect_set fx, const char *word)
+static bool meets_condition(const struct scene *scene, effect_set effects, const char *word)
 {
-    const int shifted = fx & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
+    const int shifted = effects & FX_SHIFTING ? scene->fluid[0].shifting_speed : -1;
     bool hyperelastic = false, probed = false;
     for (int k = 0; k < scene->n_solid; k++) hyperelastic |= scene->solid[k].law != LAW_PAPER;
     for (int k = 0; k < scene->n_probe; k++)
@@ -265,7 +265,7 @@ static bool meets_condition(const struct scene *scene, effect_set fx, const char
     for (size_t k = 0; k < COUNT_OF(condition); k++)
         met |= condition[k].met && strcmp(condition[k].word, word) == 0;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        met |= fx & EFFECT_BIT(k) && strcmp(effect_table[k].name, word) == 0;
+        met |= effects & EFFECT_BIT(k) && strcmp(effect_table[k].name, word) == 0;
     return met;
 }
 
@@ -273,7 +273,7 @@ static enum err cite(struct session *session, const struct sphfsi_options *o, st
 {
     (void)d;
     const struct scene *const scene = &session->scene;
-    const effect_set fx = effects_of_scene(scene);
+    const effect_set effects = effects_of_scene(scene);
     const char *line = embedded_text("src/app/data/citations.txt");
     for (; *line; line = csv_next_line(line)) {
         const int end = (int)strcspn(line, "\n"), head = (int)strcspn(line, ":\n");
@@ -281,7 +281,7 @@ static enum err cite(struct session *session, const struct sphfsi_options *o, st
         bool used = false;
         snprintf(words, sizeof words, "%.*s", head, line);
         for (int k = 0; *line != '#' && scene_word(words, k, word); k++)
-            used |= meets_condition(scene, fx, word);
+            used |= meets_condition(scene, effects, word);
         if (used) session_say(o, "%.*s", end - head - 2, line + head + 2);
     }
     if (scene->top.source[0]) session_say(o, "The scene: %s", scene->top.source);

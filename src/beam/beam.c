@@ -2,7 +2,7 @@
  * From [beam] sections to nodes and elements, and what output asks of them. */
 #include "beam/beam.h"
 #include "base/segment.h"
-#include "geometry/outline.h"
+#include "geometry/sampling.h"
 
 static const char what[] = "beams";
 
@@ -195,8 +195,8 @@ static enum err find_load(struct beams *beams, int section, struct arena *temp, 
     TRY(outlines_of(&o, scene, &from->shape, temp, d));
     for (int k = beams->beam[beam].first_node; k < beams->beam[beam].end_node; k++) {
         /* An edge counts as in the sampling of bodies. */
-        const double x = beams->node[k].X[0] + 1e-6 * scene->top.dp,
-                     y = beams->node[k].X[1] + 0.618e-6 * scene->top.dp;
+        const double x = beams->node[k].X[0] + NUDGE_X * scene->top.dp,
+                     y = beams->node[k].X[1] + NUDGE_Y * scene->top.dp;
         if (outlines_find(&o, x, y) < 0) continue;
         beams->load[beams->n_loads++] =
             (struct beam_load){.section = section, .node = k, .length = beams->node[k].length};

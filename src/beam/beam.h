@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Beams: lines of nodes with two displacements and a rotation each, which two-node elements join
- * (T-103). README.md tells the order of a step. */
+ * (T-103). beams_advance below tells the order of a step. */
 #pragma once
 
 #include "implicit/envelope.h"
@@ -64,7 +64,7 @@ struct beam_node {
     int line;       /* of its clamp or hinge in the case */
 };
 
-/* In a step: see beam_advance. */
+/* In a step: see beams_advance. */
 struct beam_step {
     double x[3], v[3], w[3];      /* at the start */
     double load[3];               /* from outside, N/m and N */

@@ -101,11 +101,11 @@ static const effect_set effect_bits[EFFECT_COUNT] = {
 
 effect_set effects_of_scene(const struct scene *scene)
 {
-    effect_set fx = 0;
+    effect_set effects = 0;
     struct effect_caller by;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_called(scene, (enum effect)k, &by)) fx |= effect_bits[k];
-    return fx;
+        if (effect_called(scene, (enum effect)k, &by)) effects |= effect_bits[k];
+    return effects;
 }
 
 /* "[wall bed] slip", or "integrator". */

@@ -56,9 +56,9 @@ enum {
  * does not compile unless the column `pairs` has x. So PAIR_EFFECTS masks no law. That no bit is
  * without a law is tested in tests/agree/test_kernels.c. */
 struct pair_set {
-    effect_set fx;
+    effect_set bits;
 };
-#define PAIR_HAS(set, name) (((set).fx & PAIR_##name) != 0)
+#define PAIR_HAS(set, name) (((set).bits & PAIR_##name) != 0)
 
 /* Open boundaries of either kind. */
 #define FX_OPEN (FX_INFLOW | FX_OUTFLOW)

@@ -136,7 +136,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     const double middle = 0.5 * (coupling->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->ahead * dt;
     if (particles->mean_fx) extrapolate_force(coupling, dt, kick, last);
-        /* The state at the start gives the mean velocity and acceleration of the step. */
+    /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x0[i] = particles->ux[i];
@@ -155,7 +155,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
 /* --- bounds of the time step --- */
 
 /* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).
- * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */
+ * Measured; results are as good from 1.5 to 2.75 (docs/theory/substeps.md, Sec. 7.4). */
 #define ADDED_MASS 2
 
 /* T-35d: the fluid's density over that of a body, which has less mass where it is thinner than the

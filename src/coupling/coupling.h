@@ -11,7 +11,7 @@ typedef void force_sweep(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, bool all);
 extern force_sweep find_force_mixed, find_force_double;
 
-/* All but `substeps` and `impedance` are set by its owner. */
+/* All but `substeps`, `impedance` and `lead` are set by its owner. */
 struct coupling {
     const struct scene *scene;
     const struct fluid *fluid;

@@ -32,7 +32,7 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
             const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
-            const vreal weight = fx_laminar(&q, k);
+            const vreal weight = law_laminar(&q, k);
             sum_x[part] = vfma(weight, q.u, sum_x[part]);
             sum_y[part] = vfma(weight, q.v, sum_y[part]);
         }
@@ -57,14 +57,14 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
             const real *const b = candidates(neighbours, code, part);
             struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
             q.p = lane(b, PACKED_P);
-            vreal stress = fx_pressure(s, &q);
+            vreal stress = law_pressure(s, &q);
             if (effects & FX_ONE_SIDED)
-                stress =
-                    stress + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+                stress = stress + law_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x,
+                                                lift_y, k);
             if (effects & FX_REPULSION)
-                stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+                stress = stress + law_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
             if (effects & FX_WALL_DAMPING)
-                stress = stress + fx_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.vx, k);
+                stress = stress + law_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.v_xi, k);
             const vreal g = q.slope * stress;
             sum_x[part] = vfma(g, q.x, sum_x[part]);
             sum_y[part] = vfma(g, q.y, sum_y[part]);
@@ -83,7 +83,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
                                     const int32_t *index, int count, const real *own,
                                     const struct neighbours *neighbours,
                                     const struct cell_sides *sides,
-                                    const struct vector_constants *k, effect_set fx)
+                                    const struct vector_constants *k, effect_set effects)
 {
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
            wet_y[CLUSTER] = {0}, drag_x[CLUSTER] = {0}, drag_y[CLUSTER] = {0};
@@ -94,9 +94,9 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         s.p = vspread(own + PACKED_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
-        fluid_force(fluid, neighbours, &s, own, volume, k, fx,
+        fluid_force(fluid, neighbours, &s, own, volume, k, effects,
                     (double *[]){&force_x[r], &force_y[r]}, (double *[]){&wet_x[r], &wet_y[r]});
-        if (!(fx & FX_NO_SLIP)) continue;
+        if (!(effects & FX_NO_SLIP)) continue;
         s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
         s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
         for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
@@ -107,7 +107,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         particles->fy[index[r]] = force_y[r] + drag_y[r];
         particles->drag_x[index[r]] = drag_x[r];
         particles->drag_y[index[r]] = drag_y[r];
-        if (!(fx & FX_IMPEDANCE)) continue;
+        if (!(effects & FX_IMPEDANCE)) continue;
         particles->wet_x[index[r]] = wet_x[r];
         particles->wet_y[index[r]] = wet_y[r];
     }
@@ -115,7 +115,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
 
 SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *particles,
                                  enum kind kind, const struct cells *cells, int32_t cell, bool all,
-                                 const struct vector_constants *k, effect_set fx, bool thin)
+                                 const struct vector_constants *k, effect_set effects, bool thin)
 {
     const struct cell_list *const list = &cells->kind[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
@@ -132,7 +132,7 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
             gather_clusters(scratch, fluid, KIND_FLUID, kind, cluster);
         force_on_cluster(fluid, particles, index, count,
                          cluster_packed(&fluid->packed[kind], (size_t)cluster), &neighbours, &sides,
-                         k, fx);
+                         k, effects);
     }
 }
 
@@ -147,20 +147,20 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
                        const struct cells *cells, bool all)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
-    const effect_set fx =
+    const effect_set effects =
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
-    if (fx & FX_THIN)
+    if (effects & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
         for (int32_t m = 0; m < n; m++)
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx, true);
-    else if (fx & (effect_set)SURFACE_EFFECTS)
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, true);
+    else if (effects & (effect_set)SURFACE_EFFECTS)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
         for (int32_t m = 0; m < n; m++)
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx, false);
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, false);
     else /* pressure alone */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
         for (int32_t m = 0; m < n; m++)
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, fx & FX_IMPEDANCE,
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects & FX_IMPEDANCE,
                           false);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Walls and structures in the fluid's sweeps: pressures, mirrored velocities and forces from the
+ * Walls and structures in the fluid's sweeps: pressures and mirrored velocities from the
  * fluid around them. Included by fluid/sweep.h, once for each precision. */
 
 /* Sums over the fluid within reach of wall or solid particles: of the kernel, and times it of the
@@ -134,7 +134,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
-/* What fx_one_sided and fx_repulsion need of the dummies. */
+/* What law_one_sided and law_repulsion need of the dummies. */
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
                                        const struct dummies *d, const struct cell_sides *sides)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The fluid's model and its sweeps: one evaluation of all rates of fluid, walls and coupling. */
+ * The fluid's model and its sweeps: one evaluation of all rates of fluid and walls. */
 #pragma once
 
 #include "particles/clusters.h"
@@ -75,7 +75,7 @@ double lines_seen(const struct lines *lines, const struct cells *cells, double r
                   const double from[2], const double way[2], int32_t own);
 
 #define ETA2 0.01 /* (eta/h)^2 */
-/* r0 of fx_repulsion over the mean spacing of fluid and dummy. It is 1 for a thin line, so that no
+/* r0 of law_repulsion over the mean spacing of fluid and dummy. It is 1 for a thin line, so that no
  * particle passes between two dummies to the other side. */
 #define REPULSION_REACH 0.8
 
@@ -141,7 +141,7 @@ enum packed_field {
     PACKED_LIFT_X = PACKED_NO_SLIP_FIELDS,
     PACKED_LIFT_Y,
     PACKED_ONE_SIDED_FIELDS,
-    /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
+    /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of law_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
     /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0;
@@ -244,7 +244,7 @@ struct fluid {
     effect_set effects;
     bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
-    double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of fx_repulsion */
+    double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
     bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
     const struct fluid_sweeps *sweeps;   /* of the precision */
     const struct fluid_variant *variant; /* for the effects */
@@ -330,7 +330,7 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
 void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
                             const struct cells *cells, double of[SCENE_MAX_SECTIONS]);
 
-/* The fluid's own pressures to p, which no step needs. */
+/* The fluid's own pressures to its particles; no step needs them. */
 void fluid_show(const struct fluid *fluid, struct particles *particles);
 
 /* --- wall_motion.c: walls that move: sorted if they have moved, skipped while they rest --- */

@@ -159,8 +159,8 @@ struct receiver {
     vreal slope_x, slope_y; /* -h/2 times the gradient of dens, if it is used */
     vreal specific;         /* of PACKED_SPECIFIC, with artificial viscosity */
     vreal line;             /* of a dummy: the line that has to lie between, or 0 */
-    int n_pieces;           /* of thin lines near its cell; NULL: there are none at all */
-    const struct near_piece *piece;
+    int n_pieces;           /* of thin lines near its cell */
+    const struct near_piece *piece; /* NULL: the scene has no thin lines */
 };
 
 /* Pairs of each a with the candidates b, one in each lane of a group. */
@@ -168,7 +168,7 @@ struct pair {
     vreal x, y;    /* xi_ab */
     vreal r2;      /* |xi_ab|^2 */
     vreal u, v;    /* v_ab, m/s */
-    vreal vx;      /* v_ab . xi_ab, m/s */
+    vreal v_xi;    /* v_ab . xi_ab, m/s */
     vreal slope;   /* V_b/h^2 t^3; in the sums of the fluid times V_a/h^2 */
     vreal p, dens; /* of b */
     vreal slope_x, slope_y;
@@ -289,7 +289,7 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, con
     if (a->piece) q.slope = q.slope * seen;
     q.u = a->u - lane(b, PACKED_U);
     q.v = a->v - lane(b, PACKED_V);
-    q.vx = vfma(q.v, q.y, q.u * q.x);
+    q.v_xi = vfma(q.v, q.y, q.u * q.x);
     /* cppcheck-suppress uninitvar ; p and dens are loaded by the laws that need them */
     return q;
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * One inline function for each law between two particles of the fluid, over a pack of pairs. The
  * text is compiled once for float and once for double lanes: the including file defines `real`,
- * `vreal`, the verbs and lane(). Lengths are in units of h, so that
- *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
- * and every sum below is to be multiplied by -PAIR_SLOPE/h and, since a pair has the volumes of
- * both, divided by that of the particle it is for. The clamp of t removes pairs beyond the
- * support without a mask. Only commutative sums and odd differences are used, so that exchanging
- * a and b flips the sign of a force and nothing else. */
+ * `vreal`, the verbs and lane(). Lengths are in units of h: with xi = x/h and t = max(0, 2 - |xi|)
+ *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab.
+ * So every sum is to be multiplied by -PAIR_SLOPE/h. It has the volumes of both particles, so it is
+ * divided by that of its own. The clamp of t removes pairs beyond the support without a mask. Only
+ * commutative sums and odd differences are used: exchanging a and b flips the sign of a force and
+ * nothing else. */
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
@@ -28,9 +28,9 @@ struct exchange {
 /* Constants of the sweep, in all SIMD lanes. */
 struct vector_constants {
     vreal laminar;        /* 2 nu rho0/(M h) of L-1, kg/(m^2 s) */
-    vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
-    vreal repulsion;      /* beta rho0 c_u^2 of fx_repulsion, Pa */
-    vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
+    vreal tensile, close; /* epsilon, 1/W(dp) in the units of law_tensile */
+    vreal repulsion;      /* beta rho0 c_u^2 of law_repulsion, Pa */
+    vreal wall_damping;   /* zeta rho0 c0 of law_wall_damping, Pa s/m */
     vreal lowest;         /* pressure of walls and structures, Pa */
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
     vreal diffusion;      /* delta c0/STRAIN_DIFFUSION, m/s */
@@ -64,10 +64,10 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
 }
 
 /* Eq. 4a: factor of v.xi in the sum of V_b v_ab . grad W. */
-SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope; }
+SPHFSI_INLINE vreal law_continuity(const struct pair *q) { return q->slope; }
 
 /* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the slope of the pair. */
-SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
+SPHFSI_INLINE vreal law_pressure(const struct receiver *a, const struct pair *q)
 {
     return a->p + q->p;
 }
@@ -82,14 +82,14 @@ SPHFSI_INLINE vreal pair_damping(const struct pair *q, vreal both, const struct 
 
 /* Eq. 7: rho_a rho_b Pi_ab, Pa, added to the pair's stress; acts on approaching pairs only. With
  * rho_a rho_b/(rho_a + rho_b) = rho0/(rho0/rho_a + rho0/rho_b). */
-SPHFSI_INLINE vreal fx_viscosity(const struct pair *q, vreal damping, vreal stress)
+SPHFSI_INLINE vreal law_viscosity(const struct pair *q, vreal damping, vreal stress)
 {
-    return vfma(vmin(q->vx, vset(0)), damping, stress);
+    return vfma(vmin(q->v_xi, vset(0)), damping, stress);
 }
 
 /* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|)
  * (W_ab/W(dp))^4, Pa. */
-SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
+SPHFSI_INLINE vreal law_tensile(const struct receiver *a, const struct pair *q,
                                const struct vector_constants *k)
 {
     const vreal r = vsqrt(q->r2);
@@ -101,16 +101,16 @@ SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
 
 /* T-110c: fluid slides along a thin line. In its rate a dummy has the velocity of the fluid in the
  * direction t of the line; t = 0: a dummy that is no part of it. */
-SPHFSI_INLINE void fx_sliding(struct pair *q, vreal tx, vreal ty)
+SPHFSI_INLINE void law_sliding(struct pair *q, vreal tx, vreal ty)
 {
-    q->vx = q->vx - vfma(q->v, ty, q->u * tx) * vfma(q->y, ty, q->x * tx);
+    q->v_xi = q->v_xi - vfma(q->v, ty, q->u * tx) * vfma(q->y, ty, q->x * tx);
 }
 
 /* As in Zhang, Rezavand and Hu 2021 a fluid particle interacts with its own pressure p in a wall or
  * structure, plus the part of gravity and acceleration in between: Eq. 19 with this particle as the
  * only fluid. (x, y) is its position relative to the dummy in units of h, `lift` rho0 h (g - a) of
  * the dummy. */
-SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
+SPHFSI_INLINE vreal law_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
                                  const struct vector_constants *k)
 {
     return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
@@ -118,19 +118,19 @@ SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal li
 
 /* L-6a: beside its own pressure a fluid particle meets its mirror image, with the velocity
  * 2 v_s - v_a. The work of both parts of the pressure then goes into compression. */
-SPHFSI_INLINE vreal fx_one_sided_rate(const struct pair *q) { return vset(2) * fx_continuity(q); }
+SPHFSI_INLINE vreal law_one_sided_rate(const struct pair *q) { return vset(2) * law_continuity(q); }
 
 /* Used in place of the boundary force of Monaghan 1994, between fluid and dummies nearer than r0: a
  * pressure beta rho0 c_u^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2,
  * inv = h^2/(r^2 + eta^2). */
-SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_constants *k)
+SPHFSI_INLINE vreal law_repulsion(vreal near, vreal inv, const struct vector_constants *k)
 {
     return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
 /* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the
  * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
-SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
+SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal vx,
                                     const struct vector_constants *k)
 {
     const vreal speed = -(vmin(vx, vset(0)) * vsqrt(inv));
@@ -141,46 +141,46 @@ SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
  * everywhere:
  *   rho_a dv_a/dt = sum of V_b 2 nu rho0/M x_ab . grad W/|x|^2 v_ab.
  * The factor of -v_ab. This kernel's gradient needs no division by |x|^2. */
-SPHFSI_INLINE vreal fx_laminar(const struct pair *q, const struct vector_constants *k)
+SPHFSI_INLINE vreal law_laminar(const struct pair *q, const struct vector_constants *k)
 {
     return k->laminar * q->slope;
 }
 
 /* Eq. 28b: the pair's rate of approach or separation. */
-SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }
+SPHFSI_INLINE vreal law_approach(const struct pair *q, vreal inv) { return vabs(q->v_xi * inv); }
 
 /* L-5b: the diffusivity over h and STRAIN_DIFFUSION. It is delta c0, but at most (C_delta l)^2/h
  * times the rate of strain of the pair along its line (Meringolo et al. 2019). */
-SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
+SPHFSI_INLINE vreal law_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
-    return vmin(fx_approach(q, inv), k->diffusion);
+    return vmin(law_approach(q, inv), k->diffusion);
 }
 
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). The
  * difference that diffuses: with FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) without its
  * hydrostatic part, g . x_ba/c0^2; with ANTUONO (Antuono et al. 2010, Eq. 3) without its linear
  * part, by the mean of both particles' gradients. */
-SPHFSI_INLINE vreal fx_diffused(const struct receiver *a, const struct pair *q,
-                                const struct vector_constants *k, struct pair_set fx)
+SPHFSI_INLINE vreal law_diffused(const struct receiver *a, const struct pair *q,
+                                const struct vector_constants *k, struct pair_set effects)
 {
     vreal step = a->dens - q->dens;
-    if (PAIR_HAS(fx, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
-    if (PAIR_HAS(fx, ANTUONO))
+    if (PAIR_HAS(effects, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    if (PAIR_HAS(effects, ANTUONO))
         step = vfma(a->slope_y + q->slope_y, q->y, vfma(a->slope_x + q->slope_x, q->x, step));
     return step;
 }
 
 /* Its factor. */
-SPHFSI_INLINE vreal fx_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
-                                 struct pair_set fx)
+SPHFSI_INLINE vreal law_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
+                                 struct pair_set effects)
 {
     const vreal mixing = q->slope * (q->r2 * inv);
-    return PAIR_HAS(fx, LIMITER) ? mixing * fx_limiter(q, inv, k) : mixing;
+    return PAIR_HAS(effects, LIMITER) ? mixing * law_limiter(q, inv, k) : mixing;
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
  * - sum of V_b x_ab . grad W. */
-SPHFSI_INLINE void fx_concentration(const struct pair *q, vreal sum[SUMS])
+SPHFSI_INLINE void law_concentration(const struct pair *q, vreal sum[SUMS])
 {
     sum[SUM_GRAD_C_X] = vfma(q->slope, q->x, sum[SUM_GRAD_C_X]);
     sum[SUM_GRAD_C_Y] = vfma(q->slope, q->y, sum[SUM_GRAD_C_Y]);

@@ -11,20 +11,20 @@ struct cluster_sums {
 
 /* Adds pairs to the sums of their receivers, or to those deferred for their candidates, which may
  * be `fluid` or dummies. */
-SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struct pair_set fx,
+SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struct pair_set effects,
                                 bool fluid)
 {
     const struct pair *const q = &e->pair;
     sum[SUM_X] = vfma(e->radial, q->x, sum[SUM_X]);
     sum[SUM_Y] = vfma(e->radial, q->y, sum[SUM_Y]);
-    sum[SUM_RATE] = vfma(e->rate, q->vx, sum[SUM_RATE]);
-    if (fluid ? PAIR_HAS(fx, LAMINAR) : PAIR_HAS(fx, NO_SLIP)) {
+    sum[SUM_RATE] = vfma(e->rate, q->v_xi, sum[SUM_RATE]);
+    if (fluid ? PAIR_HAS(effects, LAMINAR) : PAIR_HAS(effects, NO_SLIP)) {
         sum[SUM_X] = vfma(-e->drag, q->u, sum[SUM_X]);
         sum[SUM_Y] = vfma(-e->drag, q->v, sum[SUM_Y]);
     }
-    if (fluid && PAIR_HAS(fx, DIFFUSION))
+    if (fluid && PAIR_HAS(effects, DIFFUSION))
         sum[SUM_MIXING] = vfma(e->mixing, e->step, sum[SUM_MIXING]);
-    if (PAIR_HAS(fx, SHIFTING)) fx_concentration(q, sum);
+    if (PAIR_HAS(effects, SHIFTING)) law_concentration(q, sum);
 }
 
 /* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the
@@ -37,43 +37,44 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
     return q;
 }
 
-/* Contributions of pairs of receivers and candidates; fx is a constant in specialised sweeps. */
+/* Contributions of pairs of receivers and candidates; in specialised sweeps the effects are a
+ * constant. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, struct pair_set fx,
-                                            vreal *approach)
+                                            const struct vector_constants *k,
+                                            struct pair_set effects, vreal *approach)
 {
     struct exchange e = {.pair = pair_between(a, code, b, vset(0))};
     struct pair *const q = &e.pair;
-    e.rate = fx_continuity(q);
-    vreal stress = fx_pressure(a, q), inv;
-    if (PAIR_HAS(fx, VISCOSITY)) {
+    e.rate = law_continuity(q);
+    vreal stress = law_pressure(a, q), inv;
+    if (PAIR_HAS(effects, VISCOSITY)) {
         const vreal both = a->specific + lane(b, PACKED_SPECIFIC);
         const vreal damping = pair_damping(q, both, k);
         inv = damping * both;
-        stress = fx_viscosity(q, damping, stress);
+        stress = law_viscosity(q, damping, stress);
     } else {
         inv = vset(1) / (q->r2 + k->eta2);
     }
-    if (PAIR_HAS(fx, DIFFUSION)) {
+    if (PAIR_HAS(effects, DIFFUSION)) {
         q->dens = lane(b, PACKED_DENS);
-        if (PAIR_HAS(fx, ANTUONO)) {
+        if (PAIR_HAS(effects, ANTUONO)) {
             q->slope_x = lane(b, PACKED_SLOPE_X);
             q->slope_y = lane(b, PACKED_SLOPE_Y);
         }
-        e.step = fx_diffused(a, q, k, fx);
-        e.mixing = fx_diffusion(q, inv, k, fx);
+        e.step = law_diffused(a, q, k, effects);
+        e.mixing = law_diffusion(q, inv, k, effects);
     }
-    if (PAIR_HAS(fx, TENSILE)) stress = stress + fx_tensile(a, q, k);
+    if (PAIR_HAS(effects, TENSILE)) stress = stress + law_tensile(a, q, k);
     e.radial = q->slope * stress;
-    if (PAIR_HAS(fx, LAMINAR)) e.drag = fx_laminar(q, k);
-    *approach = vmax(*approach, fx_approach(q, inv));
+    if (PAIR_HAS(effects, LAMINAR)) e.drag = law_laminar(q, k);
+    *approach = vmax(*approach, law_approach(q, inv));
     return e;
 }
 
 /* Numbers deferred for a cluster; and the position of one of the sums, with the first at `at`. */
-SPHFSI_INLINE size_t deferred_stride(struct pair_set fx)
+SPHFSI_INLINE size_t deferred_stride(struct pair_set effects)
 {
-    return (size_t)pair_sums(fx.fx) * CLUSTER * CLUSTER;
+    return (size_t)pair_sums(effects.bits) * CLUSTER * CLUSTER;
 }
 #define DEFERRED(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
@@ -84,18 +85,18 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 }
 
 /* Adds pairs of fluid to the sums deferred for their candidates. */
-SPHFSI_INLINE void defer_exchange(real *at, const struct exchange *e, struct pair_set fx)
+SPHFSI_INLINE void defer_exchange(real *at, const struct exchange *e, struct pair_set effects)
 {
     vreal sum[SUMS];
-    for (int k = 0; k < pair_sums(fx.fx); k++) sum[k] = vload(DEFERRED(at, k));
-    add_exchange(sum, e, fx, true);
-    for (int k = 0; k < pair_sums(fx.fx); k++) vstore(DEFERRED(at, k), sum[k]);
+    for (int k = 0; k < pair_sums(effects.bits); k++) sum[k] = vload(DEFERRED(at, k));
+    add_exchange(sum, e, effects, true);
+    for (int k = 0; k < pair_sums(effects.bits); k++) vstore(DEFERRED(at, k), sum[k]);
 }
 
 /* Sums over neighbouring fluid. Candidates that are not ahead in the chunk add to the discard
  * slot. */
 SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                             const struct vector_constants *k, struct pair_set fx,
+                             const struct vector_constants *k, struct pair_set effects,
                              const struct chunk *chunk, struct cluster_sums *sums)
 {
     for (int m = 0; m < neighbours->n; m++)
@@ -104,11 +105,12 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
             const real *const b = candidates(neighbours, code, part);
             const size_t place =
                 deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
-            real *const at = chunk->deferred + place * deferred_stride(fx) + part * LANES;
+            real *const at = chunk->deferred + place * deferred_stride(effects) + part * LANES;
             for (int row = 0; row < ROWS; row++) {
-                const struct exchange e = pair_of_fluid(&a[row], code, b, k, fx, &sums->approach);
-                add_exchange(sums->of[row][part], &e, fx, true);
-                defer_exchange(at + row * GROUPS * CLUSTER, &e, fx);
+                const struct exchange e =
+                    pair_of_fluid(&a[row], code, b, k, effects, &sums->approach);
+                add_exchange(sums->of[row][part], &e, effects, true);
+                defer_exchange(at + row * GROUPS * CLUSTER, &e, effects);
             }
         }
 }
@@ -116,26 +118,26 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid
  * sticks. */
 SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, struct pair_set fx,
-                                            vreal *approach)
+                                            const struct vector_constants *k,
+                                            struct pair_set effects, vreal *approach)
 {
-    const vreal line = PAIR_HAS(fx, THIN) ? lane(b, PACKED_LINE) : vset(0);
+    const vreal line = PAIR_HAS(effects, THIN) ? lane(b, PACKED_LINE) : vset(0);
     struct exchange e = {.pair = pair_between(a, code, b, line)};
     struct pair *const q = &e.pair;
-    e.rate = PAIR_HAS(fx, ONE_SIDED) ? fx_one_sided_rate(q) : fx_continuity(q);
+    e.rate = PAIR_HAS(effects, ONE_SIDED) ? law_one_sided_rate(q) : law_continuity(q);
     const vreal inv = vset(1) / (q->r2 + k->eta2);
-    vreal stress = fx_pressure(a, q);
-    if (PAIR_HAS(fx, ONE_SIDED))
-        stress = stress + fx_one_sided(a->p, a->dens, q->x, q->y, lane(b, PACKED_LIFT_X),
+    vreal stress = law_pressure(a, q);
+    if (PAIR_HAS(effects, ONE_SIDED))
+        stress = stress + law_one_sided(a->p, a->dens, q->x, q->y, lane(b, PACKED_LIFT_X),
                                        lane(b, PACKED_LIFT_Y), k);
-    if (PAIR_HAS(fx, REPULSION)) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
-    if (PAIR_HAS(fx, WALL_DAMPING))
-        stress = stress + fx_wall_damping(lane(b, PACKED_NEAR), inv, q->vx, k);
+    if (PAIR_HAS(effects, REPULSION)) stress = stress + law_repulsion(lane(b, PACKED_NEAR), inv, k);
+    if (PAIR_HAS(effects, WALL_DAMPING))
+        stress = stress + law_wall_damping(lane(b, PACKED_NEAR), inv, q->v_xi, k);
     e.radial = q->slope * stress;
-    *approach = vmax(*approach, fx_approach(q, inv));
-    if (PAIR_HAS(fx, THIN)) fx_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
-    if (PAIR_HAS(fx, NO_SLIP)) {
-        e.drag = lane(b, PACKED_STICKS) * fx_laminar(q, k);
+    *approach = vmax(*approach, law_approach(q, inv));
+    if (PAIR_HAS(effects, THIN)) law_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
+    if (PAIR_HAS(effects, NO_SLIP)) {
+        e.drag = lane(b, PACKED_STICKS) * law_laminar(q, k);
         q->u = a->u - lane(b, PACKED_MIRROR_U);
         q->v = a->v - lane(b, PACKED_MIRROR_V);
     }
@@ -144,7 +146,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
 
 /* Sums over neighbouring walls or structures; the forces on these have a sweep of their own. */
 SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                               const struct vector_constants *k, struct pair_set fx,
+                               const struct vector_constants *k, struct pair_set effects,
                                struct cluster_sums *sums)
 {
     for (int m = 0; m < neighbours->n; m++)
@@ -152,8 +154,9 @@ SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
             for (int row = 0; row < ROWS; row++) {
-                const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
-                add_exchange(sums->of[row][part], &e, fx, false);
+                const struct exchange e =
+                    pair_of_dummy(&a[row], code, b, k, effects, &sums->approach);
+                add_exchange(sums->of[row][part], &e, effects, false);
             }
         }
 }

@@ -38,7 +38,8 @@ struct chunk_totals {
 
 #include "fluid/pair_sums.h"
 
-/* A sum of `count` particles as receivers and candidates, which have its opposite. */
+/* A sum of a cluster as receivers, less (odd) or plus (even) what was deferred for it as
+ * candidates. */
 SPHFSI_INLINE four_double odd_sum(const struct cluster_sums *s, real *deferred, enum pair_sum which)
 {
     return own_sum(s, which) - take_deferred(DEFERRED(deferred, which));
@@ -53,13 +54,13 @@ SPHFSI_INLINE four_double even_sum(const struct cluster_sums *s, real *deferred,
  * them. */
 SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
                                int count, const struct cluster_sums *s, real *deferred,
-                               const struct vector_constants *k, struct pair_set fx,
+                               const struct vector_constants *k, struct pair_set effects,
                                struct chunk_totals *top)
 {
     four_double full = 1 + FOUR(fluid->ahead > 0 ? particles->dens0 : particles->dens, i);
     four_double factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
-    if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
+    if (PAIR_HAS(effects, MASSES)) { /* all sums contain the volume of the particle itself */
         const four_double inverse_mass = 1 / FOUR(particles->m, i);
         factor = factor * inverse_mass;
         full = full * inverse_mass;
@@ -67,8 +68,8 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
     const four_double fx_a = factor * odd_sum(s, deferred, SUM_X),
                       fy_a = factor * odd_sum(s, deferred, SUM_Y);
     const four_double ax = fx_a + fluid->k.gravity[0], ay = fy_a + fluid->k.gravity[1];
-    if (PAIR_HAS(fx, DIFFUSION)) {
-        const double mixing = PAIR_HAS(fx, LIMITER) ? 2 * STRAIN_DIFFUSION : k->mixing;
+    if (PAIR_HAS(effects, DIFFUSION)) {
+        const double mixing = PAIR_HAS(effects, LIMITER) ? 2 * STRAIN_DIFFUSION : k->mixing;
         rate = rate + mixing * odd_sum(s, deferred, SUM_MIXING);
     }
     full = k->slope * full;
@@ -80,7 +81,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
         top->acceleration2 = four_max(top->acceleration2, a2);
     else
         for (int r = 0; r < count; r++) top->acceleration2[r] = max2(top->acceleration2[r], a2[r]);
-    if (!(PAIR_HAS(fx, SHIFTING))) return;
+    if (!(PAIR_HAS(effects, SHIFTING))) return;
     store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
     store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
     store_four(particles->div_r + i, fluid->k.h * full * even_sum(s, deferred, SUM_DIV_R), count);
@@ -88,7 +89,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
 
 /* Receivers of the fluid from their packed fields. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
-                                       struct pair_set fx)
+                                       struct pair_set effects)
 {
     struct receiver a = receiver_at(sides, own);
     a.u = vspread(own + PACKED_U * CLUSTER);
@@ -96,8 +97,8 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.p = vspread(own + PACKED_P * CLUSTER);
     a.dens = vspread(own + PACKED_DENS * CLUSTER);
     a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
-    if (PAIR_HAS(fx, VISCOSITY)) a.specific = vspread(own + PACKED_SPECIFIC * CLUSTER);
-    if (PAIR_HAS(fx, ANTUONO)) {
+    if (PAIR_HAS(effects, VISCOSITY)) a.specific = vspread(own + PACKED_SPECIFIC * CLUSTER);
+    if (PAIR_HAS(effects, ANTUONO)) {
         a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
         a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
     }
@@ -109,23 +110,23 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
                                     int32_t i, int count, int32_t cluster,
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
-                                    const struct vector_constants *k, struct pair_set fx,
+                                    const struct vector_constants *k, struct pair_set effects,
                                     const struct chunk *chunk, struct chunk_totals *top)
 {
     const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
-    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, fx);
+    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, effects);
     struct cluster_sums s = {.approach = top->approach};
-    sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
+    sum_fluid(&neighbours[KIND_FLUID], a, k, effects, chunk, &s);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
+        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, effects, &s);
     top->approach = s.approach;
     real *const deferred =
-        chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
+        chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(effects);
     if (count == CLUSTER) /* a compile-time constant */
-        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, fx, top);
+        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, effects, top);
     else
-        rates_store(fluid, particles, i, count, &s, deferred, k, fx, top);
+        rates_store(fluid, particles, i, count, &s, deferred, k, effects, top);
 }
 
 /* Asks for the packed fields and boxes around the n-th active cell while the one before is
@@ -150,13 +151,13 @@ SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
 /* The n-th active cell. */
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
                                  const struct cells *cells, int32_t n,
-                                 const struct vector_constants *k, struct pair_set fx,
+                                 const struct vector_constants *k, struct pair_set effects,
                                  const struct chunk *chunk, struct chunk_totals *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const int32_t cell = list->active[n];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
-    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, PAIR_HAS(fx, THIN));
+    const struct cell_sides sides = cell_sides_of(fluid, cells, cell, PAIR_HAS(effects, THIN));
     bool around[KIND_COUNT] = {false};
     if (n + 1 < list->n_active) prefetch_around(fluid, n + 1);
     neighbour_clusters_copy(&neighbour_scratch->around[KIND_FLUID],
@@ -176,15 +177,15 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                                               (enum kind)kind, KIND_FLUID, cluster)
                                             : (struct neighbours){.n = 0};
         rates_of_cluster(fluid, particles, list->start[cell] + m * CLUSTER,
-                         particles_in(list, cell, m), cluster, neighbours, &sides, k, fx, chunk,
-                         top);
+                         particles_in(list, cell, m), cluster, neighbours, &sides, k, effects,
+                         chunk, top);
     }
 }
 
 /* A chunk of the active cells, first to end - 1. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t first, int32_t end,
-                                  const struct vector_constants *k, struct pair_set fx,
+                                  const struct vector_constants *k, struct pair_set effects,
                                   struct fluid_extremes *top)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
@@ -192,14 +193,14 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
                                 fluid->neighbour_scratch[thread_index()].deferred};
     struct chunk_totals here = {.acceleration2 = {0}};
     for (int32_t m = first; m < end; m++)
-        rates_of_cell(fluid, particles, cells, m, k, fx, &chunk, &here);
+        rates_of_cell(fluid, particles, cells, m, k, effects, &chunk, &here);
     top->approach = max2(top->approach, (double)vtop(here.approach));
     for (int r = 0; r < CLUSTER; r++)
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
 }
 
 /* Variants are compiled outside of any parallel region: the compiler makes the body of a region a
- * separate function before it can see that fx is a constant. */
+ * separate function before it can see that effects is a constant. */
 #define VARIANT(variant, set)                                                                  \
     static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \
                                        const struct cells *cells, int32_t first, int32_t end,  \

@@ -166,7 +166,7 @@ enum err equilibrium_find(struct equilibrium *found, const struct solid *from,
         memcpy(start[1], particles->uy, bytes);
         solid.loads = from->loads;
         solid.hinges = from->hinges;
-        solid.gravity = from->gravity;
+        solid.gravity_scene = from->gravity_scene;
         solid.calls_out = from->calls_out;
         solid.omega_max = from->omega_max;
         e = implicit_create(&solid, &arena, particles, d);

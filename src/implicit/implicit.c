@@ -7,7 +7,8 @@
 
 #include "implicit/stress.h"
 
-/* A matrix is replaced when a correction with it reduces the residual less than by this factor. */
+/* A matrix is replaced when a correction with it reduces the residual less than by this factor, or
+ * when dt^2 differs from its own by this fraction. */
 #define SLOW 0.5
 
 /* Of the residual over the largest force of a particle. */
@@ -244,7 +245,7 @@ static void finish(struct solid *solid, struct particles *particles, double dt)
                                  particles->sy[i] * (particles->vy[i] + start[START_VY][i]));
     }
     if (solid->hinges) constraint_end(solid->implicit, solid->hinges, particles, dt);
-    solid_book_work(solid, particles, start[START_VX], start[START_VY], dt);
+    solid_finish_kick(solid, particles, start[START_VX], start[START_VY], dt);
 }
 
 void implicit_keep_start(struct solid *solid, struct particles *particles)

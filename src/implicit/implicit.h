@@ -59,7 +59,7 @@ SPHFSI_INLINE bool implicit_is_next(const struct solid *solid)
     return solid->implicit && !solid->contact;
 }
 
-/* n steps of dt: implicit ones, or those of solid_advance. */
+/* n steps of dt of any solid: implicit ones if implicit_is_next, or those of solid_advance. */
 void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
                       bool centred);
 

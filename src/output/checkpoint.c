@@ -286,7 +286,7 @@ static enum err next_file(const char *folder, int64_t *steps, struct diag *d)
 }
 
 /* Removes unfinished checkpoints of killed runs. */
-static void remove_parts(const char *folder)
+static void remove_unfinished(const char *folder)
 {
     static const char end[] = ".ckpt.part";
     DIR *dir = opendir(folder);
@@ -304,7 +304,7 @@ enum err checkpoint_remove_others(const char *folder, int64_t newest, struct dia
 {
     char name[NAME_TEXT], path[PATH_BYTES];
     int kept = 0;
-    remove_parts(folder);
+    remove_unfinished(folder);
     for (int64_t steps = INT64_MAX;;) {
         TRY(next_file(folder, &steps, d));
         if (steps < 0) return ERR_OK;

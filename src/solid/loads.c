@@ -35,11 +35,11 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
     struct outlines o;
     TRY(outlines_of(&o, v->scene, &from->shape, temp, d));
     load->first = v->n_loaded;
-    const double nudge = 1e-6 * v->scene->top.dp;
+    const double dp = v->scene->top.dp;
     for (int64_t i = 0; i < particles->n; i++) {
         const bool inside =
             particles->body[i] == body &&
-            outlines_find(&o, particles->X[i] + nudge, particles->Y[i] + 0.618 * nudge) >= 0;
+            outlines_find(&o, particles->X[i] + NUDGE_X * dp, particles->Y[i] + NUDGE_Y * dp) >= 0;
         if (inside) v->loaded[v->n_loaded++].particle = (int32_t)i;
     }
     load->end = v->n_loaded;

@@ -6,7 +6,7 @@
 #include "solid/material.h"
 
 /* A packed field of the particles from i on; a weight of a slot. */
-#define lane_of(s, number, i) vload((const real *)(s)->lane[number] + (i))
+#define packed_of(s, number, i) vload((const real *)(s)->packed[number] + (i))
 #define weight_of(slot, weight) vload((slot) + (weight)*LANES)
 
 /* Displacements are in two parts where real is float. */
@@ -15,8 +15,8 @@ enum { SPLIT = sizeof(real) < sizeof(double) };
 
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct solid *solid, int64_t i)
 {
-    return (struct vtensor2){lane_of(solid, S_UXX, i), lane_of(solid, S_UXY, i),
-                             lane_of(solid, S_UYX, i), lane_of(solid, S_UYY, i)};
+    return (struct vtensor2){packed_of(solid, S_UXX, i), packed_of(solid, S_UXY, i),
+                             packed_of(solid, S_UYX, i), packed_of(solid, S_UYY, i)};
 }
 
 struct vvector2 {
@@ -30,8 +30,9 @@ struct placed {
 
 SPHFSI_INLINE struct placed placed_at(const struct solid *solid, int64_t i)
 {
-    struct placed at = {.u = {lane_of(solid, S_UX, i), lane_of(solid, S_UY, i)}};
-    if (SPLIT) at.low = (struct vvector2){lane_of(solid, S_LOW_X, i), lane_of(solid, S_LOW_Y, i)};
+    struct placed at = {.u = {packed_of(solid, S_UX, i), packed_of(solid, S_UY, i)}};
+    if (SPLIT)
+        at.low = (struct vvector2){packed_of(solid, S_LOW_X, i), packed_of(solid, S_LOW_Y, i)};
     return at;
 }
 
@@ -50,7 +51,7 @@ SPHFSI_INLINE struct vvector2 displacement_between(const struct solid *solid,
 SPHFSI_INLINE struct vvector2 velocity_between(const struct solid *solid, struct vvector2 a,
                                                int64_t j)
 {
-    return (struct vvector2){a.x - lane_of(solid, S_VX, j), a.y - lane_of(solid, S_VY, j)};
+    return (struct vvector2){a.x - packed_of(solid, S_VX, j), a.y - packed_of(solid, S_VY, j)};
 }
 
 /* Particles a of a pack: what the pair laws use. */
@@ -63,7 +64,7 @@ struct solid_receiver {
 SPHFSI_INLINE struct solid_receiver receiver_of(const struct solid *solid, int64_t i)
 {
     return (struct solid_receiver){placed_at(solid, i),
-                                   {lane_of(solid, S_VX, i), lane_of(solid, S_VY, i)},
+                                   {packed_of(solid, S_VX, i), packed_of(solid, S_VY, i)},
                                    load_gradient(solid, i)};
 }
 
@@ -104,10 +105,10 @@ SPHFSI_INLINE void stress_force(const struct solid *solid, const real *slot, int
                                 struct solid_sums *sums)
 {
     const vreal Hx = weight_of(slot, W_HX), Hy = weight_of(slot, W_HY);
-    sums->stress_x = vfma(lane_of(solid, S_PXX, j), Hx, sums->stress_x);
-    sums->stress_x = vfma(lane_of(solid, S_PXY, j), Hy, sums->stress_x);
-    sums->stress_y = vfma(lane_of(solid, S_PYX, j), Hx, sums->stress_y);
-    sums->stress_y = vfma(lane_of(solid, S_PYY, j), Hy, sums->stress_y);
+    sums->stress_x = vfma(packed_of(solid, S_PXX, j), Hx, sums->stress_x);
+    sums->stress_x = vfma(packed_of(solid, S_PXY, j), Hy, sums->stress_x);
+    sums->stress_y = vfma(packed_of(solid, S_PYX, j), Hx, sums->stress_y);
+    sums->stress_y = vfma(packed_of(solid, S_PYY, j), Hy, sums->stress_y);
 }
 
 /* Eq. 14b over rho0 alpha_s c_s h, for approaching pairs: v.x/(x^2 + 0.01 h^2), 1/s. */
@@ -124,7 +125,8 @@ SPHFSI_INLINE vreal viscous_pressure(const struct solid *solid, const struct sol
 SPHFSI_INLINE vreal mean_viscosity(const struct solid *solid, int64_t i, int64_t j,
                                    const struct solid_body *body)
 {
-    return (lane_of(solid, S_DRAG, i) + lane_of(solid, S_DRAG, j)) * (real)(0.5 / body->density);
+    const vreal drag = packed_of(solid, S_DRAG, i) + packed_of(solid, S_DRAG, j);
+    return drag * (real)(0.5 / body->density);
 }
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. The symmetric form, half of it and half of

@@ -93,14 +93,14 @@ static enum err packed_create(struct solid *solid, struct arena *a,
         if ((k == S_PAIRS_X || k == S_PAIRS_Y) && !solid->variational) continue;
         if ((k == S_LOW_X || k == S_LOW_Y) && solid->sweeps->size == sizeof(double)) continue;
         if (k == S_DRAG && !mixed) continue;
-        solid->lane[k] = field[k];
+        solid->packed[k] = field[k];
         if (field[k] && solid->sweeps->size == sizeof(double)) continue;
-        TRY(arena_place(a, &solid->lane[k], (size_t)particles->n, solid->sweeps->size,
+        TRY(arena_place(a, &solid->packed[k], (size_t)particles->n, solid->sweeps->size,
                         "packed fields of the solid", d));
     }
-    for (int64_t i = 0; solid->lane[S_DRAG] && i < particles->n; i++) {
+    for (int64_t i = 0; solid->packed[S_DRAG] && i < particles->n; i++) {
         const struct solid_body *const b = &solid->body[particles->body[i]];
-        solid_set(solid, solid->lane[S_DRAG], i, b->density * b->viscosity);
+        solid_set(solid, solid->packed[S_DRAG], i, b->density * b->viscosity);
     }
     return ERR_OK;
 }
@@ -217,12 +217,13 @@ static void force_sweeps(const struct pack_range *own)
 static void vary_gravity(const struct solid *solid, struct particles *particles, double time)
 {
     double g[2];
-    scene_gravity_at(solid->gravity, time, g);
-    const double more[2] = {g[0] - solid->gravity->top.gravity[0],
-                            g[1] - solid->gravity->top.gravity[1]};
+    scene_gravity_at(solid->gravity_scene, time, g);
+    const double more[2] = {g[0] - solid->gravity_scene->top.gravity[0],
+                            g[1] - solid->gravity_scene->top.gravity[1]};
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        const double on = solid->gravity->solid[particles->body[i]].gravity * particles->free[i];
+        const struct scene_solid *const body = &solid->gravity_scene->solid[particles->body[i]];
+        const double on = body->gravity * particles->free[i];
         particles->sx[i] += on * more[0];
         particles->sy[i] += on * more[1];
     }
@@ -246,7 +247,7 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
 #pragma omp master
         solid->contact->seconds += phase_clock() - start;
     }
-    if (solid->gravity) vary_gravity(solid, particles, time);
+    if (solid->gravity_scene) vary_gravity(solid, particles, time);
     if (solid->loads) {
 #pragma omp single
         loads_forces(solid->loads, solid, particles, time);
@@ -347,8 +348,8 @@ void solid_forces(const struct solid *solid, struct particles *particles)
     }
 }
 
-void solid_book_work(struct solid *solid, struct particles *particles, const double *vx,
-                     const double *vy, double dt)
+void solid_finish_kick(struct solid *solid, struct particles *particles, const double *vx,
+                       const double *vy, double dt)
 {
     if (solid->contact) {
         struct contact *const contact = solid->contact;
@@ -394,7 +395,7 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
         outer_forces(solid, particles, time + first, dt);
         if (solid->contact || solid->loads || solid->hinges) {
 #pragma omp single
-            solid_book_work(solid, particles, particles->vx, particles->vy, dt);
+            solid_finish_kick(solid, particles, particles->vx, particles->vy, dt);
         }
         kick_and_drift(own, solid->kick, dt, dt - first, last ? 0 : first);
         time += dt;
@@ -422,7 +423,7 @@ double solid_set_positions(struct particles *particles)
     return sqrt(moved2);
 }
 
-void solid_show(const struct solid *solid, struct particles *particles)
+void solid_write_stress(const struct solid *solid, struct particles *particles)
 {
 #pragma omp parallel num_threads(solid->threads)
     {

@@ -94,12 +94,12 @@ struct solid_sweeps {
     const char *name;
     int lanes;                 /* particles of a full pack */
     size_t size;               /* bytes of a number */
-    solid_sweep *pack_motion;  /* packs displacement and velocity of p */
+    solid_sweep *pack_motion;  /* packs displacement and velocity */
     solid_sweep *stress;       /* gradient, and stress except of variational bodies */
     solid_sweep *pairs;        /* forces of pairs, and stress of variational bodies */
     solid_sweep *damping;      /* adds the Kelvin-Voigt stress */
-    solid_sweep *forces;       /* acceleration by neighbours to sx, sy of p */
-    solid_sweep *write_stress; /* gradient and stress to p */
+    solid_sweep *forces;       /* acceleration by neighbours, to sx, sy */
+    solid_sweep *write_stress; /* gradient and stress, to the particles */
     /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
     void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
 };
@@ -116,7 +116,7 @@ struct solid {
     int64_t n_packs, n_slots;
     int threads; /* that its loops use */
     const struct solid_sweeps *sweeps;
-    void *lane[SOLID_PACKED_FIELDS]; /* each [n] */
+    void *packed[SOLID_PACKED_FIELDS]; /* each [n] */
     struct solid_pack *pack;
     void *weight;       /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
     int64_t *offset;    /* [n_slots] */
@@ -134,7 +134,7 @@ struct solid {
     struct loads *loads;
     struct hinges *hinges;
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
-    const struct scene *gravity; /* varies in time: its change since t = 0 */
+    const struct scene *gravity_scene; /* of a gravity that varies in time; NULL: constant */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
     solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
     struct implicit *implicit;   /* data of implicit/; NULL: explicit steps only */
@@ -160,8 +160,8 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
 
 /* --- solid.c, stencil.c, spectrum.c, cauchy.c, reaction.c --- */
 
-/* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
- * are set). implicit: for implicit steps, in double precision. */
+/* Builds constants, reference neighbours and their weights for particles whose X, Y, body and free
+ * are set. implicit: for implicit steps, in double precision. */
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
 
@@ -180,10 +180,11 @@ void solid_stress(struct solid *solid, struct particles *particles);
  * displacements and velocities; zero where clamped. */
 void solid_forces(const struct solid *solid, struct particles *particles);
 
-/* The displacement gradients alone, to p; in double precision. */
+/* The displacement gradients alone, to the particles; in double precision. */
 void solid_gradient(const struct solid *solid, struct particles *particles);
 
-/* Both for the present displacements and velocities of p, with actions from outside at a time. */
+/* Stress and acceleration for the present displacements and velocities, with actions from outside
+ * at a time. */
 void solid_forces_within(const struct solid *solid, struct particles *particles, double time);
 
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
@@ -192,8 +193,8 @@ void solid_forces_within(const struct solid *solid, struct particles *particles,
 void solid_operator(struct solid *solid, struct particles *particles, bool displaced);
 
 /* Accelerations now, m/s^2, and forces of clamps and hinges, N/m (0 where none acts), from
- * what solid_stress has found. They stay in the scratch of s until that is used again; p is as
- * it was. */
+ * what solid_stress has found. They stay in the scratch of the solid until that is used again. The
+ * particles keep theirs. */
 struct solid_forces_now {
     const double *ax, *ay, *held_x, *held_y;
 };
@@ -202,7 +203,7 @@ struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *
 
 /* n sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
  * drift. With `centred`: half drift, kick, half drift, second order in time. Gradients, stresses,
- * accelerations and packed fields are those of the last sub-step only after solid_show and
+ * accelerations and packed fields are those of the last sub-step only after solid_write_stress and
  * solid_stress. */
 void solid_advance(struct solid *solid, struct particles *particles, double dt, int n,
                    bool centred);
@@ -213,13 +214,14 @@ solid_kick solid_free_kick;
 /* x = X + u; returns the largest displacement by it, m. */
 double solid_set_positions(struct particles *particles);
 
-/* Gradients, stresses and accelerations of the last evaluation to p. */
-void solid_show(const struct solid *solid, struct particles *particles);
+/* Gradients and stresses of the last evaluation to the particles; in double precision they have
+ * them already. */
+void solid_write_stress(const struct solid *solid, struct particles *particles);
 
-/* Adds up the work of actions from outside over a kick of dt with the last forces, from the
- * velocities before it. Friction slides by these forces. */
-void solid_book_work(struct solid *solid, struct particles *particles, const double *vx,
-                     const double *vy, double dt);
+/* After a kick of dt with the last forces, from the velocities vx, vy: friction slides, rigid
+ * bodies are kicked, and the work of actions from outside is added up. */
+void solid_finish_kick(struct solid *solid, struct particles *particles, const double *vx,
+                       const double *vy, double dt);
 
 /* Sets particles with prescribed motion to their positions at a time. */
 void solid_place_clamps(const struct solid *solid, struct particles *particles, double time);

@@ -308,8 +308,8 @@ static void sum_weights(const struct solid *solid)
                 Gx += solid_get(solid, solid->weight, (m * SOLID_WEIGHTS + W_GX) * lanes + l);
                 Gy += solid_get(solid, solid->weight, (m * SOLID_WEIGHTS + W_GY) * lanes + l);
             }
-            solid_set(solid, solid->lane[S_GX], pack->i + l, Gx);
-            solid_set(solid, solid->lane[S_GY], pack->i + l, Gy);
+            solid_set(solid, solid->packed[S_GX], pack->i + l, Gx);
+            solid_set(solid, solid->packed[S_GY], pack->i + l, Gy);
         }
     }
 }

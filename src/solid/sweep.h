@@ -5,36 +5,36 @@
 #include "solid/pair_laws.h"
 
 /* Writes the lanes of a pack only: the memory behind it belongs to the next. */
-SPHFSI_INLINE void store_packed(const struct solid *solid, int lane, const struct solid_pack *pack,
+SPHFSI_INLINE void store_packed(const struct solid *solid, int field, const struct solid_pack *pack,
                                 vreal value)
 {
-    vput((real *)solid->lane[lane] + pack->i, value, pack->lanes);
+    vput((real *)solid->packed[field] + pack->i, value, pack->lanes);
 }
 
-/* Four components from field `lane` on. The last pack of a body is stored in a function of its
+/* Four components from `field` on. The last pack of a body is stored in a function of its
  * own, which leaves the registers of the others alone. */
-static __attribute__((noinline, cold)) void store_part(const struct solid *solid, int lane,
+static __attribute__((noinline, cold)) void store_part(const struct solid *solid, int field,
                                                        const struct solid_pack *pack,
                                                        const struct vtensor2 *t)
 {
-    store_packed(solid, lane, pack, t->xx);
-    store_packed(solid, lane + 1, pack, t->xy);
-    store_packed(solid, lane + 2, pack, t->yx);
-    store_packed(solid, lane + 3, pack, t->yy);
+    store_packed(solid, field, pack, t->xx);
+    store_packed(solid, field + 1, pack, t->xy);
+    store_packed(solid, field + 2, pack, t->yx);
+    store_packed(solid, field + 3, pack, t->yy);
 }
 
-SPHFSI_INLINE void store_tensor(const struct solid *solid, int lane, const struct solid_pack *pack,
+SPHFSI_INLINE void store_tensor(const struct solid *solid, int field, const struct solid_pack *pack,
                                 struct vtensor2 t)
 {
     if (pack->lanes < LANES) {
         const struct vtensor2 part = t;
-        store_part(solid, lane, pack, &part);
+        store_part(solid, field, pack, &part);
         return;
     }
-    vstore((real *)solid->lane[lane] + pack->i, t.xx);
-    vstore((real *)solid->lane[lane + 1] + pack->i, t.xy);
-    vstore((real *)solid->lane[lane + 2] + pack->i, t.yx);
-    vstore((real *)solid->lane[lane + 3] + pack->i, t.yy);
+    vstore((real *)solid->packed[field] + pack->i, t.xx);
+    vstore((real *)solid->packed[field + 1] + pack->i, t.xy);
+    vstore((real *)solid->packed[field + 2] + pack->i, t.yx);
+    vstore((real *)solid->packed[field + 3] + pack->i, t.yy);
 }
 
 /* Adds a part to the stress of a pack. */
@@ -43,10 +43,10 @@ SPHFSI_INLINE void add_stress(const struct solid *solid, const struct solid_pack
 {
     const int64_t i = pack->i;
     store_tensor(solid, S_PXX, pack,
-                 (struct vtensor2){lane_of(solid, S_PXX, i) + more.xx,
-                                   lane_of(solid, S_PXY, i) + more.xy,
-                                   lane_of(solid, S_PYX, i) + more.yx,
-                                   lane_of(solid, S_PYY, i) + more.yy});
+                 (struct vtensor2){packed_of(solid, S_PXX, i) + more.xx,
+                                   packed_of(solid, S_PXY, i) + more.xy,
+                                   packed_of(solid, S_PYX, i) + more.yx,
+                                   packed_of(solid, S_PYY, i) + more.yy});
 }
 
 /* The slots of a pack: the weights of all slots in order, and the indices of its neighbours. */
@@ -62,9 +62,9 @@ static void pack_motion(const struct solid *solid, struct particles *particles, 
                         int64_t last)
 {
     if (!SPLIT || first == last) return;
-    real *const ux = solid->lane[S_UX], *const uy = solid->lane[S_UY],
-                *const low_x = solid->lane[S_LOW_X], *const low_y = solid->lane[S_LOW_Y],
-                *const vx = solid->lane[S_VX], *const vy = solid->lane[S_VY];
+    real *const ux = solid->packed[S_UX], *const uy = solid->packed[S_UY],
+                *const low_x = solid->packed[S_LOW_X], *const low_y = solid->packed[S_LOW_Y],
+                *const vx = solid->packed[S_VX], *const vy = solid->packed[S_VY];
     const int64_t end = solid->pack[last - 1].i + solid->pack[last - 1].lanes;
 #pragma omp simd
     for (int64_t i = solid->pack[first].i; i < end; i++) {
@@ -227,9 +227,9 @@ SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *solid,
                                                  struct vvector2 pairs)
 {
     const int64_t i = pack->i;
-    const vreal Gx = lane_of(solid, S_GX, i), Gy = lane_of(solid, S_GY, i);
-    const vreal own_x = vfma(lane_of(solid, S_PXX, i), Gx, lane_of(solid, S_PXY, i) * Gy);
-    const vreal own_y = vfma(lane_of(solid, S_PYX, i), Gx, lane_of(solid, S_PYY, i) * Gy);
+    const vreal Gx = packed_of(solid, S_GX, i), Gy = packed_of(solid, S_GY, i);
+    const vreal own_x = vfma(packed_of(solid, S_PXX, i), Gx, packed_of(solid, S_PXY, i) * Gy);
+    const vreal own_y = vfma(packed_of(solid, S_PYX, i), Gx, packed_of(solid, S_PYY, i) * Gy);
     const real inv_density = (real)(1 / solid->body[pack->body].density);
     return (struct vvector2){(sums->stress_x + own_x) * inv_density + pairs.x,
                              (sums->stress_y + own_y) * inv_density + pairs.y};
@@ -243,8 +243,8 @@ SPHFSI_INLINE struct vvector2 stress_acceleration(const struct solid *solid,
     struct solid_sums sums = {.stress_x = zero, .stress_y = zero};
     EACH_SLOT(solid, pack, slot, j) stress_force(solid, slot, j, &sums);
     return total_acceleration(solid, pack, &sums,
-                              (struct vvector2){lane_of(solid, S_PAIRS_X, pack->i),
-                                                lane_of(solid, S_PAIRS_Y, pack->i)});
+                              (struct vvector2){packed_of(solid, S_PAIRS_X, pack->i),
+                                                packed_of(solid, S_PAIRS_Y, pack->i)});
 }
 
 /* Acceleration by stress and the forces of pairs. */
@@ -288,7 +288,7 @@ static void write_stress(const struct solid *solid, struct particles *particles,
                           particles->Pxx, particles->Pxy, particles->Pyx, particles->Pyy};
     for (int64_t k = first; k < last; k++)
         for (int c = 0; c < (int)COUNT_OF(to); c++)
-            vwiden(&to[c][solid->pack[k].i], lane_of(solid, S_UXX + c, solid->pack[k].i),
+            vwiden(&to[c][solid->pack[k].i], packed_of(solid, S_UXX + c, solid->pack[k].i),
                    solid->pack[k].lanes);
 }
 

@@ -108,8 +108,8 @@ enum bound timestep_binding(const struct simulation *sim);
  * with half of the smallest bound, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *sim, double *half);
 
-/* Finds all bounds of the next step, s->dt_bound, from the fluid's last evaluation and the solid's
- * bound; returns the smallest, s. */
+/* Finds all bounds of the next step, sim->dt_bound, from the fluid's last evaluation and the bound
+ * of the solid; returns the smallest, s. */
 double timestep_bound(struct simulation *sim);
 
 /* Chooses the next step by its bounds. It ends at t_limit at the latest; the last two steps before
@@ -123,7 +123,7 @@ enum { SUBSTEPS_MOST = 10000 };
  * soon as the solid's bound requires it, reduced once that cannot excite an oscillation (T-34c). */
 int timestep_substeps(struct simulation *sim, double dt);
 
-/* Sets the solid's step from its bound about the undeformed state and the reduction in s->state. */
+/* Sets the solid's step from its bound about the undeformed state and the state's reduction. */
 void timestep_set_solid(struct simulation *sim);
 
 /* Computes the solid's bound again if its stiffness has left the range of the last bound. Reads

@@ -93,7 +93,7 @@ static void add_late_work(struct simulation *sim, struct energies *solid)
     const double half = 0.5 * sim->state.dt / sim->substeps;
     alone.coupled = false;
     alone.external[0] = NULL;
-    alone.gravity = NULL;
+    alone.gravity_scene = NULL;
     alone.loads = NULL;
     alone.hinges = NULL;
     solid_forces(&alone, particles);

@@ -4,10 +4,9 @@
 
 #include "time/advance.h"
 
-/* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h.
- * Steps over the largest step of the fluid. */
-#define DET_WARNING 0.2
-#define STEP_WARNING 100 /* times the limit */
+/* Values at which a warning is given; those of the fluid are in case/scene.h. */
+#define DET_WARNING 0.2  /* det F */
+#define STEP_WARNING 100 /* times the limit of the step */
 
 struct finding {
     int64_t at; /* -1: none found */

@@ -170,7 +170,7 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
         if (!(sim->effects & FX_FLUID))
             sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
     }
-    sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
+    sim->solid.gravity_scene = sim->gravity_varies ? sim->scene : NULL;
     timestep_set_solid(sim);
     return ERR_OK;
 }

@@ -38,7 +38,7 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
     if (!external->ay) TRY(arena_array(&sim->arena, &external->ay, n, "accelerations", d));
     external->at = at;
     external->context = context;
-    sim->evaluated = false; /* without it */
+    sim->evaluated = false; /* the last evaluation lacked `at` */
     if (kind == KIND_SOLID) sim->solid.external[0] = at ? external->ax : NULL;
     if (kind == KIND_SOLID) sim->solid.external[1] = at ? external->ay : NULL;
     return ERR_OK;
@@ -46,7 +46,7 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
 
 void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 
-/* Magnitude of the impulse exchanged between fluid and structure in the last step. */
+/* Adds the magnitude of the impulse that fluid and structure exchanged in the last step. */
 static void add_exchange(struct simulation *sim)
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
@@ -76,12 +76,12 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
         clock = phase_add(sim, PHASE_shift, clock);
     }
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
-    if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+    if (guards_strain_due(sim)) solid_write_stress(&sim->solid, &sim->kind[KIND_SOLID]);
     find_speed(sim);
     if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
     energy_after_step(sim);
     if (sim->effects & FX_COUPLING) add_exchange(sim);
-    /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
+    /* Before the guards, which read the result: a checkpoint does not hold it. */
     if (!(sim->effects & FX_FLUID)) energy_test_due(sim);
     TRY(guards_check(sim, d));
     if (guards_strain_due(sim)) timestep_recheck_solid(sim);
@@ -122,7 +122,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
             if (sim->kind[kind].capacity && (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
                 cells_rebuild(&sim->cells, (enum kind)kind, &sim->kind[kind]);
         if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
-        if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) /* the run has said it */
+        if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) /* the run has warned */
             guards_warn_of_leaving(sim, &(struct diag){.warn = NULL});
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);

@@ -98,7 +98,7 @@ struct simulation {
     struct arena arena;
     struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
     struct cells cells;
-    struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct fluid fluid; /* model and sweeps of fluid and walls; unused without fluid */
     struct wall_motion wall_motion; /* walls that move; unused where none does */
     struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
     struct beams beams;             /* unused without any */

@@ -21,7 +21,8 @@ static void swap_states(struct particles *particles)
     swap_fields(&particles->dens, &particles->dens0);
 }
 
-/* In fields of its own, for effects that read them; the others have it packed alone. */
+/* Writes the predicted state to the particles' fields. Only some effects read them; otherwise the
+ * sweeps predict while they pack. */
 static void predict_fields(struct particles *particles, double half)
 {
     swap_states(particles);
@@ -100,7 +101,7 @@ static void correct_at_single_rate(struct simulation *sim, double dt)
     struct particles *const solid = &sim->kind[KIND_SOLID];
     correct_solid(solid, dt);
     energy_of_solid(sim, dt, 1, true);
-    solid_book_work(&sim->solid, solid, solid->vx0, solid->vy0, dt);
+    solid_finish_kick(&sim->solid, solid, solid->vx0, solid->vy0, dt);
     solid_place_clamps(&sim->solid, solid, scene_time(sim, sim->state.time + dt));
     motion_at_single_rate(&sim->coupling, dt / (dt + reduced_averaging_time(&sim->coupling, dt)));
     sim->state.solid_substeps++;
@@ -120,8 +121,9 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits);
     energy_test_due(sim);
-    const bool read = sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].at;
-    if (read)
+    const bool needs_fields =
+        sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].at;
+    if (needs_fields)
         predict_fields(&sim->kind[KIND_FLUID], 0.5 * dt);
     else
         sim->fluid.ahead = 0.5 * dt;
@@ -138,7 +140,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
-    if (read) swap_states(&sim->kind[KIND_FLUID]);
+    if (needs_fields) swap_states(&sim->kind[KIND_FLUID]);
     advance_fluid(sim, correct_rows, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
@@ -156,7 +158,7 @@ static void symplectic_solid(struct simulation *sim, double dt)
     solid_place_clamps(&sim->solid, particles, sim->solid.time);
     rates_of_solid(sim);
     correct_solid(particles, dt);
-    solid_book_work(&sim->solid, particles, particles->vx0, particles->vy0, dt);
+    solid_finish_kick(&sim->solid, particles, particles->vx0, particles->vy0, dt);
     sim->solid.time += 0.5 * dt;
     solid_place_clamps(&sim->solid, particles, sim->solid.time);
 }

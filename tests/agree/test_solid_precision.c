@@ -208,14 +208,14 @@ static void test_lanes_follow_the_particles(void)
     for (int step = 0; step < 5; step++) {
         solid_advance(&rig.sim.solid, p, 1e-5, 1, true);
         for (int64_t i = 0; i < p->n; i++) {
-            const double x = solid_get(solid, solid->lane[S_UX], i) +
-                             solid_get(solid, solid->lane[S_LOW_X], i),
-                         y = solid_get(solid, solid->lane[S_UY], i) +
-                             solid_get(solid, solid->lane[S_LOW_Y], i);
+            const double x = solid_get(solid, solid->packed[S_UX], i) +
+                             solid_get(solid, solid->packed[S_LOW_X], i),
+                         y = solid_get(solid, solid->packed[S_UY], i) +
+                             solid_get(solid, solid->packed[S_LOW_Y], i);
             assert_near(1e-14 * (1e-3 + fabs(p->ux[i])), p->ux[i], x, "ux");
             assert_near(1e-14 * (1e-3 + fabs(p->uy[i])), p->uy[i], y, "uy");
-            TEST_ASSERT_TRUE(solid_get(solid, solid->lane[S_VX], i) == (double)(float)p->vx[i]);
-            TEST_ASSERT_TRUE(solid_get(solid, solid->lane[S_VY], i) == (double)(float)p->vy[i]);
+            TEST_ASSERT_TRUE(solid_get(solid, solid->packed[S_VX], i) == (double)(float)p->vx[i]);
+            TEST_ASSERT_TRUE(solid_get(solid, solid->packed[S_VY], i) == (double)(float)p->vy[i]);
         }
     }
     TEST_ASSERT_TRUE(fabs(p->ux[0]) > 1e-3);

@@ -117,7 +117,7 @@ static uint64_t push(int threads)
         solid->external[0] = solid->external[1] = NULL;
         if (round == 2) simulation_hash(&rig.sim);
     }
-    solid_show(solid, particles);
+    solid_write_stress(solid, particles);
     uint64_t shown = HASH_START;
     const double *const fields[] = {particles->Uxx, particles->Uyx, particles->Pxy, particles->sx,
                                     particles->sy};

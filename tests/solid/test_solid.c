@@ -138,8 +138,8 @@ static void forget_weights(void)
         for (int l = 0; l < lanes && m % SOLID_WEIGHTS <= W_HY; l++)
             solid_set(solid, solid->weight, m * lanes + l, 0);
     for (int64_t i = 0; i < p->n; i++) {
-        solid_set(solid, solid->lane[S_GX], i, 0);
-        solid_set(solid, solid->lane[S_GY], i, 0);
+        solid_set(solid, solid->packed[S_GX], i, 0);
+        solid_set(solid, solid->packed[S_GY], i, 0);
     }
 }
 
