@@ -268,8 +268,6 @@ static enum err check_motion(struct reader *r, const void *section)
     return ERR_OK;
 }
 
-/* --- probes --- */
-
 static enum err check_damping(struct reader *r, const void *section)
 {
     const struct scene_damping *const zone = section;
@@ -277,6 +275,8 @@ static enum err check_damping(struct reader *r, const void *section)
         return bad_section(r, "has no length, because `from` and `to` are the same point");
     return ERR_OK;
 }
+
+/* --- probes --- */
 
 /* Whether a body has a clamp, a hinge or a guide, or is itself a spring. */
 static bool is_held(const struct scene *scene, const char *name)

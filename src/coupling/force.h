@@ -150,17 +150,13 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
     const effect_set effects =
         (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
-    if (effects & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t m = 0; m < n; m++)
+    for (int32_t m = 0; m < n; m++)
+        if (effects & FX_THIN)
             force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, true);
-    else if (effects & (effect_set)SURFACE_EFFECTS)
-#pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t m = 0; m < n; m++)
+        else if (effects & (effect_set)SURFACE_EFFECTS)
             force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, false);
-    else /* pressure alone */
-#pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t m = 0; m < n; m++)
+        else /* pressure alone */
             force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects & FX_IMPEDANCE,
                           false);
 }

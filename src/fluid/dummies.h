@@ -313,12 +313,10 @@ static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIN
 {
     struct particles *const particles = &kinds[kind];
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
-    if (fluid->effects & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t k = 0; k < n; k++)
+    for (int32_t k = 0; k < n; k++)
+        if (fluid->effects & FX_THIN)
             dummies_of_cell(fluid, particles, kind, cells, cell[k], true);
-    else
-#pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t k = 0; k < n; k++)
+        else
             dummies_of_cell(fluid, particles, kind, cells, cell[k], false);
 }

@@ -243,13 +243,11 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
     struct particles *const particles = &kinds[KIND_FLUID];
     const struct packing by = packing_of(fluid);
     if (fluid->keeps_slopes) return; /* packed with the other fields */
-    if (fluid->effects & FX_THIN)
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t k = 0; k < list->n_active; k++)
+    for (int32_t k = 0; k < list->n_active; k++)
+        if (fluid->effects & FX_THIN)
             slopes_of_cell(fluid, particles, cells, list->active[k], true);
-    else
-#pragma omp parallel for schedule(static) num_threads(fluid->threads)
-        for (int32_t k = 0; k < list->n_active; k++)
+        else
             slopes_of_cell(fluid, particles, cells, list->active[k], false);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)

@@ -108,14 +108,6 @@ struct largest {
     double young, dp;
 };
 
-/* Round-off of forces: of inertia by that of displacements, and of stress by that of strains. */
-static double rounding_of(const struct largest *top, double dt)
-{
-    return 64 * DBL_EPSILON *
-           (4 * top->mass / square(dt) * top->moved +
-            top->young * (top->moved + top->dp * top->strain));
-}
-
 /* The residual of T-90 of one particle to `unknown`. */
 static void find_one(const struct solid *solid, const struct particles *particles, int64_t i,
                      double dt, struct largest *top)
@@ -164,7 +156,11 @@ double implicit_residual(struct solid *solid, struct particles *particles, doubl
         hinges_push(solid->hinges, solid->implicit->hinge_force, particles->sx, particles->sy);
     for (int64_t i = 0; i < particles->n; i++)
         if (solid->implicit->order[i] >= 0) find_one(solid, particles, i, dt, &top);
-    return top.off <= rounding_of(&top, dt) ? 0 : top.off / top.force;
+    /* Round-off of forces: of inertia by displacements', and of stress by strains'. */
+    const double rounding =
+        64 * DBL_EPSILON *
+        (4 * top.mass / square(dt) * top.moved + top.young * (top.moved + top.dp * top.strain));
+    return top.off <= rounding ? 0 : top.off / top.force;
 }
 
 void implicit_correct(const struct solid *solid, struct particles *particles)

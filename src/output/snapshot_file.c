@@ -338,8 +338,6 @@ bool snapshot_file_copy_missing(const struct snapshot_layout *layout, hid_t from
     return ok && snapshot_file_set_steps(to, steps);
 }
 
-int snapshot_file_width(enum data what) { return columns[what].width; }
-
 bool snapshot_file_real(enum data what) { return is_real(columns[what].item); }
 
 int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout)

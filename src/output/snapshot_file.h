@@ -20,8 +20,7 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 bool snapshot_file_create(hid_t file, const struct scene *scene, const char *version, int64_t n,
                           hid_t like);
 
-/* Columns of a dataset, and whether its values in memory are double; otherwise they are int64. */
-int snapshot_file_width(enum data what);
+/* Whether the values of a dataset are double in memory; otherwise they are int64. */
 bool snapshot_file_real(enum data what);
 
 /* Number of snapshots; negative: it cannot be read. */

@@ -114,16 +114,6 @@ static enum err check_held(const struct simulation *sim, const struct particles 
                      scene_place(sim->scene, common->line).text, section_title(common).text, size);
 }
 
-static enum err check_fall(const struct simulation *sim, struct diag *d)
-{
-    const struct scene *const scene = sim->scene;
-    if (scene->n_fluid)
-        TRY(check_held(sim, &sim->kind[KIND_FLUID], -1, &scene->fluid[0].common, d));
-    for (int b = 0; b < scene->n_solid; b++)
-        TRY(check_held(sim, &sim->kind[KIND_SOLID], b, &scene->solid[b].common, d));
-    return ERR_OK;
-}
-
 /* T-78a: solids without fluid, at once; if that fails, they move as with fluid. */
 static enum err find_equilibrium(struct simulation *sim, struct diag *d)
 {
@@ -157,6 +147,7 @@ static enum err check_limit(const struct simulation *sim, struct diag *d)
 
 enum err relax_step(struct simulation *sim, struct diag *d)
 {
+    const struct scene *const scene = sim->scene;
     const bool first = sim->state.time == 0;
     if (first && !(sim->effects & FX_FLUID)) TRY(find_equilibrium(sim, d));
     if (!sim->state.seeks_rest) return ERR_OK;
@@ -164,7 +155,10 @@ enum err relax_step(struct simulation *sim, struct diag *d)
         solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], scene_time(sim, 0));
     TRY(simulation_step(sim, (double)INFINITY, d));
     sim->guard.case_at_fault = true; /* for what follows */
-    TRY(check_fall(sim, d));
+    if (scene->n_fluid)
+        TRY(check_held(sim, &sim->kind[KIND_FLUID], -1, &scene->fluid[0].common, d));
+    for (int b = 0; b < scene->n_solid; b++)
+        TRY(check_held(sim, &sim->kind[KIND_SOLID], b, &scene->solid[b].common, d));
     test_for_rest(sim);
     if (sim->state.seeks_rest) TRY(check_limit(sim, d));
     sim->guard.case_at_fault = false;

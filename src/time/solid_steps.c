@@ -26,14 +26,6 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     }
 }
 
-/* The part of a batch of steps of dt that comes next: up to the state before a time that is
- * observed, then the step over it. */
-static int steps_of_part(const struct simulation *sim, double dt, int most)
-{
-    const double before = floor((sim->observer.next - sim->state.time) / dt - 1e-6);
-    return sim->observer.context ? (int)max2(1, min2(before, most)) : most;
-}
-
 /* When a contact is near, each step is chosen separately and may be shorter than planned. Where
  * surfaces are pressed so hard that the material may fail, the guards judge each step: *n becomes
  * the number of steps taken, and *cut the time by which they were shorter. */
@@ -51,7 +43,9 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
         }
         const bool chosen = near && !sim->solid.implicit && !(sim->scene->numerics.fixed_step > 0);
         if (chosen) step = min2(dt, sim->dt_solid);
-        part = near ? 1 : steps_of_part(sim, step, *n - k);
+        part = near ? 1 : *n - k;
+        if (sim->observer.context) /* up to the state before a time observed, then over it */
+            part = (int)max2(1, min2(floor((sim->observer.next - st->time) / step - 1e-6), part));
         if (k && sim->observer.context) solid_set_positions(&sim->kind[KIND_SOLID]);
         TRY(observe(sim, st->time + (part + 1e-6) * step, d));
         if (sim->effects & FX_RIGID) begin_rigid(sim, st->time, step, step);
