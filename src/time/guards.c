@@ -201,6 +201,8 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
 /* What lengthens a step that a bound limits. */
 static const char *step_remedy(const struct simulation *sim, enum bound bound)
 {
+    if (bound == BOUND_spring || (bound == BOUND_solid && sim->scene->n_spring > 0))
+        return "a softer [spring], or a `force` that is less steep, may help";
     if (bound != BOUND_solid && bound != BOUND_contact)
         return "a smaller cfl or a higher sound_speed may help";
     if (sim->effects & FX_FLUID && sim->scene->numerics.multirate == MULTIRATE_OFF)
@@ -222,10 +224,9 @@ static enum err check_step(struct simulation *sim, struct diag *d)
             time_text(sim).text, sim->dt_solid, sim->substeps);
     if (dt > STEP_WARNING * limit) return ERR_OK;
     if (dt < limit)
-        return diag_fail(d, ERR_GUARD,
-                         "%s: the time step has fallen to %.3g s, because accelerations "
-                         "grow without bound; a higher sound_speed or a smaller cfl may help",
-                         time_text(sim).text, dt);
+        return diag_fail(d, ERR_GUARD, "%s: the time step has fallen to %.3g s, limited by %s; %s",
+                         time_text(sim).text, dt, bound_table[bound].name,
+                         step_remedy(sim, bound));
     warn_once(sim, &sim->guard.warned_step, d,
               "the time step has fallen to %.3g s, limited by %s, and the run "
               "stops at %.3g s; %s",
