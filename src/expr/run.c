@@ -251,9 +251,9 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
 
 /* --- integral --- */
 
-/* Halves an interval as long as its Gauss-Legendre quadrature with three points is not what values
- * and slopes at its ends say; those see a kink that no point has passed. `size`: that of the
- * whole. */
+/* Halves an interval as long as its Gauss-Legendre quadrature with three points, and the slope in
+ * its middle, are not what values and slopes at its ends say; those see a kink that no point has
+ * passed, and the slope jumps that cancel. `size`: that of the whole. */
 static double integral_of(const struct expr *e, const struct expr_jet *a, const struct expr_jet *b,
                           double from, double to, double size, int halvings)
 {
@@ -262,9 +262,11 @@ static double integral_of(const struct expr *e, const struct expr_jet *a, const 
     const double left = expr_at(e, middle - off, 0), right = expr_at(e, middle + off, 0);
     const double gauss = length * (5 * left + 8 * m.value + 5 * right) / 18;
     const double ends = length * (0.5 * (a->value + b->value) + length * (a->d1 - b->d1) / 12);
+    const double chord = b->value - a->value;
+    const double bend = length * m.d1 - 1.5 * chord + 0.25 * length * (a->d1 + b->d1);
     const double here = fabs(a->value) + fabs(b->value) + fabs(left) + fabs(right);
     size = max2(size, fabs(length) * here);
-    if (halvings == 0 || fabs(gauss - ends) <= 1e-11 * size) return gauss;
+    if (halvings == 0 || fabs(gauss - ends) + fabs(length * bend) <= 1e-11 * size) return gauss;
     return integral_of(e, a, &m, from, middle, size, halvings - 1) +
            integral_of(e, &m, b, middle, to, size, halvings - 1);
 }

@@ -315,17 +315,19 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
     return now;
 }
 
-void rigid_add_springs(struct rigid *rigid)
+void rigid_add_springs(struct rigid *rigid, double dt)
 {
     for (int k = 0; k < rigid->n_springs; k++) {
         struct rigid_spring *const spring = &rigid->spring[k];
         const struct spring_now now = spring_now(rigid, spring);
-        spring->longer = now.longer;
+        const bool law = spring->given->force.e[0] && !spring->given->slack;
+        const double ahead = law ? 0.5 * dt * now.rate : 0; /* T-100a */
+        spring->longer = now.longer + fabs(ahead);
         if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
         row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
         row->damping = spring->given->damping;
-        row->force = -spring_force(spring->given, now.longer);
+        row->force = -spring_mean(spring->given, now.longer - ahead, now.longer + ahead, 1);
         row->later = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
         for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);

@@ -95,7 +95,7 @@ double rigid_displacement(const struct rigid *rigid, int k, int c, double late);
 /* From the centre of mass to a point of a body, where the body is. */
 void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angle, double arm[2]);
 
-void rigid_add_springs(struct rigid *rigid);
+void rigid_add_springs(struct rigid *rigid, double dt);
 
 /* --- hinges between bodies, and moments in hinges (rigid/hinges.c) --- */
 

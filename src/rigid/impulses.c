@@ -123,7 +123,7 @@ void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_st
     rigid->n_rows = 0;
     rigid_add_touches(rigid, time);
     rigid_add_hinges(rigid, time);
-    rigid_add_springs(rigid);
+    rigid_add_springs(rigid, step->dt);
     find_start(rigid, step->dt);
     for (int stage = 0; stage < RIGID_STAGES; stage++)
         relax_all(rigid, (enum rigid_stage)stage, step);

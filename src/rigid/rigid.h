@@ -37,7 +37,7 @@ struct rigid_spring {
     const struct scene_spring *given;
     int body[2];
     double length; /* without force, m */
-    double longer; /* elongation where the last step has found the force, m */
+    double longer; /* the largest elongation where the last step has found the force, m */
 };
 
 struct rigid {

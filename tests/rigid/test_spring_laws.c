@@ -212,6 +212,23 @@ static void test_a_narrow_feature_of_a_table(void)
     }
 }
 
+/* Forces that jump: of two directions, and many times. */
+static void test_jumps_keep_the_energy(void)
+{
+    static const char *const laws[] = {"force = 10*(e - 1e-4)/abs(e - 1e-4)\n",
+                                       "force = 2*round(200*e)\n"};
+    for (int k = 0; k < 2; k++) {
+        char text[1000];
+        snprintf(text, sizeof text, BODY "velocity = 0.3, 0\n" SPRING "%s", laws[k]);
+        rig_open(&rig, text, NULL);
+        const double before = total();
+        while (rig.sim.state.time < 0.2) {
+            rig_steps(&rig, 1, 1e6);
+            assert_near(1e-4 * before, before, total(), laws[k]);
+        }
+    }
+}
+
 /* An elongation that the check of the case has not reached: bodies in whole and half steps, and
  * Newton's method of a beam. */
 static void test_a_force_that_is_not_finite_stops_the_run(void)
@@ -265,6 +282,7 @@ int main(void)
     RUN_TEST(test_a_slack_line);
     RUN_TEST(test_a_constant_force);
     RUN_TEST(test_a_narrow_feature_of_a_table);
+    RUN_TEST(test_jumps_keep_the_energy);
     RUN_TEST(test_a_force_that_is_not_finite_stops_the_run);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
