@@ -196,8 +196,9 @@ SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sph
 SPHFSI_API const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                          int k);
 
-/** Values of a probe of the case now, by the name of its section: as many as its quantity has
- * columns (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such probe. */
+/** Values of a probe of the case now, or its mean so far, by the name of its section: as many as
+ * its quantity has columns (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such
+ * probe. */
 enum { SPHFSI_PROBE_COLUMNS = 5 };
 SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                                            double values[SPHFSI_PROBE_COLUMNS]);

@@ -28,6 +28,7 @@ struct user_function {
 struct sphfsi_simulation {
     struct session session;
     struct probes probes;
+    struct row_files means; /* of the probes */
     struct user_function force[KIND_COUNT];
     struct user_function *motion;          /* [n_motion]; NULL: none */
     double *computed[KIND_COUNT][D_COUNT]; /* fields that are computed when they are asked for */
@@ -70,7 +71,9 @@ static enum err open_simulation(struct sphfsi_simulation *handle, const struct s
     TRY(session_open(&handle->session, o, d));
     struct simulation *const sim = &handle->session.simulation;
     check_simulation(sim, d);
-    const enum err e = probes_create(&handle->probes, sim, &sim->arena, d);
+    enum err e = probes_create(&handle->probes, sim, &sim->arena, d);
+    if (!e) e = rows_create(&handle->means, &handle->probes, sim, false, &sim->arena, d);
+    if (!e) rows_follow(&handle->means, sim);
     if (e) session_close(&handle->session);
     handle->threads = thread_count();
     return e;

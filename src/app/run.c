@@ -471,7 +471,7 @@ static void end_run(struct run *r)
 static enum err run_session(struct run *r, const char *path, enum run_dir_use use)
 {
     TRY(probes_create(&r->probes, r->sim, &r->arena, r->diag));
-    TRY(rows_create(&r->rows, &r->probes, r->sim, &r->arena, r->diag));
+    TRY(rows_create(&r->rows, &r->probes, r->sim, true, &r->arena, r->diag));
     TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
                         &r->arena, r->diag));
     r->record.references = &r->references;

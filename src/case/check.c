@@ -332,6 +332,19 @@ static enum err check_on(struct reader *r, const struct scene_probe *p)
     return ERR_OK;
 }
 
+/* A row then needs no more than the steps since the row before. */
+static enum err check_average(struct reader *r, const struct scene_probe *p)
+{
+    const double given = r->scene->output.probe_interval;
+    const double common = given > 0 ? given : 1e-3 * r->scene->top.end_time;
+    const double interval = p->interval > 0 ? p->interval : common;
+    if (p->average <= interval * (1 + 1e-12)) return ERR_OK;
+    return bad_section(r,
+                       "average = %g s is longer than the interval of %g s between its rows; set "
+                       "`interval` to %g s or more",
+                       p->average, interval, p->average);
+}
+
 static enum err check_fluid_probe(struct reader *r, const struct scene_probe *p,
                                   const char *quantity)
 {
@@ -368,6 +381,7 @@ static enum err check_probe(struct reader *r, const void *section)
     TRY(case_go_on(r, check_point(r, p, "point", quantity)));
     TRY(case_go_on(r, check_point(r, p, "to", quantity)));
     TRY(check_on(r, p));
+    TRY(check_average(r, p));
     switch (scene_probe_target(p)) {
     case TARGET_BODY: TRY(check_body(r, p)); return check_fluid_probe(r, p, quantity);
     case TARGET_SOLID:

@@ -129,6 +129,7 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                             .direction = sp->direction,
                             .columns = slice_count(
                                 slice_of(quantity_table[sp->quantity].columns), ','),
+                            .average = sp->average,
                             .motion = -1,
                             .kind = KIND_SOLID,
                             .body = scene_find(sim->scene, SECTION_solid, sp->body),
@@ -457,26 +458,33 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
     }
 }
 
-void probes_sample(const struct probes *probes, struct simulation *sim, int file, double *row,
-                   double *rate)
+void probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
+                   double *row, double *rate)
 {
     enum need need = NEED_NOTHING;
     for (int k = 0; k < probes->n; k++) {
         const enum need by = need_of(&probes->probe[k]);
-        if (probes->probe[k].file == file && by > need) need = by;
+        const bool read = probes->probe[k].file == file && (!means || probes->probe[k].mean);
+        if (read && by > need) need = by;
     }
     refresh(sim, need);
     row[0] = sim->state.time;
     for (int k = 0; k < probes->n; k++) {
         const struct probe *const probe = &probes->probe[k];
-        if (probe->file == file) evaluate(probe, sim, row + probe->column, rate + probe->column);
+        if (probe->file != file || (means && !probe->mean)) continue;
+        evaluate(probe, sim, row + probe->column, rate + probe->column);
     }
 }
 
 void probes_values(const struct probes *probes, struct simulation *sim, int k, double *row)
 {
     const struct probe *const probe = &probes->probe[k];
-    double rate[PROBE_MAX_COLUMNS];
+    const struct probe_mean *const m = probe->mean;
+    if (m && m->row >= 0 && m->time == sim->state.time) {
+        for (int c = 0; c < probe->columns; c++) row[c] = m->sum[c] / m->covered;
+        return;
+    }
     refresh(sim, need_of(probe));
+    double rate[PROBE_MAX_COLUMNS];
     evaluate(probe, sim, row, rate);
 }

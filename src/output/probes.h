@@ -9,6 +9,15 @@ struct probe_body {
     int body; /* index of its section */
 };
 
+/* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as
+ * they are. */
+struct probe_mean {
+    double row;     /* number of the row that it is for; -1: none yet */
+    double time;    /* s: end of the time that it covers so far */
+    double covered; /* s */
+    double sum[5];  /* integral over this time */
+};
+
 struct probe {
     int quantity; /* enum probe_quantity */
     enum probe_target target;
@@ -24,6 +33,8 @@ struct probe {
     int motion;              /* that carries the point of a probe on a wall; -1: none */
     double point[2];         /* m, in the initial configuration */
     double to[2];            /* m */
+    double average;          /* s; 0: none */
+    struct probe_mean *mean; /* NULL: none */
     int n;                   /* particles of the interpolation at a material point */
     int32_t *particle;       /* of the solid */
     double *weight;          /* sum 1; reproduce linear fields */
@@ -50,15 +61,15 @@ enum { PROBE_MAX_COLUMNS = 5, PROBE_COLUMN_TEXT = SCENE_NAME + 24 };
 enum err probes_create(struct probes *probes, const struct simulation *sim, struct arena *a,
                        struct diag *d) SPHFSI_CHECKED;
 
-/* The present time, and values of the probes of a file in its columns; their rates where these are
- * known. */
-void probes_sample(const struct probes *probes, struct simulation *sim, int file, double *row,
-                   double *rate);
+/* The present time, and values of the probes of a file, or of those with means only, in its
+ * columns; their rates where these are known. */
+void probes_sample(const struct probes *probes, struct simulation *sim, int file, bool means,
+                   double *row, double *rate);
 
 /* Name of a column of a probe, <probe>_<quantity>_<unit>; false: it has no such column. */
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size);
 
-/* The values of probe k now, as many as it has columns. */
+/* The values of probe k now, as many as it has columns; its mean so far, if it has one. */
 void probes_values(const struct probes *probes, struct simulation *sim, int k, double *row);
 
 /* --- fluid_sample.c: sampling the fluid --- */

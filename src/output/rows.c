@@ -32,6 +32,16 @@ void due_pass(struct due *u, double time)
 
 /* --- states --- */
 
+static void read_state(const struct row_files *r, struct rows *f, struct simulation *sim,
+                       bool whole)
+{
+    f->whole = whole;
+    if (f->file < 0)
+        *(struct ledger *)(void *)f->now = simulation_ledger(sim);
+    else
+        probes_sample(r->probes, sim, f->file, !whole, f->now, f->now_rate);
+}
+
 /* T-76a: a column between both states, by the cubic of Hermite where its rate is known, else by a
  * straight line. */
 static double between(const struct rows *f, int c, double time)
@@ -49,6 +59,37 @@ static double between(const struct rows *f, int c, double time)
     return f->angle[c] ? value - turn * nearbyint(value / turn) : value;
 }
 
+/* --- means --- */
+
+/* T-76: adds the part of the last step, between both readings, that the mean of the next row
+ * covers. */
+static void add_to_mean(const struct rows *f, const struct probe *probe)
+{
+    struct probe_mean *const m = probe->mean;
+    const double from = max2(f->before[0], f->next - probe->average);
+    const double to = min2(f->now[0], f->next), row = (double)f->due.k;
+    if (f->before[0] < 0 || !(from < to)) return;
+    if (m->row != row) *m = (struct probe_mean){.row = row};
+    for (int c = 0; c < probe->columns; c++)
+        m->sum[c] += (to - from) * 0.5 *
+                     (between(f, probe->column + c, from) + between(f, probe->column + c, to));
+    m->covered += to - from;
+    m->time = to;
+}
+
+static void put_mean(const struct rows *f, const struct probe *probe, double *row)
+{
+    const struct probe_mean *const m = probe->mean;
+    for (int c = 0; c < probe->columns && m->row == (double)f->due.k; c++)
+        row[probe->column + c] = m->sum[c] / m->covered;
+}
+
+/* Calls a function for each probe of a file that has a mean. */
+#define FOR_MEANS(r, f, probe)                                                                  \
+    for (struct probe *probe = (r)->probes->probe; probe < (r)->probes->probe + (r)->probes->n; \
+         probe++)                                                                               \
+        if (probe->mean && probe->file == (f)->file)
+
 /* --- rows --- */
 
 /* Writes the rows up to the present state. Those behind the end of the run are left to a restart,
@@ -57,13 +98,17 @@ static enum err write_rows(const struct row_files *r, struct rows *f, struct dia
 {
     double row[SERIES_MAX_COLUMNS];
     while (!(f->next > r->end && f->next <= f->now[0])) {
+        FOR_MEANS(r, f, probe) add_to_mean(f, probe);
         if (!(f->next <= f->now[0])) {
             f->before[0] = -1;
             break;
         }
-        row[0] = f->next;
-        for (int c = 1; c < f->columns; c++) row[c] = between(f, c, f->next);
-        TRY(series_row(&f->series, row, d));
+        if (r->ledger) {
+            row[0] = f->next;
+            for (int c = 1; c < f->columns; c++) row[c] = between(f, c, f->next);
+            FOR_MEANS(r, f, probe) put_mean(f, probe, row);
+            TRY(series_row(&f->series, row, d));
+        }
         due_pass(&f->due, f->next);
         f->next = due_time(&f->due);
     }
@@ -73,16 +118,18 @@ static enum err write_rows(const struct row_files *r, struct rows *f, struct dia
 static enum err follow_file(const struct row_files *r, struct rows *f, struct simulation *sim,
                             double until, struct diag *d)
 {
+    const bool whole = r->ledger && f->next <= until;
     const size_t bytes = (size_t)f->columns * sizeof(double);
-    if (until < f->next || f->now[0] == sim->state.time) return ERR_OK;
+    if (until < f->next - f->window) return ERR_OK;
+    if (f->now[0] == sim->state.time) {
+        if (whole && !f->whole) read_state(r, f, sim, whole);
+        return ERR_OK;
+    }
     if (f->now[0] >= 0) { /* else that of a restart, if it is needed */
         memcpy(f->before, f->now, bytes);
         memcpy(f->before_rate, f->now_rate, bytes);
     }
-    if (f->file < 0)
-        *(struct ledger *)(void *)f->now = simulation_ledger(sim);
-    else
-        probes_sample(r->probes, sim, f->file, f->now, f->now_rate);
+    read_state(r, f, sim, whole);
     return write_rows(r, f, d);
 }
 
@@ -93,7 +140,7 @@ static enum err follow(void *context, struct simulation *sim, double until, stru
     for (int k = 0; k < r->n; k++) {
         struct rows *const f = &r->file[k];
         TRY(follow_file(r, f, sim, until, d));
-        sim->observer.next = min2(sim->observer.next, f->next);
+        sim->observer.next = min2(sim->observer.next, f->next - f->window);
     }
     return ERR_OK;
 }
@@ -118,12 +165,15 @@ static void list_files(struct row_files *r, const struct scene *scene)
         struct rows f = {.name = from->name, .header = from->header, .file = k};
         f.columns = from->columns;
         f.due.interval = from->interval;
-        add_file(r, f);
+        for (int m = 0; m < r->probes->n; m++)
+            if (r->probes->probe[m].file == k)
+                f.window = max2(f.window, r->probes->probe[m].average);
+        if (r->ledger || f.window > 0) add_file(r, f);
     }
     struct rows f = {.name = "ledger.csv", .header = ledger_header + 1, .file = -1};
     f.columns = (int)(sizeof(struct ledger) / sizeof(double));
     f.due.interval = scene->output.ledger_interval;
-    add_file(r, f);
+    if (r->ledger) add_file(r, f);
 }
 
 static enum err allocate(const struct row_files *r, struct rows *f, struct arena *a,
@@ -145,19 +195,28 @@ static enum err allocate(const struct row_files *r, struct rows *f, struct arena
     return ERR_OK;
 }
 
-enum err rows_create(struct row_files *r, const struct probes *p, struct simulation *sim,
+enum err rows_create(struct row_files *r, struct probes *p, struct simulation *sim, bool ledger,
                      struct arena *a, struct diag *d)
 {
-    const bool ends = sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
-    *r = (struct row_files){p, ends ? sim->scene->top.end_time : HUGE_VAL, 0, NULL};
+    enum { MEAN = sizeof(struct probe_mean) / sizeof(double) };
+    const bool ends =
+        ledger && sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
+    *r = (struct row_files){p, ledger, ends ? sim->scene->top.end_time : HUGE_VAL, 0, NULL};
     TRY(arena_array(a, &r->file, (size_t)p->n_files + 1, "rows", d));
     list_files(r, sim->scene);
     size_t n = 0;
     for (int k = 0; k < r->n; k++) n += 2 * (size_t)r->file[k].columns;
+    for (int k = 0; k < p->n; k++) n += p->probe[k].average > 0 ? MEAN : 0;
     double *carried = arena_alloc(a, n, sizeof *carried, "rows", d);
     if (!carried) return ERR_MEMORY;
     sim->carried.n = (int64_t)n;
     sim->carried.value = carried;
+    for (int k = 0; k < p->n; k++) {
+        if (!(p->probe[k].average > 0)) continue;
+        p->probe[k].mean = (struct probe_mean *)(void *)carried;
+        *p->probe[k].mean = (struct probe_mean){.row = -1};
+        carried += MEAN;
+    }
     for (int k = 0; k < r->n; k++) {
         TRY(allocate(r, &r->file[k], a, carried, d));
         carried += 2 * r->file[k].columns;

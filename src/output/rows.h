@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Rows of probes and of the ledger at uniform times, interpolated between the states of a run on
- * both sides of each time. No step depends on them. */
+ * both sides of each time; means of probes over time. No step depends on them. */
 #pragma once
 
 #include "base/files.h"
@@ -58,24 +58,28 @@ struct rows {
     const char *name, *header;
     int file;       /* of probes; -1: the ledger */
     int columns;    /* with the time */
+    double window;  /* s: the longest `average` of its probes */
     struct due due; /* of the rows behind the first */
     double next;    /* s: time of the next row */
     bool *angle;    /* [columns]: rad, from -pi to pi */
     double *before, *before_rate, *now, *now_rate;
+    bool whole; /* `now` has all columns, not only what means need */
     struct series series;
 };
 
 /* All files of a run, the ledger last. */
 struct row_files {
-    const struct probes *probes;
-    double end; /* s: no row is later; the last step passes it */
+    struct probes *probes;
+    bool ledger; /* and all rows; false: means only */
+    double end;  /* s: no row is later; the last step passes it */
     int n;
     struct rows *file;
 };
 
-/* Lists the files. What a restart needs of them becomes the simulation's `carried`. Rows of files
- * that are not started are formatted only. */
-enum err rows_create(struct row_files *r, const struct probes *p, struct simulation *sim,
+/* Lists the files, or without `ledger` only what the means of probes need. What a restart needs of
+ * them becomes the simulation's `carried`. Rows of files that are not started are formatted only.
+ */
+enum err rows_create(struct row_files *r, struct probes *p, struct simulation *sim, bool ledger,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
 /* Creates the files, whose first row will be of the time; or continues those of an earlier run
@@ -85,7 +89,7 @@ enum err rows_start(struct row_files *r, const char *folder, double time, struct
 enum err rows_resume(struct row_files *r, const char *folder, double time, struct ledger *first,
                      struct diag *d) SPHFSI_CHECKED;
 
-/* Lets the rows follow the simulation from its present state on. */
+/* Lets the rows and means follow the simulation from its present state on. */
 void rows_follow(struct row_files *r, struct simulation *sim);
 
 /* Makes all rows survive a power failure. */

@@ -46,10 +46,11 @@ MORE_PROBES = """
 quantity = force
 body = tank
 interval = 0.13 ms
-[probe inside]
+[probe mean]
 quantity = pressure
 point = 0.05, 0.02
 interval = 0.9 ms
+average = 0.31 ms
 """
 WATCHED = (["output.probe_interval=0.37 ms"], ["output.ledger_interval=7 us"],
            ["output.snapshot_interval=0.7 ms"], ["output.checkpoint_interval=0.11 ms"],

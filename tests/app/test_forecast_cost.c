@@ -90,15 +90,15 @@ enum err __wrap_sort_particles(struct simulation *s, struct diag *d)
 
 static double reading; /* what a reading of probes takes in the second half of the run, s */
 
-void __real_probes_sample(const struct probes *probes, struct simulation *s, int file, double *row,
-                          double *rate);
-void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, double *row,
-                          double *rate);
-void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, double *row,
-                          double *rate)
+void __real_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
+                          double *row, double *rate);
+void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
+                          double *row, double *rate);
+void __wrap_probes_sample(const struct probes *probes, struct simulation *s, int file, bool means,
+                          double *row, double *rate)
 {
     now += s->state.time > 0.5 * s->scene->top.end_time ? reading : 0;
-    __real_probes_sample(probes, s, file, row, rate);
+    __real_probes_sample(probes, s, file, means, row, rate);
 }
 
 /* By clocks that count readings, from now on. */

@@ -86,6 +86,7 @@ static const char *companion(const struct param *param)
     if (is(param, "probe", "point")) return "probe more.quantity=pressure";
     if (is(param, "probe", "to")) return "probe more.quantity=flux";
     if (is(param, "probe", "on")) return "probe more.quantity=pressure";
+    if (is(param, "probe", "average")) return "probe more.interval=0.01";
     if (is(param, "reference", "file")) return "reference more.label=x";
     if (is(param, "inflow", "absorb")) return "inflow more.pressure=1";
     return NULL;

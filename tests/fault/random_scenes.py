@@ -185,6 +185,9 @@ def probes(s, fluid, solids, at):
         if s.chance(0.25):
             rows.append(("interval", f"end_time/{d.choice([5, 9])}"))
             s.features.add("a probe with its own interval")
+        if s.chance(0.2):
+            rows.append(("average", "end_time/20"))
+            s.features.add("a probe that averages")
         s.features.add(f"probe of {what}")
         s.add("probe", f"p{k}", rows)
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Probes: exact values on states made by hand; names of columns; files; what is refused. */
+ * Probes: exact values on states made by hand; names of columns; files. */
 #include "case/params.h"
 #include "output/probes.h"
 #include "rig.h"
@@ -58,7 +58,7 @@ static void weights_reproduce_linear_fields(const char *point)
     open_with("", point);
     set_linear_field();
     double row[8], rate[8];
-    probes_sample(&probes, &rig.sim, 0, row, rate);
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
     const double *at = probes.probe[0].point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5 + 2 * at[0] - 3 * at[1], row[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.25 + at[0] + 4 * at[1], row[2]);
@@ -146,7 +146,7 @@ static void pressure_is_hydrostatic_at_the_start(void)
 {
     open_with("", NULL);
     double row[8], rate[8];
-    probes_sample(&probes, &rig.sim, 0, row, rate);
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
     TEST_ASSERT_DOUBLE_WITHIN(0.03 * 1000 * 9.81 * 0.1, 1000 * 9.81 * 0.08, row[5]);
 }
 
@@ -293,9 +293,9 @@ static void walls_get_forces_only_for_rows_that_show_them(void)
               NULL);
     double *const fy = rig.sim.kind[KIND_WALL].fy;
     fy[0] = 7;
-    probes_sample(&probes, &rig.sim, 1, row, rate);
+    probes_sample(&probes, &rig.sim, 1, false, row, rate);
     TEST_ASSERT_TRUE(fy[0] == 7);
-    probes_sample(&probes, &rig.sim, 0, row, rate);
+    probes_sample(&probes, &rig.sim, 0, false, row, rate);
     TEST_ASSERT_FALSE(fy[0] == 7);
 }
 
@@ -521,26 +521,6 @@ static void every_quantity_has_its_name(void)
     TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(param->choices));
 }
 
-static void refused_probes(void)
-{
-    static const char *const wrong[][2] = {
-        {"[probe Z]\nquantity = pressure\npoint = 0, 0\non = gat\n",
-         "on = gat: there is no [solid] or [wall]"},
-        {"[probe Z]\nquantity = flux\non = gate\npoint = 0, 0\nto = 1, 0\n",
-         "only for pressure, level, velocity and surface pressure"},
-        {"[probe Z]\nquantity = force\nbody = gate, tan\n", "body = tan: there is no"},
-        {"[probe Z]\nquantity = force\nbody = gate, gate\n", "is listed twice"},
-        {"[probe Z]\nquantity = force\nbody = gate,\n", "there is no [solid] or [wall]"},
-        {"[solid post]\nlike = gate\nshape = box 0.3, 0, 0.33, 0.1\n"
-         "[probe Z]\nquantity = reaction\nbody = post\n",
-         "give it a `clamp`"},
-    };
-    for (size_t k = 0; k < COUNT_OF(wrong); k++) {
-        snprintf(text, sizeof text, "%s%s", tiny_case, wrong[k][0]);
-        rig_refuses(text, wrong[k][1]);
-    }
-}
-
 int main(void)
 {
     UNITY_BEGIN();
@@ -577,6 +557,5 @@ int main(void)
     RUN_TEST(columns_are_named);
     RUN_TEST(an_interval_of_its_own_makes_a_file);
     RUN_TEST(every_quantity_has_its_name);
-    RUN_TEST(refused_probes);
     return UNITY_END();
 }
