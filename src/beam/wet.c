@@ -105,18 +105,51 @@ static double displacement_between(const struct beams *beams, const struct line_
                elementary_hypot(to->normal[0] - from->normal[0], to->normal[1] - from->normal[1]);
 }
 
+/* The squared radius of gyration of a node's own mass, m^2. */
+static double gyration2(const struct beam_node *node) { return node->mass[2] / node->mass[0]; }
+
+/* From the centre of a beam's carrier to a node. */
+static void arm_to(const struct beams *beams, const struct line_carrier *of, int node,
+                   double arm[2])
+{
+    for (int c = 0; c < 2; c++)
+        arm[c] = beams->node[node].X[c] + beams->state[node].x[c] - of->x[c];
+}
+
+/* T-111a: the rigid motion with the momentum and the angular momentum of the masses c_i. */
+static struct line_carrier carrier_of(const struct beams *beams, const struct beam *b)
+{
+    struct line_carrier of = {0};
+    double sum = 0, second = 0, arm[2];
+    for (int m = b->first_node; m < b->end_node; m++) sum += beams->carries[m];
+    for (int m = b->first_node; m < b->end_node; m++)
+        for (int c = 0; c < 2; c++) {
+            const double share = beams->carries[m];
+            of.x[c] += share / sum * (beams->node[m].X[c] + beams->state[m].x[c]);
+            of.v[c] += share * beams->state[m].w[c];
+            of.a[c] += share * beams->state[m].a[c];
+        }
+    for (int m = b->first_node; m < b->end_node; m++) {
+        const double share = beams->carries[m], own = gyration2(&beams->node[m]);
+        const double *const w = beams->state[m].w, *const a = beams->state[m].a;
+        arm_to(beams, &of, m, arm);
+        second += share * (square(arm[0]) + square(arm[1]) + own);
+        of.spin += share * (arm[0] * w[1] - arm[1] * w[0] + own * w[2]);
+        of.spin_rate += share * (arm[0] * a[1] - arm[1] * a[0] + own * a[2]);
+    }
+    of.turns = sum / second;
+    of.spin *= of.turns;
+    of.spin_rate *= of.turns;
+    return of;
+}
+
 double beams_place(struct beams *beams, double since)
 {
     double largest = 0;
     for (int k = 0; k < beams->n; k++) {
         const struct beam *const b = &beams->beam[k];
         struct thin_line *const line = beams->line[k];
-        memset(line->carried, 0, sizeof line->carried);
-        for (int m = b->first_node; m < b->end_node; m++)
-            for (int c = 0; c < 2; c++) {
-                line->carried[c] += beams->carries[m] * beams->state[m].w[c];
-                line->carried[2 + c] += beams->carries[m] * beams->state[m].a[c];
-            }
+        line->carrier = carrier_of(beams, b);
         for (int m = b->first_element; m < b->end_element; m++)
             for (int last = 0; last < 2; last++) {
                 struct line_end *const end = &line->end[2 * (m - b->first_element) + last],
@@ -138,14 +171,17 @@ static int element_of(const struct beams *beams, int beam, int64_t j)
     return beams->beam[beam].first_element + beams->line[beam]->scene->dummy[j].part;
 }
 
-/* The part across the beam of a vector at a dummy, to its ends; adds that along it to `along`. */
+/* The part across the beam of a vector at a dummy, to its ends; adds that along it, and its moment
+ * about the centre of the carrier, to `along`. */
 static void across(const struct thin_line *line, int64_t j, double x, double y, double to[6],
-                   double along[2])
+                   double along[3])
 {
-    double t[2];
+    double t[2], foot[2];
     line_tangent(line, j, t);
-    const double part = x * t[0] + y * t[1];
+    line_foot(line, j, foot);
+    const double part = x * t[0] + y * t[1], *const centre = line->carrier.x;
     for (int c = 0; c < 2; c++) along[c] += part * t[c];
+    along[2] += part * ((foot[0] - centre[0]) * t[1] - (foot[1] - centre[1]) * t[0]);
     line_at_ends(line, j, x - part * t[0], y - part * t[1], to);
 }
 
@@ -154,15 +190,15 @@ static double wetted(const struct thin_line *line, int64_t j, const struct parti
                      double normal[6])
 {
     const int64_t i = line->first + j;
-    double along[2] = {0};
+    double along[3] = {0};
     across(line, j, p->wet_x[i], p->wet_y[i], normal, along);
     const double area = elementary_hypot(p->wet_x[i], p->wet_y[i]);
     for (int r = 0; r < 6; r++) normal[r] /= max2(area, 1e-300);
     return area;
 }
 
-/* `along`: the pressure's force that the carrier takes. */
-static void add_dummy(struct beams *beams, int beam, int64_t j, double along[2])
+/* `along`: the pressure's force and moment that the carrier takes. */
+static void add_dummy(struct beams *beams, int beam, int64_t j, double along[3])
 {
     const struct thin_line *const line = beams->line[beam];
     const struct particles *const p = beams->walls;
@@ -192,6 +228,20 @@ static void extrapolate(struct beams *beams, const struct beam_times *times)
         }
 }
 
+/* Gives the nodes what their carrier takes. */
+static void share_out(struct beams *beams, int beam, const double along[3])
+{
+    const struct line_carrier *const of = &beams->line[beam]->carrier;
+    const double turning = of->turns * along[2];
+    for (int m = beams->beam[beam].first_node; m < beams->beam[beam].end_node; m++) {
+        double arm[2], *const force = beams->step[m].fluid;
+        arm_to(beams, of, m, arm);
+        force[0] += beams->carries[m] * (along[0] - turning * arm[1]);
+        force[1] += beams->carries[m] * (along[1] + turning * arm[0]);
+        force[2] += beams->carries[m] * turning * gyration2(&beams->node[m]);
+    }
+}
+
 void beams_find_fluid(struct beams *beams, const struct beam_times *times)
 {
     for (int k = 0; k < beams->n_nodes; k++) {
@@ -200,11 +250,10 @@ void beams_find_fluid(struct beams *beams, const struct beam_times *times)
     }
     memset(beams->added, 0, (size_t)beams->n_elements * sizeof *beams->added);
     for (int k = 0; k < beams->n; k++) {
-        double along[2] = {0};
+        double along[3] = {0};
         for (int64_t j = 0; j < beams->line[k]->scene->n_dummies; j++)
             add_dummy(beams, k, j, along);
-        for (int m = beams->beam[k].first_node; m < beams->beam[k].end_node; m++)
-            for (int c = 0; c < 2; c++) beams->step[m].fluid[c] += beams->carries[m] * along[c];
+        share_out(beams, k, along);
     }
     extrapolate(beams, times);
 }

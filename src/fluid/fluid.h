@@ -34,7 +34,11 @@ struct thin_line {
     double extend[2];  /* how far it continues into a wall beyond its ends, m */
     bool tip[2];       /* whether it ends there: fluid may flow round it */
     bool bends;        /* of a beam */
-    double carried[4]; /* velocity and acceleration of the beam's carrier (T-111a) */
+    /* The rigid motion that the fluid sees along a beam (T-111a): with the rate of turning and its
+     * rate. `turns`: the mass over the moment of inertia, 1/m^2. */
+    struct line_carrier {
+        double x[2], v[2], a[2], spin, spin_rate, turns;
+    } carrier;
 };
 
 struct lines {

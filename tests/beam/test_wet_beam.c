@@ -214,6 +214,35 @@ static void test_a_loose_end_leaves_its_wall(void)
     }
 }
 
+/* A stiff float with upright edges, turned in still water, swings as a rigid line of its shape and
+ * mass. */
+static void test_a_float_with_edges_turns_as_a_rigid_one(void)
+{
+    static const char *const kind[] = {
+        "[rigid f]\nshape = polyline thickness 0: 0.3, 0.525; 0.3, 0.325; 0.9, 0.325; 0.9, 0.525\n"
+        "mass = 45\ncentre = 0.6, 0.365\ninertia = 2.598\nspin = 1\n",
+        "[beam f]\nshape = polyline: 0.3, 0.525; 0.3, 0.325; 0.9, 0.325; 0.9, 0.525\n"
+        "bending_stiffness = 1e5\naxial_stiffness = 1e7\nmass = 45\n"
+        "velocity = -(y - 0.365 m), x - 0.6 m\n"};
+    double swing[2] = {0};
+    for (int k = 0; k < 2; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "scheme = standard\ndp = 25 mm\nend_time = 1\ngravity = 0, -9.81\n"
+                 "[fluid w]\nshape = box 0, 0, 1.2, 0.4\nminus = box 0.3, 0.325, 0.9, 0.4\n"
+                 "sound_speed = 20\nsurface = 0.4\n"
+                 "[wall t]\nshape = polyline: 0, 0.8; 0, 0; 1.2, 0; 1.2, 0.8\n%s",
+                 kind[k]);
+        rig_open(&rig, text, NULL);
+        for (int n = 1; n <= 20; n++) {
+            rig_run(&rig, 0.02 * n);
+            swing[k] = fmax(swing[k], k ? state(rig.sim.beams.n_nodes / 2)->x[2]
+                                        : rig.sim.rigid.state[0].x[2]);
+        }
+    }
+    assert_near(0.2 * swing[0], swing[0], swing[1], "largest angle");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -226,5 +255,6 @@ int main(void)
     RUN_TEST(test_one_side_is_refused);
     RUN_TEST(test_packing_does_not_pass_a_line);
     RUN_TEST(test_a_loose_end_leaves_its_wall);
+    RUN_TEST(test_a_float_with_edges_turns_as_a_rigid_one);
     return UNITY_END();
 }
