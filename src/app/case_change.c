@@ -23,7 +23,8 @@ static bool is_one_of(const char *text, const char *const *words, const char *en
 }
 
 /* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. Of a
- * file its contents, which are in a comment, and not its path: a run may be moved. */
+ * [table] its contents, which are in a comment, and not its path: a run may be moved. The curve of
+ * a [reference] does not affect the run. */
 static bool matters_to_restart(const struct line *line)
 {
     static const char *const datasets[] = {"snapshot_fields", "snapshot_precision", NULL};

@@ -300,6 +300,21 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 
 /* --- the longest period --- */
 
+/* Motions that bend nothing, of beams that are not joined. */
+static int64_t count_free(const struct beams *beams)
+{
+    int64_t n = 0;
+    for (int k = 0; k < beams->n; k++) {
+        int hinges = 0, clamps = 0;
+        for (int j = beams->beam[k].first_node; j < beams->beam[k].end_node; j++) {
+            hinges += beams->node[j].row[0] < 0;
+            clamps += beams->node[j].row[2] < 0;
+        }
+        n += clamps || hinges > 1 ? 0 : hinges ? 1 : 3;
+    }
+    return n;
+}
+
 /* Frequencies below omega, of beams as they are at the start (Sylvester), with springs or without.
  */
 static int64_t count_below(struct beams *beams, double omega2, bool springs)
@@ -323,6 +338,7 @@ static int64_t count_below(struct beams *beams, double omega2, bool springs)
 double beams_longest_step(struct beams *beams)
 {
     enum { PARTS = 100 };
+    bool joined = false;
     const double *const g = beams->scene->top.gravity;
     double high = 0, length = 0;
     find_start(beams);
@@ -333,7 +349,9 @@ double beams_longest_step(struct beams *beams)
         length += e->length;
     }
     double low = ROUNDING * high;
-    const int64_t free[] = {count_below(beams, low, false), count_below(beams, low, true)};
+    for (int k = 0; k < beams->n_nodes; k++) joined |= beams->node[k].joined[0] >= 0;
+    const int64_t free[] = {joined ? count_below(beams, low, false) : count_free(beams),
+                            count_below(beams, low, true)};
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
         const bool above =

@@ -327,7 +327,9 @@ void rigid_add_springs(struct rigid *rigid, double dt)
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
         row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
         row->damping = spring->given->damping;
-        row->force = -spring_mean(spring->given, now.longer - ahead, now.longer + ahead, 1);
+        const double shortest = -spring->length; /* both ends are in one place */
+        row->force = -spring_mean(spring->given, max2(now.longer - ahead, shortest),
+                                  max2(now.longer + ahead, shortest), 1);
         row->later = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
         for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);

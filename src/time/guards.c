@@ -201,7 +201,8 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
 /* What lengthens a step that a bound limits. */
 static const char *step_remedy(const struct simulation *sim, enum bound bound)
 {
-    if (bound == BOUND_spring || (bound == BOUND_solid && sim->scene->n_spring > 0))
+    if (bound == BOUND_spring ||
+        (bound == BOUND_solid && sim->scene->n_spring > 0 && sim->scene->n_solid == 0))
         return "a softer [spring], or a `force` that is less steep, may help";
     if (bound != BOUND_solid && bound != BOUND_contact)
         return "a smaller cfl or a higher sound_speed may help";
