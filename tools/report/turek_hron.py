@@ -228,7 +228,7 @@ def read(folder):
     times, series = columns(folder)
     found = period(times, series["uy"] if "uy" in series else series["lift"])
     run, record = Run(folder).summary, load(folder.with_name(folder.name + ".json"), {})
-    name, _, across = folder.name.rpartition("-")
+    name, across = folder.name.split("-")[:2]
     return {"case": name, "across": int(across), "time": times[-1], "exit": run["exit_reason"],
             "particles": run["particles"], "steps": run["steps"], "version": run["version"],
             "cpu_seconds": record.get("cpu"),
@@ -260,7 +260,8 @@ def show(quantity, found, wanted):
 
 
 def run_case(args):
-    job = Job(ROOT / "runs" / "turek_hron" / f"{args.case}-{args.across}",
+    name = "-".join([args.case, str(args.across), *constants({"settings": args.set})])
+    job = Job(ROOT / "runs" / "turek_hron" / name.replace(" ", "_"),
               CASES / f"{args.case}.cfg", [f"across={args.across}", *args.set,
                                            *([f"end_time={args.end}"] if args.end else [])])
     record = job.run(threads=args.threads)
