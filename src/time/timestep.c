@@ -58,9 +58,9 @@ static double bound_value(const struct simulation *sim, enum bound k,
     case BOUND_zone: {
         double rate = 0;
         for (int z = 0; z < sim->scene->n_damping; z++) rate += sim->scene->damping[z].rate;
-        /* A decay that fluid cannot pass on grows between two Euler steps of Verlet. */
-        const double limit =
-            sim->effects & FX_VERLET ? 2.0 / n->verlet_reset : sim->integrator->velocity_decay;
+        /* A decay that fluid cannot pass on grows until two alternating solutions meet again. */
+        const double limit = sim->integrator->alternates ? 2.0 / n->verlet_reset
+                                                         : sim->integrator->velocity_decay;
         return 0.9 * limit / rate;
     }
     case BOUND_spring: {
