@@ -251,9 +251,13 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
 
 /* --- integral --- */
 
+/* An integral is halved at most so often. Jumps that cancel are looked for in the first. */
+enum { INTEGRAL_HALVINGS = 18, HALVINGS_FOR_JUMPS = 8 };
+
 /* Halves an interval as long as its Gauss-Legendre quadrature with three points, and the slope in
  * its middle, are not what values and slopes at its ends say; those see a kink that no point has
- * passed, and the slope jumps that cancel. `size`: that of the whole. */
+ * passed, and the slope jumps that cancel. Near zero the slope would see round-off in the end.
+ * `size`: that of the whole. */
 static double integral_of(const struct expr *e, const struct expr_jet *a, const struct expr_jet *b,
                           double from, double to, double size, int halvings)
 {
@@ -263,7 +267,9 @@ static double integral_of(const struct expr *e, const struct expr_jet *a, const 
     const double gauss = length * (5 * left + 8 * m.value + 5 * right) / 18;
     const double ends = length * (0.5 * (a->value + b->value) + length * (a->d1 - b->d1) / 12);
     const double chord = b->value - a->value;
-    const double bend = length * m.d1 - 1.5 * chord + 0.25 * length * (a->d1 + b->d1);
+    const double bend = halvings > INTEGRAL_HALVINGS - HALVINGS_FOR_JUMPS
+                            ? length * m.d1 - 1.5 * chord + 0.25 * length * (a->d1 + b->d1)
+                            : 0;
     const double here = fabs(a->value) + fabs(b->value) + fabs(left) + fabs(right);
     size = max2(size, fabs(length) * here);
     if (halvings == 0 || fabs(gauss - ends) + fabs(length * bend) <= 1e-11 * size) return gauss;
@@ -285,14 +291,13 @@ static double next_row(const struct expr *e, double from, double end)
 
 double expr_integral(const struct expr *e, double from, double to)
 {
-    enum { HALVINGS = 18 };
     if (to < from) return -expr_integral(e, to, from);
     double sum = 0;
     for (double at = from, next; at < to; at = next) {
         next = next_row(e, at, to);
         /* With the slopes within the part, not after it. */
         const struct expr_jet a = expr_jet_at(e, at), b = expr_jet_at(e, nextafter(next, at));
-        sum += integral_of(e, &a, &b, at, next, 0, HALVINGS);
+        sum += integral_of(e, &a, &b, at, next, 0, INTEGRAL_HALVINGS);
     }
     return sum;
 }

@@ -65,15 +65,16 @@ static void test_damping(void)
     TEST_ASSERT_TRUE(below && above);
 }
 
-/* Laminar viscosity bounds the step by 0.125 h^2/nu; sound alone by C h/c0. */
+/* Laminar viscosity bounds the step by 0.125 M h^2/nu; sound alone by C h/c0. */
 static void test_bounds(void)
 {
     char set[64], want[200];
     warn_of(water, NULL);
-    const double h = rig.sim.fluid.k.h, sound = rig.sim.scene->numerics.cfl * h / 20;
+    const double h = rig.sim.fluid.k.h, sound = rig.sim.scene->numerics.cfl * h / 20,
+                 M = rig.sim.fluid.k.second_moment;
     for (int much = 0; much < 2; much++) {
         const double share = much ? 0.11 : 0.09;
-        snprintf(set, sizeof set, "w.laminar_viscosity=%.9g", 0.125 * h * h / (share * sound));
+        snprintf(set, sizeof set, "w.laminar_viscosity=%.9g", 0.125 * M * h * h / (share * sound));
         warn_of(water, set);
         TEST_ASSERT_EQUAL_INT_MESSAGE(!much, said[0] != '\0', said);
         if (much) continue;
