@@ -105,8 +105,12 @@ static double displacement_between(const struct beams *beams, const struct line_
                elementary_hypot(to->normal[0] - from->normal[0], to->normal[1] - from->normal[1]);
 }
 
-/* The squared radius of gyration of a node's own mass, m^2. */
-static double gyration2(const struct beam_node *node) { return node->mass[2] / node->mass[0]; }
+/* The squared radius of gyration of a node's own mass, m^2. Of a beam whose mass is given it is 0:
+ * above it, a single node that carries the beam turns it all the same. */
+static double gyration2(const struct beam_node *node)
+{
+    return max2(node->mass[2] / node->mass[0], 1e-30);
+}
 
 /* From the centre of a beam's carrier to a node. */
 static void arm_to(const struct beams *beams, const struct line_carrier *of, int node,

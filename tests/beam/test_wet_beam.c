@@ -243,6 +243,27 @@ static void test_a_float_with_edges_turns_as_a_rigid_one(void)
     assert_near(0.2 * swing[0], swing[0], swing[1], "largest angle");
 }
 
+/* Beams whose mass is given have no rotary inertia; the node that a clamp or hinge holds carries
+ * them. */
+static void test_a_held_beam_of_given_mass(void)
+{
+    static const char *const held[] = {"clamp", "hinge"};
+    for (size_t k = 0; k < COUNT_OF(held); k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "scheme = standard\ndp = 25 mm\nend_time = 1\ngravity = 0, -9.81\n"
+                 "[fluid w]\nshape = box 0, 0, 0.5, 0.2\nsound_speed = 20\nsurface = 0.2\n"
+                 "[wall t]\nshape = polyline: 0, 0.4; 0, 0; 0.5, 0\n"
+                 "[beam b]\nshape = polyline: 0.5, 0; 0.5, 0.4\nbending_stiffness = 1e5\n"
+                 "axial_stiffness = 1e7\nmass = 10\n%s = 0.5, 0\n",
+                 held[k]);
+        rig_open(&rig, text, NULL);
+        rig_run(&rig, 0.02);
+        const struct beam_state *const end = state(rig.sim.beams.n_nodes - 1);
+        TEST_ASSERT_TRUE_MESSAGE(end->x[0] > 0 && end->x[0] < 0.1, held[k]);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -256,5 +277,6 @@ int main(void)
     RUN_TEST(test_packing_does_not_pass_a_line);
     RUN_TEST(test_a_loose_end_leaves_its_wall);
     RUN_TEST(test_a_float_with_edges_turns_as_a_rigid_one);
+    RUN_TEST(test_a_held_beam_of_given_mass);
     return UNITY_END();
 }
