@@ -220,15 +220,13 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double along[3])
 /* T-36a: the force in the middle of the step, with all that the fluid gets for `kick`. */
 static void extrapolate(struct beams *beams, const struct beam_times *times)
 {
-    const double impulse = times->kick / times->dt, now = 0.5 - beams->ahead,
-                 before = impulse + now - 1, weight = beams->alternates ? 0.5 : 1;
+    const struct force_weights by =
+        force_weights(times->kick / times->dt, 0.5 - beams->ahead, beams->alternates);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
-            double *const force = &beams->step[k].fluid[c], *const mean =
-                                                                &beams->state[k].pushed[c];
-            const double old = times->last > 0 ? *mean : *force;
-            *mean = old + weight * (*force - old);
-            *force = impulse * *force + now * *mean - before * old;
+            double *const force = &beams->step[k].fluid[c];
+            *force = extrapolated_force(&by, *force, *force, !(times->last > 0),
+                                        &beams->state[k].pushed[c]);
         }
 }
 
@@ -279,11 +277,10 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
 
 void beams_return_impulse(struct beams *beams, const struct beam_times *times)
 {
-    const double dt = times->dt, before = beams->state[0].exchange, after = max2(dt, before - dt),
-                 left = 1 - times->kick / before;
-    /* T-35c: the mean is over the time in which sound crosses h, less the acceleration's age. */
-    const double time = beams->scene->h / beams->scene->c0,
-                 weight = dt / (dt + max2(0.25 * time, time - (1 + beams->ahead) * dt));
+    const double dt = times->dt, before = beams->state[0].exchange,
+                 after = exchange_time_after(before, dt), left = 1 - times->kick / before,
+                 weight =
+                     acceleration_weight(beams->scene->h / beams->scene->c0, 1 + beams->ahead, dt);
     for (int k = 0; k < beams->n_nodes; k++) {
         struct beam_state *const now = &beams->state[k];
         struct beam_step *const s = &beams->step[k];

@@ -42,25 +42,21 @@ void coupling_show_forces(const struct coupling *coupling, struct particles kind
     find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
 
-/* T-36a: from the impulse that the fluid gets, for `kick`, to the force in the middle of the
- * structure's kicks; `last`: the step before. The forces of Verlet's two solutions are averaged. */
-static void extrapolate_force(struct coupling *coupling, double dt, double kick, double last)
+/* T-36a: the pressure's part of the force that the fluid gets for `kick`; `last`: the step before.
+ */
+static void extrapolate_forces(struct coupling *coupling, double dt, double kick, double last)
 {
     struct particles *const particles = coupling->particles;
-    const double weight = particles->interface_pressure_next ? 0.5 : 1;
-    const double impulse = kick / dt, now = coupling->lead / dt, before = impulse + now - 1;
+    const struct force_weights by =
+        force_weights(kick / dt, coupling->lead / dt, particles->interface_pressure_next);
+    const bool first = !(last > 0);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        const double px = particles->fx[i] - particles->drag_x[i],
-                     py = particles->fy[i] - particles->drag_y[i];
-        const double old_x = last > 0 ? particles->mean_fx[i] : px,
-                     old_y = last > 0 ? particles->mean_fy[i] : py;
-        particles->mean_fx[i] = old_x + weight * (px - old_x);
-        particles->mean_fy[i] = old_y + weight * (py - old_y);
+        const double fx = particles->fx[i], fy = particles->fy[i];
         particles->fx[i] =
-            impulse * particles->fx[i] + now * particles->mean_fx[i] - before * old_x;
+            extrapolated_force(&by, fx, fx - particles->drag_x[i], first, &particles->mean_fx[i]);
         particles->fy[i] =
-            impulse * particles->fy[i] + now * particles->mean_fy[i] - before * old_y;
+            extrapolated_force(&by, fy, fy - particles->drag_y[i], first, &particles->mean_fy[i]);
     }
 }
 
@@ -74,8 +70,7 @@ static void extrapolate_force(struct coupling *coupling, double dt, double kick,
 static void move_after_substeps(struct coupling *coupling, double dt)
 {
     struct particles *const particles = coupling->particles;
-    const double per_dt = 1 / dt, half = 0.5 * dt,
-                 weight = dt / (dt + reduced_averaging_time(coupling, dt));
+    const double per_dt = 1 / dt, half = 0.5 * dt, weight = motion_weight(coupling, dt);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double ax = (particles->vx[i] - particles->vx0[i]) * per_dt;
@@ -135,7 +130,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
     const double middle = 0.5 * (coupling->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->ahead * dt;
-    if (particles->mean_fx) extrapolate_force(coupling, dt, kick, last);
+    if (particles->mean_fx) extrapolate_forces(coupling, dt, kick, last);
     /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {

@@ -3,6 +3,7 @@
  * tells the order. */
 #pragma once
 
+#include "fluid/exchange.h"
 #include "fluid/fluid.h"
 #include "solid/solid.h"
 
@@ -76,11 +77,10 @@ SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
     return coupling->substeps ? 1 + 2 * coupling->ahead : 1;
 }
 
-/* Averaging time after a step of dt, s: reduced by that age, to a quarter at least. */
-SPHFSI_INLINE double reduced_averaging_time(const struct coupling *coupling, double dt)
+/* Weight of the acceleration of a step of dt in the mean. */
+SPHFSI_INLINE double motion_weight(const struct coupling *coupling, double dt)
 {
-    const double time = averaging_time(coupling);
-    return max2(0.25 * time, time - acceleration_age(coupling) * dt);
+    return acceleration_weight(averaging_time(coupling), acceleration_age(coupling), dt);
 }
 
 /* Single rate: position and velocity of the structure; a share `weight` of the present acceleration

@@ -123,7 +123,7 @@ void impulse_return(struct coupling *coupling, double kick)
 void impulse_set_time(struct coupling *coupling, double dt)
 {
     struct particles *const particles = coupling->particles;
-    const double before = *coupling->exchange_time, now = max2(dt, before - dt),
+    const double before = *coupling->exchange_time, now = exchange_time_after(before, dt),
                  ratio = before / now;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {

@@ -109,12 +109,6 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 
 /* --- a step --- */
 
-/* T-35e: the time in which the fluid receives the impulse of a step. */
-static double exchange_after(const struct rigid_state *s, double dt)
-{
-    return max2(dt, s->exchange - dt);
-}
-
 /* The kick is this part of the time in which the fluid receives what waits. */
 static double part_of(const struct rigid *rigid, int k, double kick)
 {
@@ -127,7 +121,7 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     struct rigid_equations *const eq = &rigid->eq[k];
-    const double exchange = exchange_after(s, dt), part = part_of(rigid, k, kick);
+    const double exchange = exchange_time_after(s->exchange, dt), part = part_of(rigid, k, kick);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
     memcpy(eq->at_start, rigid->scene->rigid_motion[k].now.v, 2 * sizeof(double));
@@ -216,7 +210,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
     }
     body->driven += kick * rigid_hinge_power(rigid, k, rigid->end - 0.5 * dt);
     const double before = s->exchange, left = 1 - part_of(rigid, k, kick);
-    s->exchange = exchange_after(s, dt);
+    s->exchange = exchange_time_after(s->exchange, dt);
     if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);
 }
 

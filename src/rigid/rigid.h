@@ -3,6 +3,7 @@
  * and the angle. README.md tells the order of a step. */
 #pragma once
 
+#include "fluid/exchange.h"
 #include "fluid/fluid.h"
 
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */

@@ -103,7 +103,7 @@ static void correct_at_single_rate(struct simulation *sim, double dt)
     energy_of_solid(sim, dt, 1, true);
     solid_finish_kick(&sim->solid, solid, solid->vx0, solid->vy0, dt);
     solid_place_clamps(&sim->solid, solid, scene_time(sim, sim->state.time + dt));
-    motion_at_single_rate(&sim->coupling, dt / (dt + reduced_averaging_time(&sim->coupling, dt)));
+    motion_at_single_rate(&sim->coupling, motion_weight(&sim->coupling, dt));
     sim->state.solid_substeps++;
     sim->substeps = 1;
 }
