@@ -171,7 +171,7 @@ $(TESTS): private WRAP = $(addprefix -Wl$(comma)--wrap=,$(shell sed -n 's/^ \* -
 $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(CORE)
 	$(Q)$(LINK)
 
-test: $(PROGRAM) $(SHARED) $(TESTS) $(BENCHES)
+test: $(PROGRAM) $(SHARED) $(TESTS) $(BENCHES) $(if $(filter release,$(CONFIG)),$(B)/web.so)
 	@SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
 
 # What a program outside of the source tree would do, with the library where it was built.

@@ -50,6 +50,8 @@ CASES = {
     "beam_on_beam": {},
     "still_water": {"set": {"dp": "10 mm"}},
     "accelerated_tank": {},
+    "templates/thin_plate": {"set": {"dp": "20 mm"}},
+    "templates/flap": {"set": {"end_time": "4 s"}},
 }
 FUNCTIONS = {name: getattr(math, name)
              for name in ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")}

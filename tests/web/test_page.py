@@ -19,7 +19,8 @@ with packages():
     from PIL import Image
 
 PAGE = ROOT / "build" / "web" / "index.html"
-CASES = ("channel", "ringing_bar", "vortices", "rotating_patch")
+CASES = ("channel", "ringing_bar", "vortices", "rotating_patch", "templates/thin_plate",
+         "templates/flap")
 DONE = "['finished', 'refused', 'stopped'].includes(document.body.dataset.state)"
 WRONG = """dp = 1 cm
 end_time = 1
