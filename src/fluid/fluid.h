@@ -245,7 +245,7 @@ struct neighbour_scratch {
 
 struct fluid {
     struct fluid_constants k;
-    effect_set effects;
+    const effect_set *effects;           /* of the simulation */
     bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
     double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
@@ -275,7 +275,7 @@ struct fluid {
 SPHFSI_INLINE bool dummies_move(const struct fluid *fluid, enum kind kind,
                                 const struct particles *particles, const int32_t *index, int count)
 {
-    if (kind == KIND_SOLID || !(fluid->effects & FX_MOTION)) return kind == KIND_SOLID;
+    if (kind == KIND_SOLID || !(*fluid->effects & FX_MOTION)) return kind == KIND_SOLID;
     for (int r = 0; r < count; r++)
         if (fluid->moves[kind][particles->body[index[r]]]) return true;
     return false;
@@ -291,10 +291,10 @@ SPHFSI_INLINE bool fluid_near_dummies(const struct fluid *fluid, int32_t cell)
     return fluid_near_kind(fluid, KIND_WALL, cell) || fluid_near_kind(fluid, KIND_SOLID, cell);
 }
 
-/* Chooses the kernel and allocates packed fields. */
+/* Chooses the kernel and allocates packed fields of a fluid that is zero but for its effects. */
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
-                      effect_set effects, struct particles kinds[KIND_COUNT],
-                      const struct cells *cells, struct diag *d) SPHFSI_CHECKED;
+                      struct particles kinds[KIND_COUNT], const struct cells *cells, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
  * except those at the free surface. Returns the largest shift, m. */
@@ -318,14 +318,14 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
 /* The thin line that particle i of a kind is a dummy of, from 1; 0: none. */
 SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, int64_t i)
 {
-    return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
+    return *fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
 /* How much a place and particle i of a kind, (x, y) away, see each other (T-110). */
 SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *cells,
                                 const double from[2], enum kind kind, int64_t i, double x, double y)
 {
-    if (!(fluid->effects & FX_THIN)) return 1;
+    if (!(*fluid->effects & FX_THIN)) return 1;
     return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
                       (const double[]){x, y}, fluid_line_of(fluid, kind, i));
 }

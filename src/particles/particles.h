@@ -59,6 +59,15 @@ struct field_info {
 extern const struct field_info field_table[];
 extern const int field_count;
 
+/* Accelerations from outside, added to those of the model by a program that uses the library. */
+typedef void external_function(void *context, double time, const struct particles *particles,
+                               double *ax, double *ay);
+struct external {
+    external_function *at; /* NULL: none */
+    void *context;
+    double *ax, *ay; /* m/s^2 */
+};
+
 /* The array of a field, or NULL while its group is off. */
 void *field_array(const struct particles *particles, const struct field_info *f);
 

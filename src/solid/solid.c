@@ -105,6 +105,13 @@ static enum err packed_create(struct solid *solid, struct arena *a,
     return ERR_OK;
 }
 
+void solid_use_threads(struct solid *solid, const struct particles *particles, int n)
+{
+    /* The loops of several threads would be shorter than the barriers between them. */
+    enum { ONE_THREAD_BELOW = 2048 };
+    solid->threads = particles->n < ONE_THREAD_BELOW ? 1 : n;
+}
+
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d)
 {
@@ -135,7 +142,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++)
         TRY(arena_array(a, &solid->scratch[k], particles->n, "search of the step", d));
     TRY(arena_array(a, &solid->work_on, solid->n_bodies, "work on bodies", d));
-    solid->threads = particles->n < SOLID_PARALLEL ? 1 : thread_count();
+    solid_use_threads(solid, particles, thread_count());
     return ERR_OK;
 }
 
@@ -178,7 +185,7 @@ static void add_own_forces(const struct solid *solid, struct particles *particle
                            int64_t last)
 {
     double *const sx = particles->sx, *const sy = particles->sy, *const free = particles->free;
-    const double *const *const external = solid->external;
+    const struct external *const external = solid->external;
     for (int64_t k = first, next; k < last; k = next) {
         const struct solid_body *const body = &solid->body[solid->pack[k].body];
         for (next = k + 1; next < last && solid->pack[next].body == solid->pack[k].body;) next++;
@@ -189,9 +196,9 @@ static void add_own_forces(const struct solid *solid, struct particles *particle
             sx[i] += particles->fx[i] * per_mass;
             sy[i] += particles->fy[i] * per_mass;
         }
-        for (int64_t i = from; i < end && external[0]; i++) {
-            sx[i] += external[0][i];
-            sy[i] += external[1][i];
+        for (int64_t i = from; i < end && external; i++) {
+            sx[i] += external->ax[i];
+            sy[i] += external->ay[i];
         }
 #pragma omp simd
         for (int64_t i = from; i < end; i++) {

@@ -105,10 +105,6 @@ struct solid_sweeps {
 };
 extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
 
-/* Smaller solids are stepped by one thread: the loops of several would be shorter than the barriers
- * between them. */
-enum { SOLID_PARALLEL = 2048 };
-
 struct solid {
     int n_bodies;
     struct solid_body *body;
@@ -135,7 +131,7 @@ struct solid {
     struct hinges *hinges;
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
     const struct scene *gravity_scene; /* of a gravity that varies in time; NULL: constant */
-    const double *external[2];   /* accelerations, x and y, m/s^2 */
+    const struct external *external;   /* accelerations by a program */
     solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
     struct implicit *implicit;   /* data of implicit/; NULL: explicit steps only */
     solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
@@ -164,6 +160,9 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
  * are set. implicit: for implicit steps, in double precision. */
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
+
+/* Of n threads, those that step a solid of this size. */
+void solid_use_threads(struct solid *solid, const struct particles *particles, int n);
 
 /* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
  * the weights of the gradient, and sums these (S_GX, S_GY). Bodies, sweeps and packed fields are

@@ -92,7 +92,7 @@ static void add_late_work(struct simulation *sim, struct energies *solid)
     if (sim->coupling.centred || alone.implicit || sim->substeps == 0) return;
     const double half = 0.5 * sim->state.dt / sim->substeps;
     alone.coupled = false;
-    alone.external[0] = NULL;
+    alone.external = NULL;
     alone.gravity_scene = NULL;
     alone.loads = NULL;
     alone.hinges = NULL;
@@ -219,7 +219,7 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const particles = &sim->kind[KIND_SOLID];
-    const double *const *const external = sim->solid.external;
+    const struct external *const external = sim->solid.external;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
     const double late = centred ? 0 : 0.5 * dt / n;
@@ -234,7 +234,7 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
         double work = particles->fx[i] * ux + particles->fy[i] * uy;
         if (sim->coupling.impedance > 0) work += mass * particles->face_work[i]; /* T-35a */
         e->received += work;
-        if (external[0]) work += mass * (external[0][i] * ux + external[1][i] * uy);
+        if (external) work += mass * (external->ax[i] * ux + external->ay[i] * uy);
         e->supplied += work;
     }
 }

@@ -106,7 +106,6 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
         sim->effects |= FX_MULTIRATE;
     if (!(sim->effects & FX_MULTIRATE))
         sim->effects &= ~(effect_set)(FX_IMPEDANCE | FX_SPLIT_IMPULSE);
-    sim->fluid.effects = sim->effects;
     coupling_set_rate(&sim->coupling, sim->effects, timestep_fluid_limit(sim));
     return ERR_OK;
 }
@@ -130,7 +129,7 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
                      scene->top.dp, reach, stray, sim->kind, d));
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&sim->cells, axis, reach, d));
-    TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->effects, sim->kind, &sim->cells, d));
+    TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->kind, &sim->cells, d));
     start_fluid(sim);
     if (!(sim->effects & FX_DAMPING_ZONE)) return ERR_OK;
     return damping_create(&sim->damping, &sim->arena, scene, sim->kind[KIND_FLUID].capacity, d);

@@ -13,6 +13,7 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     memset(sim, 0, sizeof *sim);
     sim->scene = scene;
     sim->effects = effects_of_scene(scene);
+    sim->fluid.effects = &sim->effects;
     sim->integrator = integrators[scene->top.integrator];
     sim->state.seeks_rest = (sim->effects & FX_RELAX) != 0;
     team_begin(&sim->team, thread_count());
@@ -39,8 +40,7 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
     external->at = at;
     external->context = context;
     sim->evaluated = false; /* the last evaluation lacked `at` */
-    if (kind == KIND_SOLID) sim->solid.external[0] = at ? external->ax : NULL;
-    if (kind == KIND_SOLID) sim->solid.external[1] = at ? external->ay : NULL;
+    if (kind == KIND_SOLID) sim->solid.external = at ? external : NULL;
     return ERR_OK;
 }
 
@@ -102,7 +102,7 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     const double begin = wall_clock();
     thread_use(sim->team.now);
     sim->fluid.threads = sim->team.now;
-    if (sim->kind[KIND_SOLID].n >= SOLID_PARALLEL) sim->solid.threads = sim->team.now;
+    solid_use_threads(&sim->solid, &sim->kind[KIND_SOLID], sim->team.now);
     sim->solid.time = scene_time(sim, sim->state.time);
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     enum err e = ERR_OK;

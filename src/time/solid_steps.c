@@ -91,7 +91,7 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
     const bool implicit = sim->solid.implicit != NULL;
     const bool near = timestep_watch_contact(sim, sim->solid.time, implicit ? 1 : SOLID_BATCH);
     const double bound = timestep_bound(sim);
-    const bool external = sim->external[KIND_SOLID].at != NULL;
+    const bool external = sim->solid.external != NULL;
     const bool single = external || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
     const int batch = single ? 1 : SOLID_BATCH;
     /* Rounding of the times must not add a step. */

@@ -66,15 +66,6 @@ struct sorting {
     double skin_left;  /* distance that two particles may move until a sorting is due, m */
 };
 
-/* Accelerations from outside, added to those of the model by a program that uses the library. */
-typedef void external_function(void *context, double time, const struct particles *particles,
-                               double *ax, double *ay);
-struct external {
-    external_function *at; /* NULL: none */
-    void *context;
-    double *ax, *ay; /* m/s^2 */
-};
-
 /* What differs between the time integrators of Sec. 2.4. */
 struct integrator {
     /* One step of fluid, walls and structures, which ends no later than t_limit. */

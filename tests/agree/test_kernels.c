@@ -169,7 +169,7 @@ static const char all[] =
  * solid. */
 static void sums_with(effect_set effects, uint64_t *fluid, uint64_t *force)
 {
-    rig.sim.fluid.effects = effects;
+    rig.sim.effects = effects;
     rig_evaluate(&rig);
     const struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
                                                                              &rig.sim
@@ -205,7 +205,7 @@ static void test_every_pair_effect_has_a_law(void)
         }
     }
     rig_sort(&rig);
-    const effect_set every = rig.sim.fluid.effects | FX_FOURTAKAS;
+    const effect_set every = rig.sim.effects | FX_FOURTAKAS;
     sums_with(every, &fluid, &force);
     for (int k = 0; k < EFFECT_COUNT; k++) {
         const effect_set bit = EFFECT_BIT(k);

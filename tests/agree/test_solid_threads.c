@@ -111,10 +111,9 @@ static uint64_t push(int threads)
     for (int64_t i = 0; i < particles->n; i++) force[0][i] = force[1][i] = (double)i;
     for (int round = 0; round < 4; round++) {
         solid_advance(solid, particles, rig.sim.dt_solid, 7, round % 2);
-        solid->external[0] = force[0];
-        solid->external[1] = force[1];
+        solid->external = &(struct external){.ax = force[0], .ay = force[1]};
         solid_advance(solid, particles, rig.sim.dt_solid, 5, round % 2);
-        solid->external[0] = solid->external[1] = NULL;
+        solid->external = NULL;
         if (round == 2) simulation_hash(&rig.sim);
     }
     solid_write_stress(solid, particles);
@@ -133,7 +132,7 @@ static void test_pushes_from_outside(void)
     TEST_ASSERT_EQUAL_HEX64(expected, push(4));
 }
 
-/* Below SOLID_PARALLEL particles one thread steps a solid, from there on all do. */
+/* Below 2048 particles one thread steps a solid, from there on all do. */
 static void test_small_bodies_have_one_thread(void)
 {
     static const char block[] = "dp = 1 cm\nend_time = 1\n[solid block]\n"
