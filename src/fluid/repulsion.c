@@ -19,28 +19,16 @@ static double repulsion_held(double r, double r0, double h)
     return sum * (r0 - r);
 }
 
-/* A particle of fluid among dummies. */
-struct repelled {
-    const struct fluid *fluid;
-    const struct cells *cells;
-    const struct particles *dummies;
-    enum kind kind; /* of the dummies */
-    double place[2], sum;
-};
-
-/* Adds that of a dummy at the distance r, times its volume, m^2. */
-static void add_repulsion(void *context, int64_t i, double x, double y, double r)
+/* That of a dummy of a kind, times its volume, m^2. */
+static double repulsion_of(const struct fluid *fluid, const struct cell_visit *v)
 {
-    struct repelled *const at = context;
-    const struct fluid *const fluid = at->fluid;
-    const struct particles *const particles = at->dummies;
-    const double over = fluid->volume[at->kind][particles->body[i]];
-    const double r0 = (fluid_line_of(fluid, at->kind, i) ? 1 : REPULSION_REACH) * 0.5 *
+    const enum kind kind = (enum kind)v->kind;
+    const double over = fluid->volume[kind][v->particles->body[v->i]];
+    const double r0 = (fluid_line_of(fluid, kind, v->i) ? 1 : REPULSION_REACH) * 0.5 *
                       (1 + sqrt(over)) * fluid->k.dp;
-    if (r < r0)
-        at->sum += fluid_seen(fluid, at->cells, at->place, at->kind, i, x, y) * over *
-                   fluid->k.mass / (fluid->k.rho0 * (1 + particles->dens[i])) *
-                   repulsion_held(r, r0, fluid->k.h);
+    if (!(v->r < r0)) return 0;
+    return fluid_seen(fluid, v->cells, v->at, kind, v->i, v->x, v->y) * over * fluid->k.mass /
+           (fluid->k.rho0 * (1 + v->particles->dens[v->i])) * repulsion_held(v->r, r0, fluid->k.h);
 }
 
 void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
@@ -55,15 +43,12 @@ void fluid_repulsion_energy(const struct fluid *fluid, const struct particles ki
         const int32_t cell = list->active[n];
         if (!fluid_near_dummies(fluid, cell)) continue;
         for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-            struct repelled at = {fluid, cells, .place = {particles->x[i], particles->y[i]}};
-            for (at.kind = KIND_WALL; at.kind < KIND_COUNT; at.kind++) {
-                at.dummies = &kind[at.kind];
-                if (cells->kind[at.kind].n_active)
-                    cells_each_near(cells, at.kind, at.dummies, at.place, most * k->dp,
-                                    add_repulsion, &at);
-            }
+            const double at[2] = {particles->x[i], particles->y[i]};
+            double sum = 0;
+            struct cell_visit v = cells_visit(cells, kind, KIND_WALL, KIND_COUNT, at, most * k->dp);
+            while (cells_next(&v)) sum += repulsion_of(fluid, &v);
             of[particles->body[i]] += particle_mass(k, particles, i) / (1 + particles->dens[i]) *
-                                      k->model->wall_repulsion * square(k->c_u) * at.sum;
+                                      k->model->wall_repulsion * square(k->c_u) * sum;
         }
     }
 }

@@ -7,9 +7,6 @@
 
 /* The sums of a sample. */
 struct sampling {
-    const struct simulation *sim;
-    enum kind kind; /* of the particles visited */
-    double place[2];
     struct sample sum;
     double dx, dy;         /* to the place from the fluid within reach, m */
     double rho;            /* of this fluid, kg/m^3 */
@@ -17,15 +14,15 @@ struct sampling {
     double wall_x, wall_y; /* of walls and structures, m/s^2 */
 };
 
-static void add_to_sample(void *context, int64_t i, double x, double y, double r)
+static void add_to_sample(struct sampling *at, const struct fluid *fluid,
+                          const struct cell_visit *v)
 {
-    struct sampling *const at = context;
-    const struct particles *const particles = &at->sim->kind[at->kind];
-    const struct fluid_constants *const k = &at->sim->fluid.k;
-    const double w =
-        fluid_seen(&at->sim->fluid, &at->sim->cells, at->place, at->kind, i, x, y) *
-        kernel_w(r, k->h) * square(k->dp);
-    if (at->kind != KIND_FLUID) {
+    const struct particles *const particles = v->particles;
+    const struct fluid_constants *const k = &fluid->k;
+    const int64_t i = v->i;
+    const double w = fluid_seen(fluid, v->cells, v->at, (enum kind)v->kind, i, v->x, v->y) *
+                     kernel_w(v->r, k->h) * square(k->dp);
+    if (v->kind != KIND_FLUID) {
         at->sum.occupied += w;
         at->wall_x += w * (particles->ax ? particles->ax[i] : 0);
         at->wall_y += w * (particles->ay ? particles->ay[i] : 0);
@@ -35,8 +32,8 @@ static void add_to_sample(void *context, int64_t i, double x, double y, double r
     at->sum.pressure += w * eos_pressure(particles->dens[i], k->rho0, k->c0);
     at->sum.vx += w * particles->vx[i];
     at->sum.vy += w * particles->vy[i];
-    at->dx -= w * x;
-    at->dy -= w * y;
+    at->dx -= w * v->x;
+    at->dy -= w * v->y;
     at->rho += w * k->rho0 * (1 + particles->dens[i]);
     at->ax += w * particles->ax[i];
     at->ay += w * particles->ay[i];
@@ -56,15 +53,13 @@ static double rise_to_place(const struct simulation *sim, const struct sampling 
 
 struct sample fluid_sample(const struct simulation *sim, double x, double y)
 {
-    struct sampling at = {.sim = sim, .place = {x, y}};
+    struct sampling at = {.dx = 0};
     struct sample *const sum = &at.sum;
+    const double place[2] = {x, y};
     if (!(sim->effects & FX_FLUID)) return *sum;
-    for (int kind = 0; kind < KIND_COUNT; kind++) {
-        if (!sim->cells.kind[kind].n_active) continue;
-        at.kind = (enum kind)kind;
-        cells_each_near(&sim->cells, at.kind, &sim->kind[kind], (double[]){x, y},
-                        KERNEL_REACH * sim->fluid.k.h, add_to_sample, &at);
-    }
+    struct cell_visit v =
+        cells_visit(&sim->cells, sim->kind, 0, KIND_COUNT, place, KERNEL_REACH * sim->fluid.k.h);
+    while (cells_next(&v)) add_to_sample(&at, &sim->fluid, &v);
     const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
     sum->pressure = mean * sum->pressure + rise_to_place(sim, &at, mean);
     sum->vx *= mean;

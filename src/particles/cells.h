@@ -198,25 +198,50 @@ SPHFSI_INLINE int32_t window_cell(const struct cells *cells, const struct cell_w
     return cell_at(cells, w->first[0] + m % w->n[0], w->first[1] + m / w->n[0]);
 }
 
-/* Called for particle i at the vector (x, y) from a point, r long, m. */
-typedef void cells_visitor(void *context, int64_t i, double x, double y, double r);
+/* The particles of the kinds from `kind` to the one before `end_kind` that are nearer to a point
+ * than `distance`. While cells_next gives true, v.i is the next of v.particles, which are of
+ * v.kind. `at` outlives the visit. */
+struct cell_visit {
+    const struct cells *cells;
+    const struct particles *particles;
+    const double *at;
+    double distance;
+    int kind, end_kind;
+    struct cell_window window;
+    int m;          /* the next cell of the window */
+    int32_t k, end; /* the next place in the present cell, and its end */
+    int64_t i;
+    double x, y, r; /* vector from the point to particle i, and its length, m */
+};
 
-/* Visits the particles p of a kind that are nearer to a point than `distance`. */
-SPHFSI_INLINE void cells_each_near(const struct cells *cells, enum kind kind,
-                                   const struct particles *particles, const double at[2],
-                                   double distance, cells_visitor *visit, void *context)
+SPHFSI_INLINE struct cell_visit cells_visit(const struct cells *cells,
+                                            const struct particles kinds[], int kind, int end_kind,
+                                            const double at[2], double distance)
 {
-    const struct cell_list *const list = &cells->kind[kind];
-    const struct cell_window window = cells_window(cells, at, distance);
-    for (int m = 0; m < window.n[0] * window.n[1]; m++) {
-        const int32_t cell = window_cell(cells, &window, m);
-        if (cell < 0) continue;
-        for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
-            const int64_t i = list->order ? list->order[k] : k;
-            const double x = cells_minimum_image(cells, 0, particles->x[i] - at[0]);
-            const double y = cells_minimum_image(cells, 1, particles->y[i] - at[1]);
-            const double r2 = square(x) + square(y);
-            if (r2 < square(distance)) visit(context, i, x, y, __builtin_sqrt(r2));
+    struct cell_visit v = {cells, &kinds[kind], at, distance, kind, end_kind, .m = 0};
+    v.window = cells_window(cells, at, distance);
+    return v;
+}
+
+SPHFSI_INLINE bool cells_next(struct cell_visit *v)
+{
+    for (; v->kind < v->end_kind; v->kind++, v->particles++, v->m = 0) {
+        const struct cell_list *const list = &v->cells->kind[v->kind];
+        while (list->n_active) {
+            if (v->k == v->end) {
+                if (v->m == v->window.n[0] * v->window.n[1]) break;
+                const int32_t cell = window_cell(v->cells, &v->window, v->m++);
+                v->k = cell < 0 ? 0 : list->start[cell];
+                v->end = cell < 0 ? 0 : v->k + list->count[cell];
+                continue;
+            }
+            v->i = list->order ? list->order[v->k] : v->k;
+            v->k++;
+            v->x = cells_minimum_image(v->cells, 0, v->particles->x[v->i] - v->at[0]);
+            v->y = cells_minimum_image(v->cells, 1, v->particles->y[v->i] - v->at[1]);
+            const double r2 = square(v->x) + square(v->y);
+            if (r2 < square(v->distance)) return v->r = __builtin_sqrt(r2), true;
         }
     }
+    return false;
 }

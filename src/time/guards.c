@@ -477,44 +477,28 @@ void guards_warn_of_leaving(struct simulation *sim, struct diag *d)
  * half. */
 #define TAKEN 0.35
 
-/* A fluid particle among those of another kind. */
-struct intruder {
-    const struct simulation *sim;
-    enum kind kind;
-    bool inside;
-};
-
-/* Whether it is that close to particle i, in spacings of a solid's reference configuration: the
- * solid has rotated and stretched since the start. */
-static void find_inside(void *context, int64_t i, double x, double y, double r)
-{
-    struct intruder *const at = context;
-    const struct particles *const particles = &at->sim->kind[at->kind];
-    double limit = TAKEN * at->sim->scene->top.dp;
-    if (fluid_line_of(&at->sim->fluid, at->kind, i)) return;
-    if (at->kind == KIND_SOLID) {
-        const double xx = 1 + particles->Uxx[i], xy = particles->Uxy[i], yx = particles->Uyx[i],
-                     yy = 1 + particles->Uyy[i];
-        /* F^-1 times det F: no division. */
-        r = sqrt(square(yy * x - xy * y) + square(xx * y - yx * x));
-        limit = TAKEN * at->sim->solid.body[particles->body[i]].dp * fabs(xx * yy - xy * yx);
-    }
-    at->inside |= r < limit;
-}
-
+/* Whether a place is that close to a particle, in spacings of a solid's reference configuration:
+ * the solid has rotated and stretched since the start. */
 static bool inside_body(const struct simulation *sim, double x, double y)
 {
+    const double at[2] = {x, y}, taken = TAKEN * sim->scene->top.dp;
     /* A stretched particle of a solid reaches further. */
-    const double reach[] = {
-        [KIND_WALL] = TAKEN * sim->scene->top.dp, [KIND_SOLID] = KERNEL_REACH * sim->scene->h};
-    struct intruder at = {.sim = sim};
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        at.kind = (enum kind)kind;
-        if (sim->cells.kind[kind].n_active)
-            cells_each_near(&sim->cells, at.kind, &sim->kind[kind], (double[]){x, y}, reach[kind],
-                            find_inside, &at);
+    const double reach = sim->kind[KIND_SOLID].n > 0 ? KERNEL_REACH * sim->scene->h : taken;
+    struct cell_visit v = cells_visit(&sim->cells, sim->kind, KIND_WALL, KIND_COUNT, at, reach);
+    while (cells_next(&v)) {
+        const struct particles *const p = v.particles;
+        double limit = taken;
+        if (fluid_line_of(&sim->fluid, (enum kind)v.kind, v.i)) continue;
+        if (v.kind == KIND_SOLID) {
+            const double xx = 1 + p->Uxx[v.i], xy = p->Uxy[v.i], yx = p->Uyx[v.i],
+                         yy = 1 + p->Uyy[v.i];
+            /* F^-1 times det F: no division. */
+            v.r = sqrt(square(yy * v.x - xy * v.y) + square(xx * v.y - yx * v.x));
+            limit = TAKEN * sim->solid.body[p->body[v.i]].dp * fabs(xx * yy - xy * yx);
+        }
+        if (v.r < limit) return true;
     }
-    return at.inside;
+    return false;
 }
 
 int64_t penetration_count(const struct simulation *sim, int64_t *first)

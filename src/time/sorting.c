@@ -109,19 +109,13 @@ bool sorting_due(struct simulation *sim)
 
 /* --- isolated particles, which the fluid does not resolve --- */
 
-static void count(void *n, int64_t i, double x, double y, double r)
-{
-    (void)i, (void)x, (void)y, (void)r;
-    ++*(int *)n;
-}
-
 int particles_near(const struct simulation *sim, double x, double y, int kinds)
 {
-    const double at[] = {x, y}, reach = KERNEL_REACH * sim->fluid.k.h;
+    const double at[] = {x, y};
+    struct cell_visit v =
+        cells_visit(&sim->cells, sim->kind, 0, kinds, at, KERNEL_REACH * sim->fluid.k.h);
     int n = 0;
-    for (int kind = 0; kind < kinds; kind++)
-        if (sim->cells.kind[kind].n_active)
-            cells_each_near(&sim->cells, (enum kind)kind, &sim->kind[kind], at, reach, count, &n);
+    while (cells_next(&v)) n++;
     return n;
 }
 
