@@ -15,7 +15,6 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
     const double sense = from->side ? -1 : 1; /* of the fluid, to the left of the line */
     struct scene_open o = {
         .kind = from->speed.e[0] || from->velocity.e[0] ? OPEN_VELOCITY : OPEN_PRESSURE,
-        .word = section_table[id].word,
         .common = &from->common,
         .inflow = inflow,
         .from = {from->from[0], from->from[1]},

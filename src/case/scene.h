@@ -246,7 +246,6 @@ SPHFSI_INLINE bool scene_periodic(const struct scene *scene, int axis)
 /* An [inflow] or [outflow]: the buffer lies behind the line, its rows a spacing apart. */
 struct scene_open {
     enum { OPEN_VELOCITY, OPEN_PRESSURE } kind;
-    const char *word; /* inflow or outflow */
     const struct scene_section_common *common;
     bool inflow;
     double from[2], along[2]; /* one end; unit vector to the other end */

@@ -139,14 +139,14 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
         double at[2];
         if (lies_in(&p.line, region, dp, at))
             return fail_at(check->diag, check->scene, line->line,
-                           "[beam %s] lies in [%s %s] or on its face, at (%.6g, %.6g) m; end its "
+                           "[beam %s] lies in %s or on its face, at (%.6g, %.6g) m; end its "
                            "line at the face of the body",
-                           beam->common.name, region->word, region->name, at[0], at[1]);
+                           beam->common.name, section_title(region->common).text, at[0], at[1]);
         if (is_about(region, line->pt[k], beside * dp) && !is_held(check, beam, line->pt[k], NULL))
             return fail_at(check->diag, check->scene, line->line,
-                           "[beam %s] touches [%s %s] with a free point, at (%.6g, %.6g) m; hold "
+                           "[beam %s] touches %s with a free point, at (%.6g, %.6g) m; hold "
                            "it there by `clamp` or `hinge`, or leave a gap",
-                           beam->common.name, region->word, region->name, line->pt[k][0],
+                           beam->common.name, section_title(region->common).text, line->pt[k][0],
                            line->pt[k][1]);
     }
     for (int s = 0; s < region->list->n; s++) {
@@ -159,7 +159,7 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
                     return fail_at(check->diag, check->scene, line->line,
                                    "[beam %s] meets the line of [wall %s] at (%.6g, %.6g) m; hold "
                                    "it there by `clamp` or `hinge`, or leave a gap",
-                                   beam->common.name, region->name, at[0], at[1]);
+                                   beam->common.name, region->common->name, at[0], at[1]);
             }
     }
     return ERR_OK;
@@ -171,13 +171,14 @@ static enum err refuse_far(const struct check *check, const struct scene_beam *b
 {
     for (int k = 0; k < list->n; k++) {
         const struct hinge_point *const h = &list->item[k];
-        if (strcmp(h->other, region->name) != 0 || is_about(region, h->at, check->scene->top.dp))
+        if (strcmp(h->other, region->common->name) != 0 ||
+            is_about(region, h->at, check->scene->top.dp))
             continue;
         return fail_at(check->diag, check->scene, h->line,
-                       "[beam %s] %s = %.6g, %.6g, %s: [%s %s] is more than a spacing from it; "
+                       "[beam %s] %s = %.6g, %.6g, %s: %s is more than a spacing from it; "
                        "choose a point of the beam at the face of the body",
                        beam->common.name, list == &beam->clamp ? "clamp" : "hinge", h->at[0],
-                       h->at[1], h->other, region->word, region->name);
+                       h->at[1], h->other, section_title(region->common).text);
     }
     return ERR_OK;
 }

@@ -39,8 +39,8 @@ struct check {
 /* A solid, wall, rigid body or beam. */
 struct body {
     const struct scene_section_common *common;
-    const char *word, *motion; /* of its section; of its clamps or of it all, or "" */
-    int slip;                  /* enum slip */
+    const char *motion; /* of its clamps or of it all, or "" */
+    int slip;           /* enum slip */
     enum kind kind;
     int index; /* among the points of this kind */
 };

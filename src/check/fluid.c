@@ -190,11 +190,10 @@ static void warn_of_start_gap(struct check *check, int fluid)
     if (n <= FEW) return;
     const int walls_from = p->kind[body] == KIND_WALL ? check->scene->n_solid : 0;
     const struct body other = body_at(check->scene, walls_from + p->section[body]);
-    warn_section(
-        check, &check->scene->fluid[fluid].common,
-        "begins one dp = %.3g m away from [%s %s] at (%.4g, %.4g) m and will hit it; "
-        "let their shapes touch, or leave a gap of 2 dp or more",
-        dp, other.word, other.common->name, p->x[first], p->y[first]);
+    warn_section(check, &check->scene->fluid[fluid].common,
+                 "begins one dp = %.3g m away from %s at (%.4g, %.4g) m and will hit it; "
+                 "let their shapes touch, or leave a gap of 2 dp or more",
+                 dp, section_title(other.common).text, p->x[first], p->y[first]);
 }
 
 /* --- speeds near that of sound --- */
@@ -222,8 +221,8 @@ static void warn_of_motion(struct check *check, const struct body *b)
             largest = max2(largest, elementary_hypot(moved.v[0], moved.v[1]));
         }
     }
-    warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves [%s %s] at",
-                  scene->motion[motion].common.name, b->word, b->common->name);
+    warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves %s at",
+                  scene->motion[motion].common.name, section_title(b->common).text);
 }
 
 /* --- open boundaries --- */
@@ -276,9 +275,10 @@ static void warn_of_level(struct check *check, const struct scene_open *o)
         return;
     warn_at(
         check->diag, check->scene, o->common->line,
-        "the line of [%s %s] lets fluid pass up to y = %.4g m, but the surface of the fluid "
+        "the line of %s lets fluid pass up to y = %.4g m, but the surface of the fluid "
         "beside it is at y = %.4g m. Above the surface fluid %s; `level = %.4g m` prevents this",
-        o->word, o->common->name, buffer, fluid, o->inflow ? "falls in" : "stands still", fluid);
+        section_title(o->common).text, buffer, fluid, o->inflow ? "falls in" : "stands still",
+        fluid);
 }
 
 /* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:

@@ -14,11 +14,8 @@ struct body body_at(const struct scene *scene, int k)
     const struct scene_solid *const solid = k < scene->n_solid ? &scene->solid[k] : NULL;
     const struct scene_wall *const wall = solid ? NULL : &scene->wall[k - scene->n_solid];
     const struct scene_section_common *const common = solid ? &solid->common : &wall->common;
-    return (struct body){common,
-                         section_table[common->section].word,
-                         solid ? solid->clamp_motion : wall->motion,
-                         solid ? solid->slip : wall->slip,
-                         solid ? KIND_SOLID : KIND_WALL,
+    return (struct body){common, solid ? solid->clamp_motion : wall->motion,
+                         solid ? solid->slip : wall->slip, solid ? KIND_SOLID : KIND_WALL,
                          solid ? k : k - scene->n_solid};
 }
 

@@ -25,13 +25,13 @@ static void warn_of_edge(struct check *check, const struct region *region, int l
     check->scene->off_lattice = warned[c] = true;
     if (l->angle == 0)
         warn_at(check->diag, check->scene, line,
-                "[%s %s] edge at %c = %g m is off the lattice of dp = %g m; %c = %g m would fit",
-                region->word, region->name, "xy"[c], a[c], dp, "xy"[c], fit);
+                "%s edge at %c = %g m is off the lattice of dp = %g m; %c = %g m would fit",
+                section_title(region->common).text, "xy"[c], a[c], dp, "xy"[c], fit);
     else
         warn_at(check->diag, check->scene, line,
-                "an edge of [%s %s] is %.2g dp off the lattice, which is rotated by %.4g degrees; "
+                "an edge of %s is %.2g dp off the lattice, which is rotated by %.4g degrees; "
                 "move the edge or choose another dp",
-                region->word, region->name, fabs(a[c] - fit) / dp, l->angle * (180 / PI));
+                section_title(region->common).text, fabs(a[c] - fit) / dp, l->angle * (180 / PI));
 }
 
 static void warn_of_edges(struct check *check, const struct region *region, int shape)
@@ -85,11 +85,11 @@ static void warn_of_area(struct check *check, const struct region *region)
     const double ratio = 1 + l->area_error, stiff = ratio * square(ratio);
     if (fabs(l->area_error) <= 0.005) return;
     check->scene->off_lattice = true;
-    warn_at(check->diag, check->scene, region->line,
-            "the %.0f particles of [solid %s]%s cover %.2g %% %s than the shape there, %.4g m^2, "
+    warn_at(check->diag, check->scene, region->common->line,
+            "the %.0f particles of %s%s cover %.2g %% %s than the shape there, %.4g m^2, "
             "so a thin body is about %.2g %% too %s in bending; a finer dp or another "
             "lattice_angle helps",
-            ratio * l->area / square(l->dp), region->name,
+            ratio * l->area / square(l->dp), section_title(region->common).text,
             l->area_free ? " that no clamp holds" : "", 100 * fabs(ratio - 1),
             ratio > 1 ? "more" : "less", l->area, 100 * fabs(stiff - 1),
             ratio > 1 ? "stiff" : "soft");
@@ -174,10 +174,10 @@ static void warn_of_thin(struct check *check, const struct region *region, const
     const bool directly = thick + scene->top.dp < reach;
     if (scene->n_fluid == 0 || thick >= reach || (wall && !is_between(check, wall))) return;
     if (scene->numerics.sides == SIDES_ONE && !directly) return;
-    warn_at(check->diag, check->scene, wall ? wall->line : region->line,
-            "[%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts with "
+    warn_at(check->diag, check->scene, wall ? wall->line : region->common->line,
+            "%s is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts with "
             "the fluid behind it; %s prevents that",
-            region->word, region->name, thick, 2 * scene->h,
+            section_title(region->common).text, thick, 2 * scene->h,
             !directly ? "numerics.sides = one"
             : wall    ? "a thicker wall or a finer dp"
                       : "a finer dp");
@@ -187,10 +187,10 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
 {
     const double across = geometry_rows_across(region), dp = region->lattice.dp;
     if (across < 4)
-        warn_at(check->diag, check->scene, region->line,
-                "[solid %s] is only %.0f particles thick at dp = %g m, so its bending will be "
-                "inaccurate; use a finer dp, for 4 particles or more",
-                region->name, across, dp);
+        warn_section(check, region->common,
+                     "is only %.0f particles thick at dp = %g m, so its bending will be "
+                     "inaccurate; use a finer dp, for 4 particles or more",
+                     across, dp);
     if (scene_is_bonded(check->scene, region->body)) return;
     /* At the default h/dp a warning here would repeat the one on two particles across. */
     if (across > 2 || (across + 1) * dp < 2 * check->scene->h)
@@ -206,14 +206,14 @@ static void warn_of_region(struct check *check, const struct region *region)
             region->kind == KIND_WALL && region->body >= scene_beam_wall(check->scene, 0);
         if (shape->thin && check->scene->n_fluid && check->scene->fluid[0].wall_repulsion == 0)
             warn_at(check->diag, check->scene, shape->line,
-                    "single particles may pass through this line of [%s %s], which has no "
+                    "single particles may pass through this line of %s, which has no "
                     "thickness; wall_repulsion above 0 in [fluid %s] prevents that",
-                    region->word, region->name, check->scene->fluid[0].common.name);
+                    section_title(region->common).text, check->scene->fluid[0].common.name);
         if (shape->thin && check->scene->n_rigid && !beam)
             warn_at(check->diag, check->scene, shape->line,
-                    "rigid bodies do not touch this line of [%s %s] but pass through it, because "
+                    "rigid bodies do not touch this line of %s but pass through it, because "
                     "it has no thickness",
-                    region->word, region->name);
+                    section_title(region->common).text);
         bool layered = false; /* layers follow faces at any position */
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
@@ -259,9 +259,9 @@ static void warn_of_cuts(struct check *check, const struct region *region)
                 region->minus.shape[k] == shape && removes_any(region, &region->minus.item[k]);
         if (removes) continue;
         warn_at(check->diag, check->scene, region->minus_list->item[shape].line,
-                "`minus` removes no particle of [%s %s], because it is narrower than dp = %g m or "
+                "`minus` removes no particle of %s, because it is narrower than dp = %g m or "
                 "lies outside, so the opening is closed; enlarge or move it, or use a smaller dp",
-                region->word, region->name, region->lattice.dp);
+                section_title(region->common).text, region->lattice.dp);
     }
 }
 
@@ -358,13 +358,13 @@ static void warn_of_gap(struct gaps *g, int region, int line, const double face[
     bool *const warned = &g->warned[2 * (a * g->n + b) + closed];
     if (*warned || rows > 2.5 || !is_passage(check, at, across)) return;
     const struct region *const p = &check->shapes.regions[a], *const q = &check->shapes.regions[b];
-    char between[2 * SCENE_NAME + 32] = "in";
+    char between[sizeof(struct section_title) + 16] = "in";
     *warned = true;
-    if (a != b) snprintf(between, sizeof between, "between [%s %s] and", p->word, p->name);
+    if (a != b) snprintf(between, sizeof between, "between %s and", section_title(p->common).text);
     warn_at(check->diag, check->scene, line,
-            "the gap %s [%s %s] at (%.4g, %.4g) m is %.2g m wide, %s; use dp = %.2g m or less, or "
+            "the gap %s %s at (%.4g, %.4g) m is %.2g m wide, %s; use dp = %.2g m or less, or "
             "close the gap",
-            between, q->word, q->name, at[0], at[1], width * dp,
+            between, section_title(q->common).text, at[0], at[1], width * dp,
             closed ? "and closed by sampling, so no fluid passes"
                    : "one particle: the flow through it is 0.2 to 0.8 of the exact flow, and "
                      "energy may be gained",

@@ -36,10 +36,10 @@ static void warn_of_sliding(struct check *check)
         const struct body b = body_at(scene, k);
         if (b.slip != SLIP_FREE || (b.kind == KIND_WALL && !*b.motion)) continue;
         warn_at(check->diag, check->scene, scene_line(scene, SECTION_numerics, 0, "sides"),
-                "sides = one drags the fluid that slides along [%s %s], as if the body were larger "
+                "sides = one drags the fluid that slides along %s, as if the body were larger "
                 "by a spacing all round: the added mass of a cylinder of 10 spacings is 40 %% too "
                 "large; use sides = both, or slip = none",
-                b.word, b.common->name);
+                section_title(b.common).text);
     }
 }
 
@@ -108,8 +108,8 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
                  largest = scene_open_range(scene, open).largest,
                  stiffness = scene->rho0 * square(scene->c0);
     if (open->kind == OPEN_VELOCITY) {
-        warn_of_speed(check, open->common->line, largest, "[%s %s] gives the fluid", open->word,
-                      open->common->name);
+        warn_of_speed(check, open->common->line, largest, "%s gives the fluid",
+                      section_title(open->common).text);
         return;
     }
     if (largest > DENS_WARNING * stiffness)
@@ -123,10 +123,10 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
             check->diag, scene,
             scene_line(scene, (enum section_id)open->common->section, open->common->index,
                        "absorb"),
-            "[%s %s] absorb = %g s lets only waves shorter than c0 absorb/4 = %.3g m pass, but "
+            "%s absorb = %g s lets only waves shorter than c0 absorb/4 = %.3g m pass, but "
             "the fluid resolves none shorter than 2 h = %.3g m. So sound is reflected; absorb = "
             "4 L/c0 lets waves up to the length L pass",
-            open->word, open->common->name, open->absorb, wave, reach);
+            section_title(open->common).text, open->absorb, wave, reach);
 }
 
 void warn_of_values(struct check *check)

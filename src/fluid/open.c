@@ -104,9 +104,9 @@ static enum err make_copy(struct open *o, int64_t i, double in, struct diag *d)
     if (particles->n == particles->capacity)
         return diag_fail(
             d, ERR_GUARD,
-            "[%s %s] has brought in so much fluid that the limit of %lld particles is reached, "
+            "%s has brought in so much fluid that the limit of %lld particles is reached, "
             "because more fluid enters than leaves; a larger [domain] or an [outflow] may help",
-            b->word, b->common->name, (long long)particles->capacity);
+            section_title(b->common).text, (long long)particles->capacity);
     const int64_t to = particles->n++;
     const struct place at = place_of(o, b, i);
     const double middle = (at.strip + 0.5) * width_of(o, b) - at.along,
@@ -199,10 +199,10 @@ static void mark_returned(struct open *o, int64_t i, struct diag *d)
     const struct scene_open *const b = open_boundary(o, i);
     if (!o->warned)
         diag_warn(d,
-                  "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed, so "
+                  "%s fluid runs back over the line at (%.4g, %.4g) m and is removed, so "
                   "less flows in than given. A higher `level`, a slower start or a line further "
                   "away may help",
-                  b->word, b->common->name, particles->x[i], particles->y[i]);
+                  section_title(b->common).text, particles->x[i], particles->y[i]);
     o->warned = true;
     particles->open[i] = -particles->open[i];
 }

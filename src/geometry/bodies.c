@@ -50,10 +50,10 @@ enum err geometry_check_bodies(struct sampler *sampler)
         if (region->kind != KIND_SOLID || region->n == 0) continue;
         const double across = geometry_rows_across(region);
         if (across < 2)
-            TRY(geometry_refuse(sampler, region->line,
-                                "[solid %s] is %.0f particle thick at dp = %g m; bending needs at "
+            TRY(geometry_refuse(sampler, region->common->line,
+                                "%s is %.0f particle thick at dp = %g m; bending needs at "
                                 "least 2, better 4",
-                                region->name, across, region->lattice.dp));
+                                section_title(region->common).text, across, region->lattice.dp));
         TRY(find_area(sampler, region));
     }
     return ERR_OK;
@@ -122,9 +122,9 @@ enum err geometry_clamp(struct sampler *sampler, struct region *region, int64_t 
         if (!held[c])
             TRY(geometry_refuse(
                 sampler, clamps->item[c].line,
-                "clamp %d of [solid %s] contains no particle; it must cover a part of the body; "
+                "clamp %d of %s contains no particle; it must cover a part of the body; "
                 "`hinge = X, Y` holds any point of a body that may turn about it",
-                c + 1, region->name));
+                c + 1, section_title(region->common).text));
     return ERR_OK;
 }
 

@@ -10,9 +10,8 @@
 static enum err refuse(const struct sampler *sampler, const struct scene_open *o, const char *what,
                        const double x[2], const char *mend)
 {
-    return fail_at(sampler->diag, sampler->scene, o->common->line,
-                   "[%s %s] %s at (%.6g, %.6g) m: %s", o->word, o->common->name, what, x[0], x[1],
-                   mend);
+    return fail_at(sampler->diag, sampler->scene, o->common->line, "%s %s at (%.6g, %.6g) m: %s",
+                   section_title(o->common).text, what, x[0], x[1], mend);
 }
 
 /* Whether a point lies in a boundary's buffer, and further from its edges than round-off. */
@@ -84,8 +83,8 @@ static enum err check_buffer_point(const struct sampler *sampler, const struct s
     for (int r = 0; r < sampler->n_regions; r++) {
         const struct region *const region = &sampler->regions[r];
         if (region->kind == KIND_FLUID || !geometry_covers_strictly(region, x[0], x[1])) continue;
-        char what[SCENE_NAME + 16];
-        snprintf(what, sizeof what, "lies in [%s %s]", region->word, region->name);
+        char what[sizeof(struct section_title) + 16];
+        snprintf(what, sizeof what, "lies in %s", section_title(region->common).text);
         return refuse(sampler, o, what, x,
                       region->kind == KIND_WALL
                           ? "shorten the line, or cut an opening in the wall with `minus`"

@@ -58,9 +58,10 @@ static enum err fail_overlap(struct sampler *sampler, const struct region *mine,
 {
     const bool fluid = mine->kind == KIND_FLUID || its->kind == KIND_FLUID,
                wall = mine->kind == KIND_WALL || its->kind == KIND_WALL;
-    return fail_at(sampler->diag, sampler->scene, mine->line,
-                   "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s%s",
-                   (long long)count, mine->word, mine->name, its->word, its->name, x, y,
+    return fail_at(sampler->diag, sampler->scene, mine->common->line,
+                   "%lld particles of %s lie in %s, the first at (%.6g, %.6g) m: %s%s",
+                   (long long)count, section_title(mine->common).text,
+                   section_title(its->common).text, x, y,
                    fluid || !wall ? "move one of the shapes, or subtract the overlap with `minus`"
                    : mine->kind == its->kind ? "walls that move differently must not overlap"
                                              : "only the clamped part of a solid may lie in a wall",

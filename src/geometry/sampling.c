@@ -45,14 +45,8 @@ static void add_region(struct sampler *sampler, enum kind kind, int body,
                        const struct scene_section_common *common, const struct shape_list *shape,
                        const struct shape_list *minus)
 {
-    sampler->regions[sampler->n_regions++] =
-        (struct region){.kind = kind,
-                        .body = body,
-                        .word = section_table[common->section].word,
-                        .name = common->name,
-                        .line = common->line,
-                        .list = shape,
-                        .minus_list = minus};
+    sampler->regions[sampler->n_regions++] = (struct region){
+        .kind = kind, .body = body, .common = common, .list = shape, .minus_list = minus};
 }
 
 static enum err draw_region(struct sampler *sampler, struct region *region)
@@ -166,13 +160,13 @@ static enum err sample_region(struct sampler *sampler, struct region *region, st
         missing &= per_shape[k] > 0;
         if (per_shape[k] || region->list->item[k].thin) continue;
         TRY(geometry_refuse(sampler, region->list->item[k].line,
-                            "shape %d of [%s %s] contains no particle, because it is narrower "
+                            "shape %d of %s contains no particle, because it is narrower "
                             "than dp = %g m or lies between lattice points; enlarge or move it",
-                            k + 1, region->word, region->name, region->lattice.dp));
+                            k + 1, section_title(region->common).text, region->lattice.dp));
     }
     if (!missing) return ERR_OK;
-    return geometry_refuse(sampler, region->line, "nothing is left of [%s %s] after its `minus`",
-                           region->word, region->name);
+    return geometry_refuse(sampler, region->common->line, "nothing is left of %s after its `minus`",
+                           section_title(region->common).text);
 }
 
 /* An error if there was bad input. */

@@ -18,9 +18,8 @@ enum { EDGE_PARTS = 8 };
 /* The region of one section. Its shapes are in the axes of its lattice. */
 struct region {
     enum kind kind;
-    int body;                /* index of the section */
-    const char *word, *name; /* of the section */
-    int line;
+    int body; /* index of the section */
+    const struct scene_section_common *common;
     const struct shape_list *list, *minus_list;
     struct outlines add, minus;
     struct scene_lattice lattice;

@@ -323,13 +323,12 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         if (at < 0) continue;
         const int other = p->body[at];
         warn_once(sim, &sim->guard.warned_rigid, d,
-                  "[rigid %s] has entered [%s %s] near (%.6g, %.6g) m and passes through: "
+                  "[rigid %s] has entered %s near (%.6g, %.6g) m and passes through: "
                   "contact ends a quarter of a spacing below the surface, and does not act at a "
                   "hinge; hold the body by `guide`, `hinge` or a [spring], or use a smaller "
                   "`fixed_step`",
                   sim->scene->rigid[k].common.name,
-                  section_table[sim->scene->wall[other].common.section].word,
-                  sim->scene->wall[other].common.name, p->x[at], p->y[at]);
+                  section_title(&sim->scene->wall[other].common).text, p->x[at], p->y[at]);
         return;
     }
 }
