@@ -7,8 +7,8 @@
 static double offset(const struct probe *probe, const struct particles *particles, int k,
                      double reach, double *x, double *y)
 {
-    *x = (particles->X[probe->particle[k]] - probe->point[0]) / reach;
-    *y = (particles->Y[probe->particle[k]] - probe->point[1]) / reach;
+    *x = (particles->X[probe->particle[k]] - probe->of->point[0]) / reach;
+    *y = (particles->Y[probe->particle[k]] - probe->of->point[1]) / reach;
     return square(square(max2(0, 1 - (*x * *x + *y * *y))));
 }
 
@@ -41,7 +41,8 @@ static enum err attach(struct probe *probe, const struct simulation *sim, struct
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     const double reach = 2 * scene_solid_h(sim->scene, probe->body);
     for (int64_t i = 0; i < particles->n; i++) {
-        const double x = particles->X[i] - probe->point[0], y = particles->Y[i] - probe->point[1];
+        const double x = particles->X[i] - probe->of->point[0],
+                     y = particles->Y[i] - probe->of->point[1];
         if (particles->body[i] != probe->body || square(x) + square(y) >= square(reach)) continue;
         TRY(arena_more(a, &probe->particle, probe->n, "probe", d));
         probe->particle[probe->n++] = (int32_t)i;
@@ -52,19 +53,19 @@ static enum err attach(struct probe *probe, const struct simulation *sim, struct
 }
 
 /* A point within half of the beam's thickness, or of an element, of its line. */
-static enum err attach_to_beam(struct probe *probe, const struct scene_probe *sp,
-                               const struct simulation *sim, struct diag *d)
+static enum err attach_to_beam(struct probe *probe, const struct simulation *sim, struct diag *d)
 {
     const struct beams *const beams = &sim->beams;
     const struct scene_beam *const given = &sim->scene->beam[probe->beam];
-    probe->place = beam_find(beams, probe->beam, probe->point);
+    probe->place = beam_find(beams, probe->beam, probe->of->point);
     const double off = probe->place.distance;
     if (probe->target != TARGET_SOLID_POINT ||
         off <= 0.5 * beams->element[probe->place.element].length || off <= 0.5 * given->thickness)
         return ERR_OK;
-    return fail_at(d, sim->scene, sp->common.line,
+    return fail_at(d, sim->scene, probe->of->common.line,
                    "[probe %s] point = %g, %g is %.3g m from the line of [beam %s]; move it there",
-                   sp->common.name, probe->point[0], probe->point[1], off, given->common.name);
+                   probe->of->common.name, probe->of->point[0], probe->of->point[1], off,
+                   given->common.name);
 }
 
 /* What must bring fields up to date before a probe reads them, each more than the one before. */
@@ -78,7 +79,7 @@ static enum need need_of(const struct probe *probe)
     };
     for (int k = 0; k < probe->n_bodies; k++)
         if (probe->bodies[k].kind == KIND_WALL) return NEED_WALL_FORCES;
-    return needs[probe->quantity];
+    return needs[probe->of->quantity];
 }
 
 static void refresh(struct simulation *sim, enum need need)
@@ -97,22 +98,22 @@ static struct probe_body find_body(const struct scene *scene, const char *name)
 }
 
 /* The bodies of a force. */
-static enum err find_bodies(struct probe *probe, const struct scene *scene, const char *list,
-                            struct arena *a, struct diag *d)
+static enum err find_bodies(struct probe *probe, const struct scene *scene, struct arena *a,
+                            struct diag *d)
 {
     char name[SCENE_TEXT];
-    while (scene_listed(list, probe->n_bodies, name)) probe->n_bodies++;
+    while (scene_listed(probe->of->body, probe->n_bodies, name)) probe->n_bodies++;
     TRY(arena_array(a, &probe->bodies, probe->n_bodies, "probe", d));
-    for (int k = 0; k < probe->n_bodies && scene_listed(list, k, name); k++)
+    for (int k = 0; k < probe->n_bodies && scene_listed(probe->of->body, k, name); k++)
         probe->bodies[k] = find_body(scene, name);
     return ERR_OK;
 }
 
 /* The body that carries a point or a line of the fluid. */
-static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp,
-                               const struct simulation *sim, struct arena *a, struct diag *d)
+static enum err attach_to_body(struct probe *probe, const struct simulation *sim, struct arena *a,
+                               struct diag *d)
 {
-    const struct probe_body on = find_body(sim->scene, sp->on);
+    const struct probe_body on = find_body(sim->scene, probe->of->on);
     if (on.kind == KIND_WALL) {
         probe->motion = scene_wall_motion(sim->scene, on.body);
         return ERR_OK;
@@ -124,19 +125,15 @@ static enum err attach_to_body(struct probe *probe, const struct scene_probe *sp
 static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                              const struct simulation *sim, struct arena *a, struct diag *d)
 {
-    *probe = (struct probe){.quantity = sp->quantity,
-                            .target = scene_probe_target(sp),
-                            .direction = sp->direction,
-                            .columns = slice_count(
-                                slice_of(quantity_table[sp->quantity].columns), ','),
-                            .average = sp->average,
-                            .motion = -1,
-                            .kind = KIND_SOLID,
-                            .body = scene_find(sim->scene, SECTION_solid, sp->body),
-                            .beam = scene_find(sim->scene, SECTION_beam, sp->body)};
-    memcpy(probe->point, sp->point, sizeof probe->point);
-    memcpy(probe->to, sp->to, sizeof probe->to);
-    if (probe->beam >= 0 && probe->target != TARGET_BODY) return attach_to_beam(probe, sp, sim, d);
+    *probe =
+        (struct probe){.of = sp,
+                       .target = scene_probe_target(sp),
+                       .columns = slice_count(slice_of(quantity_table[sp->quantity].columns), ','),
+                       .motion = -1,
+                       .kind = KIND_SOLID,
+                       .body = scene_find(sim->scene, SECTION_solid, sp->body),
+                       .beam = scene_find(sim->scene, SECTION_beam, sp->body)};
+    if (probe->beam >= 0 && probe->target != TARGET_BODY) return attach_to_beam(probe, sim, d);
     if (probe->target == TARGET_SOLID && probe->body < 0) {
         probe->kind = KIND_WALL;
         probe->body =
@@ -144,8 +141,8 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
         probe->spring = scene_find(sim->scene, SECTION_spring, sp->body);
         return ERR_OK;
     }
-    if (probe->target == TARGET_BODY) return find_bodies(probe, sim->scene, sp->body, a, d);
-    if (*sp->on) return attach_to_body(probe, sp, sim, a, d);
+    if (probe->target == TARGET_BODY) return find_bodies(probe, sim->scene, a, d);
+    if (*sp->on) return attach_to_body(probe, sim, a, d);
     return probe->target == TARGET_SOLID_POINT ? attach(probe, sim, a, d) : ERR_OK;
 }
 
@@ -253,8 +250,8 @@ static void add_forces(const struct probe *probe, const struct particles *partic
         if (particles->body[i] != body) continue;
         out[0] += fx[i];
         out[1] += fy[i];
-        out[2] += (particles->x[i] - probe->point[0]) * fy[i] -
-                  (particles->y[i] - probe->point[1]) * fx[i];
+        out[2] += (particles->x[i] - probe->of->point[0]) * fy[i] -
+                  (particles->y[i] - probe->of->point[1]) * fx[i];
     }
 }
 
@@ -332,7 +329,7 @@ static void rigid_reaction(const struct probe *probe, const struct simulation *s
             rigid_spring_force(&sim->rigid, probe->spring, out, at);
         out[2] = 0;
     }
-    out[2] += (at[0] - probe->point[0]) * out[1] - (at[1] - probe->point[1]) * out[0];
+    out[2] += (at[0] - probe->of->point[0]) * out[1] - (at[1] - probe->of->point[1]) * out[0];
 }
 
 static void energy(const struct probe *probe, const struct simulation *sim, double out[3])
@@ -357,7 +354,7 @@ static void move_with_wall(const struct probe *probe, const struct simulation *s
 /* Where a point of the fluid is now. */
 static void present_point(const struct probe *probe, const struct simulation *sim, double at[2])
 {
-    memcpy(at, probe->point, sizeof probe->point);
+    memcpy(at, probe->of->point, sizeof probe->of->point);
     move_with_wall(probe, sim, at);
     if (probe->n > 0) {
         const struct particles *const particles = &sim->kind[KIND_SOLID];
@@ -370,7 +367,8 @@ static void present_point(const struct probe *probe, const struct simulation *si
 
 static void surface_pressure(const struct probe *probe, const struct simulation *sim, double out[3])
 {
-    double from[2] = {probe->point[0], probe->point[1]}, to[2] = {probe->to[0], probe->to[1]};
+    double from[2] = {probe->of->point[0], probe->of->point[1]},
+           to[2] = {probe->of->to[0], probe->of->to[1]};
     move_with_wall(probe, sim, from);
     move_with_wall(probe, sim, to);
     fluid_pressure_on(sim, from, to, out);
@@ -385,9 +383,9 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
     const struct beam_state *const a = &beams->state[node[0]], *const b = &beams->state[node[1]];
     const double part = probe->place.part;
     struct body_energy energy;
-    switch ((enum probe_quantity)probe->quantity) {
+    switch ((enum probe_quantity)probe->of->quantity) {
     case PROBE_SECTION_FORCE: beam_section(beams, &probe->place, row); return;
-    case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->point, row); return;
+    case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->of->point, row); return;
     case PROBE_ENERGY:
         energy = beam_energy(beams, probe->beam);
         row[0] = energy.kinetic, row[1] = energy.elastic, row[2] = 0;
@@ -397,10 +395,10 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
     for (int c = 0; c < 2; c++) {
         const double v = a->v[c] + part * (b->v[c] - a->v[c]);
         row[c] = v;
-        if (probe->quantity == PROBE_DISPLACEMENT) {
+        if (probe->of->quantity == PROBE_DISPLACEMENT) {
             row[c] = a->x[c] + part * (b->x[c] - a->x[c]);
             rate[c] = v;
-        } else if (probe->quantity == PROBE_ACCELERATION) {
+        } else if (probe->of->quantity == PROBE_ACCELERATION) {
             row[c] = a->a[c] + part * (b->a[c] - a->a[c]);
         }
     }
@@ -417,7 +415,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
         return;
     }
     if (probe->target == TARGET_FLUID_POINT) present_point(probe, sim, at);
-    switch ((enum probe_quantity)probe->quantity) {
+    switch ((enum probe_quantity)probe->of->quantity) {
     case PROBE_DISPLACEMENT:
         weighted_sum(probe, solid->ux, solid->uy, row);
         weighted_sum(probe, solid->vx, solid->vy, rate);
@@ -447,9 +445,9 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
     case PROBE_STRESS: stress(probe, sim, row); break;
     case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
     case PROBE_FORCE: force(probe, sim, row); break;
-    case PROBE_FRONT: *row = fluid_front(sim, probe->direction); break;
+    case PROBE_FRONT: *row = fluid_front(sim, probe->of->direction); break;
     case PROBE_ENERGY: energy(probe, sim, row); break;
-    case PROBE_FLUX: *row = fluid_flux(sim, probe->point, probe->to); break;
+    case PROBE_FLUX: *row = fluid_flux(sim, probe->of->point, probe->of->to); break;
     case PROBE_STRAIN: strain(probe, sim, row); break;
     case PROBE_POSE: (probe->kind == KIND_WALL ? rigid_pose : pose)(probe, sim, row, rate); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(probe, sim, row); break;

@@ -19,10 +19,9 @@ struct probe_mean {
 };
 
 struct probe {
-    int quantity; /* enum probe_quantity */
+    const struct scene_probe *of;
     enum probe_target target;
     int columns, file, column; /* `column`: its first in the file */
-    int direction;             /* enum probe_direction */
     enum kind kind;            /* of the body: KIND_WALL of a rigid one */
     int body;                  /* its section among the solids, or rigid bodies; -1: none */
     int beam;                  /* that is measured; -1: none */
@@ -31,9 +30,6 @@ struct probe {
     struct probe_body *bodies;
     int spring;              /* of a reaction; -1: that of a body */
     int motion;              /* that carries the point of a probe on a wall; -1: none */
-    double point[2];         /* m, in the initial configuration */
-    double to[2];            /* m */
-    double average;          /* s; 0: none */
     struct probe_mean *mean; /* NULL: none */
     int n;                   /* particles of the interpolation at a material point */
     int32_t *particle;       /* of the solid */

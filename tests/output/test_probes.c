@@ -59,10 +59,10 @@ static void weights_reproduce_linear_fields(const char *point)
     set_linear_field();
     double row[8], rate[8];
     probes_sample(&probes, &rig.sim, 0, false, row, rate);
-    const double *at = probes.probe[0].point;
+    const double *at = probes.probe[0].of->point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5 + 2 * at[0] - 3 * at[1], row[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.25 + at[0] + 4 * at[1], row[2]);
-    at = probes.probe[1].point;
+    at = probes.probe[1].of->point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (0.5 + 2 * at[0] - 3 * at[1]), row[3]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (-0.25 + at[0] + 4 * at[1]), row[4]);
 }
@@ -341,7 +341,7 @@ static void a_point_rides_on_a_wall(void)
                   "[probe F]\nquantity = pressure\npoint = 0.06, 0.03\n"
                   "[probe R]\nquantity = pressure\non = flap\npoint = 0.13, 0.04\n",
                   NULL);
-        probes.probe[probes.n - 1].quantity = probes.probe[probes.n - 2].quantity = quantity[k];
+        for (int p = probes.n - 2; p < probes.n; p++) rig.scene.probe[p].quantity = quantity[k];
         set_flow(2, -0.5);
         set_uneven_density();
         rig.sim.state.time = 1; /* a quarter turn */
