@@ -197,11 +197,8 @@ static enum err read_case(struct session *session, const struct sphfsi_options *
     const int largest = THREADS_PER_CORE * thread_cores();
     const int asked = o->threads > 0 ? o->threads : thread_count();
     thread_use(asked < largest ? asked : largest);
-    if (o->case_text)
-        TRY(scene_load_text(&session->scene, o->case_text, o->case_path ? o->case_path : "case",
-                            o->n_sets, o->sets, d));
-    else
-        TRY(scene_load(&session->scene, o->case_path, o->n_sets, o->sets, d));
+    TRY(scene_load_text(&session->scene, o->case_text, o->case_path ? o->case_path : "case",
+                        o->n_sets, o->sets, d));
     const enum err e = check_scene(&session->scene, d);
     if (e)
         scene_free(&session->scene);

@@ -207,24 +207,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
 
 /* --- from text, from a file --- */
 
-enum err scene_parse(struct scene *scene, const char *text, const char *path, int n_sets,
-                     const char *const *sets, struct diag *d)
-{
-    memset(scene, 0, sizeof *scene);
-    if (strlen(path) >= sizeof scene->path)
-        return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
-                         sizeof scene->path - 1);
-    memcpy(scene->path, path, strlen(path) + 1);
-    struct reader r = {.scene = scene, .diag = d};
-    enum err err = read_all(&r, text, n_sets, sets);
-    if (err == ERR_INPUT) case_report(&r);
-    arena_free(&r.temp);
-    if (err) scene_free(scene);
-    return err;
-}
-
-enum err scene_read(struct scene *scene, const char *path, int n_sets, const char *const *sets,
-                    struct diag *d)
+static enum err read_file(const char *path, char **text, struct diag *d)
 {
     struct stat info;
     if (stat(path, &info) != 0)
@@ -235,9 +218,24 @@ enum err scene_read(struct scene *scene, const char *path, int n_sets, const cha
     if (info.st_size > CASE_MAX_BYTES)
         return diag_fail(d, ERR_INPUT, "%s: longer than %d bytes; is it a case file?", path,
                          CASE_MAX_BYTES);
-    char *text;
-    TRY(text_read(path, path, "a case file", &text, d));
-    const enum err err = scene_parse(scene, text, path, n_sets, sets, d);
-    free(text);
+    return text_read(path, path, "a case file", text, d);
+}
+
+enum err scene_read(struct scene *scene, const char *text, const char *path, int n_sets,
+                    const char *const *sets, struct diag *d)
+{
+    char *of_file = NULL;
+    memset(scene, 0, sizeof *scene);
+    if (strlen(path) >= sizeof scene->path)
+        return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
+                         sizeof scene->path - 1);
+    memcpy(scene->path, path, strlen(path) + 1);
+    if (!text) TRY(read_file(path, &of_file, d));
+    struct reader r = {.scene = scene, .diag = d};
+    enum err err = read_all(&r, text ? text : of_file, n_sets, sets);
+    if (err == ERR_INPUT) case_report(&r);
+    free(of_file);
+    arena_free(&r.temp);
+    if (err) scene_free(scene);
     return err;
 }

@@ -226,15 +226,13 @@ struct scene {
     bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */
 };
 
-/* Reads and checks a case file; geometry/load.h also samples its points. `sets` are the --set
- * arguments ("key=value" or "section.key=value"; a named section is section NAME: "solid
- * gate.young=1e6" or "gate.young=1e6"). After success the caller frees with scene_free; after a
- * failure there is nothing to free. */
-enum err scene_read(struct scene *scene, const char *path, int n_sets, const char *const *sets,
-                    struct diag *d) SPHFSI_CHECKED;
-/* The same from text in memory; messages use `path`, and file names are relative to it. */
-enum err scene_parse(struct scene *scene, const char *text, const char *path, int n_sets,
-                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
+/* Reads and checks a case, from text in memory or NULL: the file; messages use `path`, and file
+ * names are relative to it. geometry/load.h also samples its points. `sets` are the --set arguments
+ * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
+ * "gate.young=1e6"). After success the caller frees with scene_free; after a failure there is
+ * nothing to free. */
+enum err scene_read(struct scene *scene, const char *text, const char *path, int n_sets,
+                    const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *scene);
 
 /* Whether opposite sides of the domain along an axis are joined. */

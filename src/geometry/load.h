@@ -4,10 +4,8 @@
 
 #include "case/scene.h"
 
-/* scene_read and scene_parse followed by scene_sample. After success the caller frees with
- * scene_free; after a failure there is nothing to free. */
-enum err scene_load(struct scene *scene, const char *path, int n_sets, const char *const *sets,
-                    struct diag *d) SPHFSI_CHECKED;
+/* scene_read followed by scene_sample. After success the caller frees with scene_free; after a
+ * failure there is nothing to free. */
 enum err scene_load_text(struct scene *scene, const char *text, const char *path, int n_sets,
                          const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 

@@ -210,13 +210,14 @@ static void test_a_key_wins_over_the_scheme(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.8e-3, scene_solid_h(&scene, 0));
     TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0);
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_write(&scene, effective, &diag));
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, NULL, effective, 0, NULL, &diag),
+                                  diag.text);
     TEST_ASSERT_EQUAL_INT(SCHEME_STANDARD, again.top.scheme);
     TEST_ASSERT_TRUE(again.fluid[0].density_diffusion == 0);
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT,
-                          scene_parse(&scene, TOP BLOCK "[numerics]\nsolid_h_over_dp = 0.5",
-                                      "x.cfg", 0, NULL, &diag));
+                          scene_read(&scene, TOP BLOCK "[numerics]\nsolid_h_over_dp = 0.5", "x.cfg",
+                                     0, NULL, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "too few neighbours"), diag.text);
 }
 
@@ -317,7 +318,8 @@ static void same_points(const struct scene_points *a, const struct scene_points 
 static void round_trip(void)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, effective, &diag), diag.text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load(&again, effective, 0, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&again, NULL, effective, 0, NULL, &diag),
+                                  diag.text);
     for (int id = 0; id < SECTION_COUNT; id++) {
         const int n = section_count(&scene, (enum section_id)id);
         TEST_ASSERT_EQUAL_INT(n, section_count(&again, (enum section_id)id));
@@ -360,7 +362,8 @@ static int cases_of_folder(const char *name)
         char path[300];
         snprintf(path, sizeof path, "%s/%.250s", name, e->d_name);
         scene_free(&scene);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load(&scene, path, 0, NULL, &diag), diag.text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, NULL, path, 0, NULL, &diag),
+                                      diag.text);
         round_trip();
         n++;
     }
@@ -387,7 +390,7 @@ static void test_files_are_found_from_the_effective_case(void)
           0, NULL);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, "tests/test_case.tmp", &diag),
                                   diag.text);
-    const enum err err = scene_load(&again, "tests/test_case.tmp", 0, NULL, &diag);
+    const enum err err = scene_load_text(&again, NULL, "tests/test_case.tmp", 0, NULL, &diag);
     remove("tests/test_case.tmp");
     remove("test_case_motion.tmp");
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, err, diag.text);

@@ -537,7 +537,7 @@ static void read_bytes(const char *bytes, size_t n, const char *message)
     fclose(file);
     struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, path, 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, NULL, path, 0, NULL, &d));
     remove(path);
     TEST_ASSERT_EQUAL_STRING(message, d.text);
 }
@@ -552,7 +552,7 @@ static void test_a_file_that_is_not_there(void)
 {
     struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, "no/such.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, NULL, "no/such.cfg", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING("no/such.cfg: cannot be opened: No such file or directory", d.text);
 }
 

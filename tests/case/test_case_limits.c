@@ -235,7 +235,8 @@ static void test_a_file_that_is_too_long(void)
     for (int k = 0; k < (4 << 20) / 64; k++) fprintf(file, "# %-61d\n", k);
     fclose(file);
     setUp();
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, "test_case_limits.tmp", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
+                          scene_load_text(&scene, NULL, "test_case_limits.tmp", 0, NULL, &diag));
     remove("test_case_limits.tmp");
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(diag.text, "test_case_limits.tmp: longer than 4194304 bytes; is it a case file?"),

@@ -98,7 +98,7 @@ static void test_a_folder_is_no_file(void)
 {
     struct scene scene;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&scene, ".", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, NULL, ".", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 

@@ -120,7 +120,7 @@ static void test_the_effective_case_finds_the_file(void)
 {
     must_read(MOVES("way(t)"), rows);
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_write(&scene, "tests/test_tables.cfg.tmp", &diag));
-    const enum err e = scene_load(&again, "tests/test_tables.cfg.tmp", 0, NULL, &diag);
+    const enum err e = scene_load_text(&again, NULL, "tests/test_tables.cfg.tmp", 0, NULL, &diag);
     remove("tests/test_tables.cfg.tmp");
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, diag.text);
     TEST_ASSERT_EQUAL_STRING("../test_tables.tmp", again.table[0].file);

@@ -25,7 +25,7 @@ void tearDown(void)
 
 static void open(const char *path, int n_sets, const char *const *sets)
 {
-    enum err e = scene_load(&scene, path, n_sets, sets, &diag);
+    enum err e = scene_load_text(&scene, NULL, path, n_sets, sets, &diag);
     if (!e) e = simulation_create(&sim, &scene, &diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, diag.text);
 }
