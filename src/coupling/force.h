@@ -27,15 +27,13 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
                               const struct vector_constants *k, double *fx, double *fy)
 {
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const real *const b = candidates(neighbours, code, part);
-            const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
-            const vreal weight = law_laminar(&q, k);
-            sum_x[part] = vfma(weight, q.u, sum_x[part]);
-            sum_y[part] = vfma(weight, q.v, sum_y[part]);
-        }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
+        const vreal weight = law_laminar(&q, k);
+        sum_x[part] = vfma(weight, q.u, sum_x[part]);
+        sum_y[part] = vfma(weight, q.v, sum_y[part]);
+    }
     add_force(sum_x, sum_y, -PAIR_SLOPE * fluid->k.h, volume, fx, fy);
 }
 
@@ -51,27 +49,25 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
     const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
     const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const real *const b = candidates(neighbours, code, part);
-            struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
-            q.p = lane(b, PACKED_P);
-            vreal stress = law_pressure(s, &q);
-            if (effects & FX_ONE_SIDED)
-                stress = stress + law_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x,
-                                                lift_y, k);
-            if (effects & FX_REPULSION)
-                stress = stress + law_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
-            if (effects & FX_WALL_DAMPING)
-                stress = stress + law_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.v_xi, k);
-            const vreal g = q.slope * stress;
-            sum_x[part] = vfma(g, q.x, sum_x[part]);
-            sum_y[part] = vfma(g, q.y, sum_y[part]);
-            if (!(effects & FX_IMPEDANCE)) continue;
-            wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
-            wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
-        }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line);
+        q.p = lane(b, PACKED_P);
+        vreal stress = law_pressure(s, &q);
+        if (effects & FX_ONE_SIDED)
+            stress =
+                stress + law_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+        if (effects & FX_REPULSION)
+            stress = stress + law_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+        if (effects & FX_WALL_DAMPING)
+            stress = stress + law_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.v_xi, k);
+        const vreal g = q.slope * stress;
+        sum_x[part] = vfma(g, q.x, sum_x[part]);
+        sum_y[part] = vfma(g, q.y, sum_y[part]);
+        if (!(effects & FX_IMPEDANCE)) continue;
+        wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
+        wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
+    }
     add_force(sum_x, sum_y, PAIR_SLOPE * fluid->k.h, volume, force[0], force[1]);
     if (effects & FX_IMPEDANCE)
         add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);

@@ -13,18 +13,16 @@ SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct 
                               struct fluid_around *sum)
 {
     vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    for (int k = 0; k < neighbours->n; k++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[k];
-            const real *const b = candidates(neighbours, code, part);
-            const struct separation d = separation_from(s, code, b);
-            const vreal w = weight_seen(s, &d, kernel_of(d.length));
-            const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
-            sum_w[part] = sum_w[part] + w;
-            sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
-            sum_x[part] = vfma(mass, d.x, sum_x[part]);
-            sum_y[part] = vfma(mass, d.y, sum_y[part]);
-        }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        const struct separation d = separation_from(s, code, b);
+        const vreal w = weight_seen(s, &d, kernel_of(d.length));
+        const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
+        sum_w[part] = sum_w[part] + w;
+        sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
+        sum_x[part] = vfma(mass, d.x, sum_x[part]);
+        sum_y[part] = vfma(mass, d.y, sum_y[part]);
+    }
     total(sum_w, &sum->w[r]);
     total(sum_p, &sum->p[r]);
     total(sum_x, &sum->x[r]);
@@ -54,16 +52,14 @@ SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const 
                                      double *u, double *v)
 {
     vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
-    for (int k = 0; k < neighbours->n; k++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[k];
-            const real *const b = candidates(neighbours, code, part);
-            const struct separation d = separation_from(s, code, b);
-            const vreal w = weight_seen(s, &d, kernel_of(d.length));
-            sum_w[part] = sum_w[part] + w;
-            sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
-            sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
-        }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        const struct separation d = separation_from(s, code, b);
+        const vreal w = weight_seen(s, &d, kernel_of(d.length));
+        sum_w[part] = sum_w[part] + w;
+        sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
+        sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
+    }
     real weight[GROUPS], fluid_u[GROUPS], fluid_v[GROUPS];
     total(sum_w, weight);
     total(sum_u, fluid_u);
@@ -190,14 +186,12 @@ SPHFSI_INLINE void pack_sliding(const struct fluid *fluid, const struct dummies 
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
         const struct receiver s = receiver_at(sides, d->packed + r);
         vreal sum[PARTS] = {{0}};
-        for (int k = 0; k < neighbours->n; k++)
-            for (int part = 0; part < PARTS; part++) {
-                const uint32_t code = neighbours->code[k];
-                const real *const b = candidates(neighbours, code, part);
-                const struct separation at = separation_from(&s, code, b);
-                const vreal volume = lane(b, PACKED_VOLUME);
-                sum[part] = vfma(volume, weight_seen(&s, &at, kernel_of(at.length)), sum[part]);
-            }
+        EACH_CANDIDATE(neighbours, part, code, b)
+        {
+            const struct separation at = separation_from(&s, code, b);
+            const vreal volume = lane(b, PACKED_VOLUME);
+            sum[part] = vfma(volume, weight_seen(&s, &at, kernel_of(at.length)), sum[part]);
+        }
         total(sum, &filled[r]);
     }
     for (int r = 0; r < d->count; r++) {

@@ -31,11 +31,16 @@ struct neighbours {
     int n; /* clusters */
 };
 
-/* The candidates in a part of a cluster. */
-SPHFSI_INLINE const real *candidates(const struct neighbours *neighbours, uint32_t code, int part)
-{
-    return neighbours->packed + neighbour_number(code) * neighbours->items + part * LANES;
-}
+/* Each part of the clusters, with its cluster's code; b: its packed candidates. */
+#define EACH_CANDIDATE(neighbours, part, code, b)                                            \
+    uint32_t code;                                                                           \
+    const real *b;                                                                           \
+    for (int m_ = 0; m_ < (neighbours)->n; m_++)                                             \
+        for (int part = 0; part < PARTS && (code = (neighbours)->code[m_],                   \
+                                           b = (neighbours)->packed + part * LANES +         \
+                                               neighbour_number(code) * (neighbours)->items, \
+                                           true);                                            \
+             part++)
 
 /* The sums of the receivers over all candidates. */
 SPHFSI_INLINE void total(const vreal sum[PARTS], real out[GROUPS])

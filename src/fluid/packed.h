@@ -166,19 +166,17 @@ SPHFSI_INLINE void sum_slopes(const struct neighbours *neighbours, const struct 
                               real out[SLOPE_SUMS][CLUSTER])
 {
     vreal sum[SLOPE_SUMS][PARTS] = {{{0}}};
-    for (int k = 0; k < neighbours->n; k++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[k];
-            const real *const b = candidates(neighbours, code, part);
-            const struct separation d = separation_from(a, code, b);
-            const vreal w = weight_seen(a, &d, gradient_weight(&d, b));
-            const vreal step = w * (a->dens - lane(b, PACKED_DENS));
-            sum[SLOPE_XX][part] = vfma(w * d.x, d.x, sum[SLOPE_XX][part]);
-            sum[SLOPE_XY][part] = vfma(w * d.x, d.y, sum[SLOPE_XY][part]);
-            sum[SLOPE_YY][part] = vfma(w * d.y, d.y, sum[SLOPE_YY][part]);
-            sum[SLOPE_X][part] = vfma(step, d.x, sum[SLOPE_X][part]);
-            sum[SLOPE_Y][part] = vfma(step, d.y, sum[SLOPE_Y][part]);
-        }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        const struct separation d = separation_from(a, code, b);
+        const vreal w = weight_seen(a, &d, gradient_weight(&d, b));
+        const vreal step = w * (a->dens - lane(b, PACKED_DENS));
+        sum[SLOPE_XX][part] = vfma(w * d.x, d.x, sum[SLOPE_XX][part]);
+        sum[SLOPE_XY][part] = vfma(w * d.x, d.y, sum[SLOPE_XY][part]);
+        sum[SLOPE_YY][part] = vfma(w * d.y, d.y, sum[SLOPE_YY][part]);
+        sum[SLOPE_X][part] = vfma(step, d.x, sum[SLOPE_X][part]);
+        sum[SLOPE_Y][part] = vfma(step, d.y, sum[SLOPE_Y][part]);
+    }
     for (int k = 0; k < SLOPE_SUMS; k++) total(sum[k], &out[k][r]);
 }
 

@@ -99,20 +99,16 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
                              const struct vector_constants *k, struct pair_set effects,
                              const struct chunk *chunk, struct cluster_sums *sums)
 {
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const real *const b = candidates(neighbours, code, part);
-            const size_t place =
-                deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
-            real *const at = chunk->deferred + place * deferred_stride(effects) + part * LANES;
-            for (int row = 0; row < ROWS; row++) {
-                const struct exchange e =
-                    pair_of_fluid(&a[row], code, b, k, effects, &sums->approach);
-                add_exchange(sums->of[row][part], &e, effects, true);
-                defer_exchange(at + row * GROUPS * CLUSTER, &e, effects);
-            }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        const size_t place = deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
+        real *const at = chunk->deferred + place * deferred_stride(effects) + part * LANES;
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_fluid(&a[row], code, b, k, effects, &sums->approach);
+            add_exchange(sums->of[row][part], &e, effects, true);
+            defer_exchange(at + row * GROUPS * CLUSTER, &e, effects);
         }
+    }
 }
 
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid
@@ -149,16 +145,13 @@ SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct
                                const struct vector_constants *k, struct pair_set effects,
                                struct cluster_sums *sums)
 {
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const real *const b = candidates(neighbours, code, part);
-            for (int row = 0; row < ROWS; row++) {
-                const struct exchange e =
-                    pair_of_dummy(&a[row], code, b, k, effects, &sums->approach);
-                add_exchange(sums->of[row][part], &e, effects, false);
-            }
+    EACH_CANDIDATE(neighbours, part, code, b)
+    {
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_dummy(&a[row], code, b, k, effects, &sums->approach);
+            add_exchange(sums->of[row][part], &e, effects, false);
         }
+    }
 }
 
 /* A sum of the particles of a cluster as receivers. */
