@@ -150,9 +150,8 @@ static void warn_of_weight(struct check *check, int fluid)
     if (!held && !isnan(f->surface) && scene->top.gravity[1] < 0)
         warn_section(
             check, &f->common,
-            "has a `surface`, but nothing to stand on: the pressure at its lower end begins "
-            "with up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out "
-            "`surface`",
+            "has a `surface`, but nothing to stand on: the pressure at its lower end begins with "
+            "up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out `surface`",
             pressure);
     const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
@@ -400,9 +399,8 @@ static void warn_of_drift(struct check *check)
         if (scene->fluid[k].shifting > 0)
             warn_section(
                 check, &scene->fluid[k].common,
-                "fills its periodic domain, so its mean pressure drifts with `shifting`, by "
-                "about 1 %% of rho c0^2 = %.3g Pa; use differences of pressure, or a smaller "
-                "`shifting`",
+                "fills its periodic domain, so its mean pressure drifts with `shifting`, by about "
+                "1 %% of rho c0^2 = %.3g Pa; use differences of pressure, or a smaller `shifting`",
                 scene->rho0 * square(scene->c0));
 }
 

@@ -86,9 +86,8 @@ static void warn_of_area(struct check *check, const struct region *region)
     if (fabs(l->area_error) <= 0.005) return;
     check->scene->off_lattice = true;
     warn_at(check->diag, check->scene, region->common->line,
-            "the %.0f particles of %s%s cover %.2g %% %s than the shape there, %.4g m^2, "
-            "so a thin body is about %.2g %% too %s in bending; a finer dp or another "
-            "lattice_angle helps",
+            "the %.0f particles of %s%s cover %.2g %% %s than the shape there, %.4g m^2, so a thin "
+            "body is about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
             ratio * l->area / square(l->dp), section_title(region->common).text,
             l->area_free ? " that no clamp holds" : "", 100 * fabs(ratio - 1),
             ratio > 1 ? "more" : "less", l->area, 100 * fabs(stiff - 1),

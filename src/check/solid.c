@@ -166,9 +166,8 @@ static void warn_of_material(struct check *check, int body)
     if (speed > sound)
         warn_at(check->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
                 "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
-                "sqrt(young/density) = %.3g "
-                "m/s: an impact crushes it and a guard stops the run; check the units of "
-                "`velocity`, `young` and `density`",
+                "sqrt(young/density) = %.3g m/s: an impact crushes it and a guard stops the run; "
+                "check the units of `velocity`, `young` and `density`",
                 b->common.name, speed, sound);
 }
 
@@ -194,9 +193,8 @@ enum err warn_of_solids(struct check *check)
     if (scene->n_solid == 0) return ERR_OK;
     if (!(effects_of_scene(scene) & FX_CONTACT) && scene->domain.periodic != PERIODIC_NONE)
         diag_warn(check->diag,
-                  "contact is not computed in a domain with periodic sides, so solids may "
-                  "pass through each other and through walls; periodic = none enables "
-                  "contact");
+                  "contact is not computed in a domain with periodic sides, so solids may pass "
+                  "through each other and through walls; periodic = none enables contact");
     TRY(warn_of_loose_bodies(check));
     for (int k = 0; k < scene->n_solid; k++) {
         warn_of_full_clamp(check, k);

@@ -67,9 +67,8 @@ static enum err check_ends(const struct scene *scene, const struct shape *p, str
         if (q && (q->size == p->size) != (k != last))
             return fail_at(
                 d, scene, p->line > q->line ? p->line : q->line,
-                "this line of a wall meets the one in line %d at (%.4g, %.4g) m, but their "
-                "layers are on different sides; reverse the points of the line without fluid "
-                "beside it",
+                "this line of a wall meets the one in line %d at (%.4g, %.4g) m, but their layers "
+                "are on different sides; reverse the points of the line without fluid beside it",
                 p->line < q->line ? p->line : q->line, end[0], end[1]);
     }
     return ERR_OK;

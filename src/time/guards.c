@@ -163,9 +163,8 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
             time_text(sim).text, (long long)sim->state.steps, one.text, other.text, at->overlap,
             at->x, at->y);
     warn_once(sim, &sim->guard.warned_contact, d,
-              "%s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
-              "larger stiffness in [contact] or a smaller dp reduces this; the run stops at "
-              "an overlap of 1",
+              "%s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a larger stiffness "
+              "in [contact] or a smaller dp reduces this; the run stops at an overlap of 1",
               one.text, other.text, at->overlap, at->x, at->y);
     return ERR_OK;
 }
@@ -229,8 +228,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
                          time_text(sim).text, dt, bound_table[bound].name,
                          step_remedy(sim, bound));
     warn_once(sim, &sim->guard.warned_step, d,
-              "the time step has fallen to %.3g s, limited by %s, and the run "
-              "stops at %.3g s; %s",
+              "the time step has fallen to %.3g s, limited by %s, and the run stops at %.3g s; %s",
               dt, bound_table[bound].name, limit, step_remedy(sim, bound));
     return ERR_OK;
 }
@@ -323,10 +321,9 @@ static void check_rigid(struct simulation *sim, struct diag *d)
         if (at < 0) continue;
         const int other = p->body[at];
         warn_once(sim, &sim->guard.warned_rigid, d,
-                  "[rigid %s] has entered %s near (%.6g, %.6g) m and passes through: "
-                  "contact ends a quarter of a spacing below the surface, and does not act at a "
-                  "hinge; hold the body by `guide`, `hinge` or a [spring], or use a smaller "
-                  "`fixed_step`",
+                  "[rigid %s] has entered %s near (%.6g, %.6g) m and passes through: contact ends "
+                  "a quarter of a spacing below the surface, and does not act at a hinge; hold the "
+                  "body by `guide`, `hinge` or a [spring], or use a smaller `fixed_step`",
                   sim->scene->rigid[k].common.name,
                   section_title(&sim->scene->wall[other].common).text, p->x[at], p->y[at]);
         return;
@@ -542,9 +539,8 @@ enum err guards_penetration(struct simulation *sim, struct diag *d)
             (long long)particles->id[first], particles->x[first], particles->y[first],
             elementary_hypot(particles->vx[first], particles->vy[first]));
     warn_once(sim, &sim->guard.warned_crossing, d,
-              "fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
-              "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may "
-              "keep it out",
+              "fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the run stops "
+              "when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
               (long long)particles->id[first], particles->x[first], particles->y[first]);
     return ERR_OK;
 }
