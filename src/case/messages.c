@@ -17,7 +17,7 @@ static void store(struct reader *r, const struct problem *p)
 
 enum err problem(struct reader *r, struct problem_place at, const char *format, ...)
 {
-    char place[120], head[200] = "", text[700];
+    char place[120], head[200] = "";
     const struct entry *const e = at.entry;
     const struct scene_section_common *const s = at.section;
     struct problem p = {.line = e ? e->line : s ? s->line : at.line};
@@ -28,12 +28,12 @@ enum err problem(struct reader *r, struct problem_place at, const char *format, 
                  strlen(at.value) > 60 ? "..." : "");
     else if (s)
         snprintf(head, sizeof head, "%s ", section_title(s).text);
+    const int length = snprintf(p.text, sizeof p.text, "%s: %s",
+                                e && e->set ? place : scene_place(r->scene, p.line).text, head);
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    vsnprintf(p.text + length, sizeof p.text - (size_t)length, format, args);
     va_end(args);
-    snprintf(p.text, sizeof p.text, "%s: %s%s",
-             e && e->set ? place : scene_place(r->scene, p.line).text, head, text);
     store(r, &p);
     return ERR_INPUT;
 }
