@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fluid/fluid.h"
+#include "fluid/damping.h"
 
 enum { BLOCK = 1024 }; /* particles whose power is one sum */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fluid/fluid.h"
+#include "fluid/lines.h"
 #include "geometry/motion.h"
 
 static int parts_of(const struct thin_line *line) { return line->scene->n - 1; }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fluid/fluid.h"
+#include "fluid/wall_motion.h"
 #include "geometry/motion.h"
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,

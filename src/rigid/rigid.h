@@ -4,7 +4,7 @@
 #pragma once
 
 #include "fluid/exchange.h"
-#include "fluid/fluid.h"
+#include "fluid/wall_motion.h"
 
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
 struct rigid_state {

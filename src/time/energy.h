@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * What a run keeps of its energy: a row of ledger.csv, and the account of work (T-46). */
+ * The energy of a run: a row of ledger.csv, and the account of work (T-46). */
 #pragma once
 
-#include "case/scene.h"
-#include "particles/particles.h"
+#include "time/state.h"
 
 /* The columns of ledger.csv with their units, in order: LEDGER(name, unit, meaning). Per depth. */
 #define LEDGER_COLUMNS(LEDGER)                                                                   \
@@ -33,55 +32,42 @@ struct ledger {
 #undef LEDGER
 };
 
-/* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
-enum { ENERGY_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
-SPHFSI_INLINE int energy_entry(enum kind kind, int section)
-{
-    return (int)kind * SCENE_MAX_SECTIONS + section;
-}
+/* Present energies, momentum and extremes; calls simulation_refresh. */
+struct ledger simulation_ledger(struct simulation *sim);
 
-/* Terms of the account, J/m. None of them grows in an exact solution (T-46). */
-enum energy_term {
-    TERM_FLUID,     /* what the fluid's energy gains beyond the work on it */
-    TERM_INTERFACE, /* work on structures less what the fluid delivers */
-    TERM_SOLID,     /* what the solid's energy gains beyond the work on it */
-    TERM_ALL,       /* their sum: beyond the work at the boundaries of a region */
-    ENERGY_TERMS
-};
+/* The ledger and the account begin with the present state. */
+void energy_begin(struct simulation *sim);
 
-/* Energies of a section, or of a region at its first section, J/m. */
-struct energy_entry {
-    double region;   /* first section of its region; -1: no entry, as of walls at rest */
-    double supplied; /* energy at the start and all work since; of driven walls: on the fluid */
-    double given;    /* to a body, by the fluid: work at the velocity that the fluid uses */
-    double received; /* by a body, from the fluid (T-46c) */
-    /* `supplied` after the last step, work of that step, and its largest change from step to step,
-     * which bounds the error of the sums over steps. */
-    double noted, last_work, work_change;
-    /* Of a region: the lowest value of each term, the largest available energy since then, and the
-     * lowest potential energy. */
-    double lowest[ENERGY_TERMS], available[ENERGY_TERMS], lowest_potential;
-};
+/* --- the account of work (T-46), which finds energy that nothing supplied. Without the effect
+ * ENERGY_ACCOUNT the functions that add to it do nothing. --- */
 
-/* Saved in checkpoints and not hashed: doubles only. */
-struct energy_account {
-    struct energy_entry entry[ENERGY_ENTRIES];
-    double most[ENERGY_TERMS]; /* that a region has gained by each term, J/m */
-    double largest_available;  /* energy of any region, J/m */
-    double now[ENERGY_TERMS];  /* sums over all sections at the last test, J/m; for tests */
-    double pending;            /* time that the last evaluation still counts for, s */
-    double open;               /* energy through open boundaries as far as it is counted, J/m */
-    double tested_at, tested_steps; /* time and steps at the last test */
-};
-enum { ENERGY_NUMBERS = sizeof(struct energy_account) / sizeof(double) };
+/* Energy that a section gets at once. */
+void energy_supply(struct simulation *sim, enum kind kind, int section, double work);
 
-/* What a region has gained, J/m. */
-struct energy_gain {
-    int entry; /* first section of the region; -1: no region has gained energy */
-    enum energy_term term;
-    double share;     /* of the available energy; 0: no gain */
-    double all;       /* gain of all terms together over the available energy */
-    double energy;    /* beyond the lowest value of the term */
-    double available; /* largest available energy since then */
-    bool found;       /* the guards have yet to read it */
-};
+/* After an evaluation: counts the work of its forces over dt; at the state from which a step of dt
+ * starts, over half of the last step and half of this one, and tests for gains in between if that
+ * is due. */
+void energy_of_evaluation(struct simulation *sim, double dt);
+void energy_of_step(struct simulation *sim, double dt);
+
+/* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work of the fluid, of the
+ * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
+void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
+
+/* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,
+ * which the ledger has, too; and by other bodies. */
+void energy_of_body(struct simulation *sim, int wall, double received, double driven,
+                    double passed);
+
+/* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which
+ * the ledger has, too. */
+void energy_after_step(struct simulation *sim);
+
+/* Tests the present state for gains if that is due: for the gain of a region that is the largest
+ * fraction of its available energy. Gradients and the pressure of dummies must be up to date. */
+void energy_test_due(struct simulation *sim);
+struct energy_gain energy_find_gain(struct simulation *sim);
+
+/* Reads the last test of the account: warns once if a region has gained energy, and fails if the
+ * gain is nine tenths of its available energy. */
+enum err energy_guard(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;

@@ -48,9 +48,3 @@ enum { RELAX_TEXT = 320 };
 void relax_progress(const struct simulation *sim, char text[RELAX_TEXT]);
 /* Says what was found and by which criterion. */
 void relax_text(const struct simulation *sim, char text[RELAX_TEXT]);
-
-/* Present energies, momentum and extremes; calls simulation_refresh. */
-struct ledger simulation_ledger(struct simulation *sim);
-
-/* The ledger and the account begin with the present state. */
-void energy_begin(struct simulation *sim);

@@ -5,10 +5,11 @@
 
 #include "beam/beam.h"
 #include "coupling/coupling.h"
+#include "fluid/damping.h"
 #include "fluid/open.h"
 #include "solid/contact.h"
 #include "implicit/implicit.h"
-#include "time/energy.h"
+#include "time/account.h"
 
 struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
