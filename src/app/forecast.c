@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * What a run will cost: wall time from steps on trial, memory, and the size of its files. */
 #include "app/session.h"
 #include "output/checkpoint.h"
 #include "output/rows.h"

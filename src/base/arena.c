@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The memory of a simulation: blocks that are allocated one by one and freed together. */
 #include "base/base.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Messages and their codes: the first failure, those added to it, and warnings. */
 #include "base/base.h"
 
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The folder of a run: created once, locked while a run writes to it. */
 #include "base/files.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Clocks, the number of threads that a step uses, and the locale during a call. */
 #include "base/base.h"
 
 #include <pthread.h>

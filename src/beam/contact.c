@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Contact of beams with walls, rigid bodies and beams (T-106), within Newton's method. */
 #include "beam/beam.h"
 #include "base/segment.h"
 #include "geometry/motion.h"

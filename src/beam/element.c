@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The element of a beam: strain (T-103), and force and matrix over a step (T-104). */
 #include "beam/beam.h"
 
 static double cross_product(const double a[2], const double b[2])

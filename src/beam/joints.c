@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Clamps and hinges of beams on rigid bodies (T-107), within Newton's method. */
 #include "beam/beam.h"
 #include "base/cholesky.h"
 #include "rigid/forces.h"

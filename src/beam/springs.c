@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Springs and mooring lines from a beam to a place (T-108). */
 #include "beam/beam.h"
 
 /* The vector from the end in place to a displaced node; returns its length. */

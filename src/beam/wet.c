@@ -1,4 +1,6 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Beams in fluid: lines and dummies that follow them, force and resistance of the fluid, and
+ * the impulse that it has still to receive (T-105, T-111a, T-111b). */
 #include "beam/beam.h"
 
 static double impedance(const struct beams *beams) { return beams->scene->rho0 * beams->scene->c0; }

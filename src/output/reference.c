@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Reference curves of probes: read from files, and how far a run is from them. */
 #include "output/report.h"
 #include "base/csv.h"
 #include "base/files.h"

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The CSV files of probes and ledger: rows are appended, and cut off where a restart begins. */
 #include "output/rows.h"
 #include "base/csv.h"
 

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Places where outlines of rigid bodies and walls may touch in a step (T-102). */
 #include "rigid/forces.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Hinges of solids: forces that hold a point of a body in place or on another body (T-81). */
 #include "solid/solid.h"
 #include "case/params.h"
 #include "base/cholesky.h"

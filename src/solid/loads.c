@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Loads on solids and the motion of their clamps, with their work. */
 #include "solid/solid.h"
 #include "geometry/sampling.h"
 

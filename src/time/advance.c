@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * How fluid, solids, rigid bodies and beams advance in a step, for all integrators. */
 #include "time/advance.h"
 
 void advance_structure(struct simulation *sim, double dt, double kick)

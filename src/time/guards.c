@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Limits beyond which a state is invalid: what stopped a run, where, and what helps. */
 
 #include <stdarg.h>
 

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * When particles are sorted into cells again, and what leaves the domain then. */
 #include "time/advance.h"
 
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
