@@ -22,35 +22,6 @@ static void find_carriers(const struct beams *beams, const struct beam *b)
     }
 }
 
-/* The node at an end of a line, if nothing holds it or joins it to another body. */
-static const struct beam_node *loose_end(const struct beams *beams, int k, int last)
-{
-    const struct beam *const b = &beams->beam[k];
-    const struct beam_element *const e =
-        &beams->element[last ? b->end_element - 1 : b->first_element];
-    const struct beam_node *const node = &beams->node[e->node[last]];
-    return node->row[0] < 0 || node->joined[0] >= 0 || node->body >= 0 ? NULL : node;
-}
-
-/* T-111b: a loose end that begins at a wall may leave it. */
-static void leave_walls(const struct beams *beams, int k)
-{
-    struct thin_line *const line = beams->line[k];
-    for (int last = 0; last < 2; last++) {
-        const struct beam_node *const node = loose_end(beams, k, last);
-        const double most = line->scene->extend[last];
-        if (!node || most == 0) continue;
-        const int part = last ? line->scene->n - 2 : 0;
-        const double *const inner = line->scene->pt[part + 1 - last],
-                           *const at = line->end[2 * part + last].x;
-        const double x = node->X[0] - inner[0], y = node->X[1] - inner[1];
-        const double off =
-            -(x * (at[0] - node->X[0]) + y * (at[1] - node->X[1])) / elementary_hypot(x, y);
-        line->tip[last] = true;
-        line->extend[last] = most * max2(0, min2(1, 1 - off / beams->scene->top.dp));
-    }
-}
-
 enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *lines,
                           struct particles *walls, double ahead, bool alternates, struct diag *d)
 {
@@ -163,7 +134,6 @@ double beams_place(struct beams *beams, double since)
                 place_end(beams, &beams->element[m], last, since, end);
                 largest = max2(largest, displacement_between(beams, &before, end));
             }
-        leave_walls(beams, k);
         line_place(line, beams->walls);
     }
     return largest;

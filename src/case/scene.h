@@ -157,8 +157,9 @@ struct scene_line {
     int wall, n;
     double (*pt)[2];
     double extend[2];         /* how far it continues into a wall beyond its ends, m */
+    int into[2];              /* this wall */
     double (*seen)[2];        /* its points, the first and the last one moved by that */
-    bool tip[2];              /* whether fluid can flow round its ends */
+    bool tip[2];              /* whether fluid can flow round its ends, once they have left it */
     int64_t first, n_dummies; /* among the particles of walls */
     struct line_dummy *dummy; /* [n_dummies] */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fluid/lines.h"
+#include "fluid/wall_motion.h"
 #include "geometry/motion.h"
 
 static int parts_of(const struct thin_line *line) { return line->scene->n - 1; }
@@ -56,7 +56,8 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2])
 void line_slides(const struct thin_line *line, int64_t i, double t[2])
 {
     const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
-    const bool *const tip = line->scene->tip;
+    const struct scene_line *const from = line->scene;
+    const bool tip[] = {from->tip[0] && from->extend[0] == 0, from->tip[1] && from->extend[1] == 0};
     const bool first = dummy->part == 0 && tip[0],
                last = dummy->part + 1 == parts_of(line) && tip[1];
     if (!tip[0] && !tip[1]) return;
@@ -120,6 +121,31 @@ void line_foot(const struct thin_line *line, int64_t j, double at[2])
         at[c] = (1 - dummy->along) * end[0].x[c] + dummy->along * end[1].x[c];
 }
 
+/* Where a point is if it moves with a wall; NULL: at rest. */
+static void place_with(const struct moving_wall *wall, const double at[2], double to[2])
+{
+    memcpy(to, wall ? motion_of_point(&wall->placed, at[0], at[1]).x : at, 2 * sizeof *to);
+}
+
+/* T-111b: an end may leave the wall at which it begins. In single precision round-off at a hinge is
+ * no distance. */
+static void leave_walls(struct thin_line *line)
+{
+    const struct scene_line *const from = line->scene;
+    for (int last = 0; last < 2; last++) {
+        const double *const at = line->end[last ? 2 * parts_of(line) - 1 : 0].x;
+        double start[2], inner[2];
+        place_with(line->into[last], from->pt[last ? from->n - 1 : 0], start);
+        place_with(line->into[last], from->pt[last ? from->n - 2 : 1], inner);
+        const double x = start[0] - inner[0], y = start[1] - inner[1];
+        const double off =
+            (x * (start[0] - at[0]) + y * (start[1] - at[1])) / elementary_hypot(x, y);
+        const float left = 1 - (float)max2(0, min2(1, off / line->dp));
+        line->extend[last] = (double)left * from->extend[last];
+        line->tip[last] = from->tip[last] && (from->extend[last] == 0 || left < 1);
+    }
+}
+
 /* The pieces: the parts, and the extensions straight on from its first and last end. */
 static void place_pieces(struct thin_line *line)
 {
@@ -157,6 +183,7 @@ void line_place(struct thin_line *line, struct particles *walls)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t j = 0; j < line->scene->n_dummies; j++) place_dummy(line, j, walls);
+    leave_walls(line);
     place_pieces(line);
 }
 
@@ -185,8 +212,7 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
         line->scene = &scene->line[k];
         const int parts = parts_of(line);
         line->first = line->scene->first;
-        memcpy(line->extend, line->scene->extend, sizeof line->extend);
-        memcpy(line->tip, line->scene->tip, sizeof line->tip);
+        line->dp = scene->top.dp;
         for (int64_t j = 0; j < line->scene->n_dummies; j++)
             lines->of_wall[line->first + j] = k + 1;
         TRY(arena_array(a, &line->end, 2 * (size_t)parts, what, d));
@@ -196,6 +222,20 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
         line_place(line, walls);
     }
     return ERR_OK;
+}
+
+void lines_tie(struct lines *lines, const struct wall_motion *m)
+{
+    for (int k = 0; k < lines->n; k++)
+        for (int b = 0; b < m->n; b++) {
+            const struct moving_wall *const wall = &m->body[b];
+            struct thin_line *const line = &lines->line[k];
+            if (wall->motion < 0) continue;
+            if (line->scene->wall == wall->section) line->own = wall;
+            for (int last = 0; last < 2; last++)
+                if (line->scene->extend[last] > 0 && line->scene->into[last] == wall->section)
+                    line->into[last] = wall;
+        }
 }
 
 /* T-110b: how much passes a piece that the connection `way` crosses between these ends, which are

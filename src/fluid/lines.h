@@ -26,9 +26,11 @@ struct thin_line {
     } * piece; /* its parts between its extensions, which may have no length */
     double length;
     struct box2 box;
-    double extend[2]; /* how far it continues into a wall beyond its ends, m */
+    const struct moving_wall *own, *into[2]; /* walls that it follows, and begins at; NULL: rest */
+    double extend[2]; /* how far it continues into a wall beyond its ends, m (T-111b) */
     bool tip[2];      /* whether it ends there: fluid may flow round it */
     bool bends;       /* of a beam */
+    double dp;
     /* The rigid motion that the fluid sees along a beam (T-111a): with the rate of turning and its
      * rate. `turns`: the mass over the moment of inertia, 1/m^2. */
     struct line_carrier {

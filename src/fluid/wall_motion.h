@@ -36,3 +36,6 @@ void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particl
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
 double moving_wall_power(const struct moving_wall *b, const struct particles *walls);
+
+/* Finds the moving walls that lines follow, and those at which they begin (T-111b). */
+void lines_tie(struct lines *lines, const struct wall_motion *m);

@@ -72,7 +72,7 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
 
 /* A line that ends at a wall continues into it, so that the fluid of one side does not see the
  * wall's particles below the other side. The wall may end there, too. */
-static double extension(const struct sampler *sampler, const struct scene_line *line, bool last)
+static double extension(const struct sampler *sampler, struct scene_line *line, bool last)
 {
     const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
     const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp;
@@ -81,7 +81,9 @@ static double extension(const struct sampler *sampler, const struct scene_line *
         place_on_part(&part, last ? part.length + 0.5 * dp : -0.5 * dp, (k % 3 - 1) * 1e-3 * dp,
                       at);
         const struct region *const region = &sampler->regions[k / 3];
-        if (region->kind == KIND_WALL && geometry_piece_at(region, at[0], at[1]) >= 0) return reach;
+        if (region->kind != KIND_WALL || geometry_piece_at(region, at[0], at[1]) < 0) continue;
+        line->into[last] = region->body;
+        return reach;
     }
     return 0;
 }
@@ -121,7 +123,7 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     const double step = length / max2(1, round(length / scene->top.dp));
     for (int last = 0; last < 2 && !closed; last++) {
         line->extend[last] = extension(sampler, line, last);
-        line->tip[last] = !closed && line->extend[last] == 0;
+        line->tip[last] = true;
     }
     TRY(arena_array(&scene->arena, &line->seen, line->n, "thin walls", sampler->diag));
     memcpy(line->seen, line->pt, (size_t)line->n * sizeof *line->pt);

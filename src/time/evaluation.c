@@ -8,14 +8,12 @@ void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], scene_time(sim, time));
-    for (int k = 0; k < sim->wall_motion.n; k++)
-        for (int j = 0; j < sim->fluid.lines.n; j++) {
-            struct thin_line *const line = &sim->fluid.lines.line[j];
-            const struct moving_wall *const wall = &sim->wall_motion.body[k];
-            if (line->scene->wall != wall->section || wall->motion < 0) continue;
-            line_follow(line, &sim->wall_motion.body[k].placed);
-            line_place(line, &sim->kind[KIND_WALL]);
-        }
+    for (int j = 0; j < sim->fluid.lines.n; j++) {
+        struct thin_line *const line = &sim->fluid.lines.line[j];
+        if (line->bends || !(line->own || line->into[0] || line->into[1])) continue;
+        if (line->own) line_follow(line, &line->own->placed);
+        line_place(line, &sim->kind[KIND_WALL]);
+    }
     if (sim->beams.line) sim->wall_motion.way += beams_place(&sim->beams, time - sim->state.time);
 }
 

@@ -221,6 +221,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
         TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines, &sim->kind[KIND_WALL],
                              sim->integrator->ahead, sim->integrator->alternates, d));
+    if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);
     if (!(sim->effects & (FX_FLUID | FX_SOLID))) set_step_of_bodies(sim);
     TRY(choose_rate(sim, d));

@@ -2,6 +2,7 @@
  * Thin lines (T-110, T-111): walls of no thickness with fluid on both sides. */
 #include "rig.h"
 #include "geometry/motion.h"
+#include "time/advance.h"
 #include "time/energy.h"
 #include "unity.h"
 
@@ -205,6 +206,36 @@ static void test_what_is_seen_past_a_tip(void)
     assert_at_most(0.003 * account->largest_available, account->most[TERM_FLUID], "gain");
 }
 
+/* T-111b: what passes below an end that leaves a wall, and below one that turns there or moves with
+ * the wall: nothing, as none of it opens. */
+static void test_an_end_leaves_its_wall(void)
+{
+    static const struct {
+        const char *line, *tank, *motion;
+        bool leaves;
+    } scenes[] = {{"motion = m\n", "", "y = t*0.02", true},
+                  {"", "motion = m\n", "y = -t*0.02", true},
+                  {"motion = m\n", "motion = m\n", "y = t*0.02", false},
+                  {"motion = m\n", "", "centre = 0, 0.001\nturn = 0.1*t", false}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[1000];
+        snprintf(text, sizeof text, "%s%s%s%s%s[motion m]\n%s\n", TOP WATER("-0.4, 0, 0, 0.4") TANK,
+                 scenes[k].tank, "[wall line]\nshape = polyline thickness 0: 0, 0.3; 0, 0.001\n",
+                 scenes[k].line, FORCE, scenes[k].motion);
+        rig_open(&rig, text, NULL);
+        const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
+        const double reach = KERNEL_REACH * rig.sim.fluid.k.h, way[2] = {0.01, 0};
+        for (double rise = 0; rise < 2; rise += 0.25) {
+            move_walls(&rig.sim, rise);
+            const double from[2] = {-0.005, line->end[1].x[1] - 0.002};
+            const double seen = rise > 0 && scenes[k].leaves ? min2(1, rise + 0.002 / reach) : 0;
+            assert_near(1e-6, seen,
+                        lines_seen(&rig.sim.fluid.lines, &rig.sim.cells, reach, from, way, 0),
+                        scenes[k].motion);
+        }
+    }
+}
+
 /* Particles out of order around a tip, a corner and a junction: the forces of fluid and walls have
  * no sum. */
 static void test_action_and_reaction(void)
@@ -327,6 +358,7 @@ int main(void)
     RUN_TEST(test_a_line_slides_into_water);
     RUN_TEST(test_a_dam_break);
     RUN_TEST(test_what_is_seen_past_a_tip);
+    RUN_TEST(test_an_end_leaves_its_wall);
     RUN_TEST(test_action_and_reaction);
     RUN_TEST(test_places_and_loads);
     RUN_TEST(test_a_side_at_the_end_of_a_floor);
