@@ -10,6 +10,7 @@
 #define TOLERANCE 1e-9
 #define ROUNDING (64 * DBL_EPSILON)
 
+/* Limits of the effort before the step is halved, and before the run stops. */
 enum { ITERATIONS = 40, HALVINGS = 6 };
 
 /* --- outside --- */

@@ -96,6 +96,7 @@ static enum err read_list(struct reader *r, const struct param *param, double *v
     struct slice rest = slice_of(r->entry->value), piece = rest;
     for (; slice_next(&rest, ',', &piece); value++) {
         TRY(case_number(r, piece, param->unit, value));
+        /* The largest range of params.def: squares and products of such values are finite. */
         if (!(fabs(*value) <= 1e15))
             return bad_value(r, "out of range: the magnitude must be 1e15 or less");
     }

@@ -163,12 +163,14 @@ void contact_forces(struct contact *contact, struct particles *particles, double
     }
 }
 
-/* Number of spacings that two points may approach in excess of their present speeds times the
- * time. */
+/* In spacings: two points may approach by so much more than their present speeds times the time.
+ * Twice of it gives the same bits. */
 #define GAIN 0.25
-/* Surfaces nearer than this many times their reach count in the step bound. */
+/* Surfaces nearer than this many times their reach count in the step bound: forces may bring them
+ * nearer than their present velocity does, by which their distance after the step is found. */
 #define NEAR 1.25
-/* Skin of the list in spacings: pairs are listed again when points have moved by it. */
+/* Skin of the list in spacings: pairs are listed again when points have moved by it. The bits do
+ * not depend on it: a thicker one has more pairs, which are listed less often. */
 #define SKIN 1.0
 
 double contact_energy(struct contact *contact, const struct particles *particles, double time)
