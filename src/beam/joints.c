@@ -330,6 +330,7 @@ static void close_open(const struct beams *beams, double *unknown)
     const struct beam_joints *const joints = beams->joints;
     const int n = joints->n;
     memcpy(joints->factors, joints->yields, (size_t)(n * n) * sizeof *joints->factors);
+    /* Not positive: joints stay open, and the step has no solution (beams_stay_joined). */
     (void)cholesky_solve(joints->factors, n, n, 0, joints->open);
     for (int k = 0; k < n; k++)
         for (int64_t r = 0; r < beams->matrix.n; r++)

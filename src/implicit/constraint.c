@@ -70,7 +70,7 @@ void constraint_begin(struct implicit *implicit, struct hinges *hinges,
     }
 }
 
-void constraint_solve(struct implicit *implicit, struct hinges *hinges,
+bool constraint_solve(struct implicit *implicit, struct hinges *hinges,
                       const struct particles *particles)
 {
     const int n = 2 * hinges->n;
@@ -80,9 +80,10 @@ void constraint_solve(struct implicit *implicit, struct hinges *hinges,
     hinges_subtract(hinges, particles->ux, particles->uy, hinges->force);
     subtract_motion(implicit, hinges, implicit->column, hinges->force);
     memcpy(hinges->matrix, implicit->flexibility, (size_t)(n * n) * sizeof *hinges->matrix);
-    cholesky_solve(hinges->matrix, n, n, 0, hinges->force);
+    if (cholesky_solve(hinges->matrix, n, n, 0, hinges->force) < n) return false;
     add_forces(implicit, hinges, hinges->force, implicit->unknown);
     for (int k = 0; k < n; k++) implicit->hinge_force[k] += hinges->force[k];
+    return true;
 }
 
 void constraint_end(const struct implicit *implicit, struct hinges *hinges,

@@ -34,8 +34,7 @@ static bool balance(struct solid *solid, struct particles *particles, struct equ
             return negative <= 0;
         if (!(residual <= FAST * last))
             negative = implicit_factor(solid, particles, (double)INFINITY, shift, NULL, NULL);
-        if (negative < 0) return false;
-        implicit_correct(solid, particles);
+        if (negative < 0 || !implicit_correct(solid, particles)) return false;
         found->corrections++;
         last = residual;
     }

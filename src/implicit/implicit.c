@@ -165,10 +165,10 @@ double implicit_residual(struct solid *solid, struct particles *particles, doubl
     return top.off <= rounding ? 0 : top.off / top.force;
 }
 
-void implicit_correct(const struct solid *solid, struct particles *particles)
+bool implicit_correct(const struct solid *solid, struct particles *particles)
 {
     struct implicit *const implicit = solid->implicit;
-    if (solid->hinges) constraint_solve(implicit, solid->hinges, particles);
+    if (solid->hinges && !constraint_solve(implicit, solid->hinges, particles)) return false;
     envelope_solve(&implicit->matrix, implicit->unknown);
     for (int64_t i = 0; i < particles->n; i++) {
         const int64_t row = 2 * (int64_t)implicit->order[i];
@@ -177,6 +177,7 @@ void implicit_correct(const struct solid *solid, struct particles *particles)
         particles->uy[i] += implicit->unknown[row + 1];
     }
     implicit->iterations++;
+    return true;
 }
 
 /* Newton's method for the displacements at the middle of the step; returns whether it converged. */
@@ -191,8 +192,7 @@ static bool solve(struct solid *solid, struct particles *particles, double dt)
         const bool other_step = fabs(square(dt / *particles->matrix_dt) - 1) > SLOW;
         if (!implicit->factored || other_step || implicit->residual > SLOW * last)
             factor_here(solid, particles, dt);
-        if (!implicit->factored) break;
-        implicit_correct(solid, particles);
+        if (!implicit->factored || !implicit_correct(solid, particles)) break;
         last = implicit->residual;
     }
     return false;

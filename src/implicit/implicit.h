@@ -80,8 +80,8 @@ void implicit_keep_start(struct solid *solid, struct particles *particles);
  * dt = INFINITY: of static equilibrium. */
 double implicit_residual(struct solid *solid, struct particles *particles, double dt, double time);
 
-/* Adds the solution for `unknown` to the displacements. */
-void implicit_correct(const struct solid *solid, struct particles *particles);
+/* Adds the solution for `unknown` to the displacements; false: hinges have none. */
+bool implicit_correct(const struct solid *solid, struct particles *particles);
 
 /* The longest period of the bodies about their undeformed state, in which they are now, s; INFINITY
  * without any. From the number of negative pivots of K - omega^2 M, which is the number of
@@ -101,8 +101,8 @@ void constraint_begin(struct implicit *implicit, struct hinges *hinges,
                       const struct particles *particles, double time, bool middle);
 
 /* Adds to the residual what the hinges' forces must be changed by, so that the solution leads the
- * points to their places. */
-void constraint_solve(struct implicit *implicit, struct hinges *hinges,
+ * points to their places. false: there is none, as of a matrix that is not positive. */
+bool constraint_solve(struct implicit *implicit, struct hinges *hinges,
                       const struct particles *particles);
 
 /* After a step of dt: the hinges' forces and the velocities of their points, for their work. */

@@ -97,7 +97,7 @@ static void find_yields(const struct freedom *f, double A[3][3], double yields[3
         double M[3][3], q[3];
         memcpy(M, S, sizeof M);
         for (int i = 0; i < f->n; i++) q[i] = f->B[c][i];
-        (void)cholesky_solve(M[0], f->n, 3, 0, q);
+        (void)cholesky_solve(M[0], f->n, 3, 0, q); /* positive, as masses and impedances are */
         for (int e = 0; e < 3; e++) {
             yields[e][c] = 0;
             for (int i = 0; i < f->n; i++) yields[e][c] += f->B[e][i] * q[i];
