@@ -8,59 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { VTK_VERTEX = 1 };
-
-/* --- a snapshot --- */
-
-/* The source of a snapshot. */
-struct source {
-    const struct simulation *sim;
-    double unit; /* to which positions are rounded; 0: not rounded */
-    int64_t n, steps_before, points_before;
-};
-
-static int64_t integer_value(enum data what, const struct simulation *sim, enum kind kind,
-                             int64_t i)
-{
-    switch (what) {
-    case D_KIND: return kind;
-    case D_ID: return sim->kind[kind].id[i];
-    case D_BODY: return sim->kind[kind].body[i];
-    default: return VTK_VERTEX;
-    }
-}
-
-/* A snapshot_values callback: rows are the particles of all kinds, in the order of the kinds. */
-static void values_of(const void *context, enum data what, int column, int64_t n, void *values)
-{
-    const struct source *const source = context;
-    const struct simulation *const sim = source->sim;
-    const double unit = what == D_POINTS ? source->unit : 0;
-    double *real = values;
-    int64_t *integer = values;
-    switch (what) {
-    case D_TIME: *real = simulation_time(sim); return;
-    case D_PARTS_BEFORE: *integer = source->steps_before; return;
-    case D_PARTS: *integer = 1; return;
-    case D_POINTS_BEFORE: *integer = source->points_before; return;
-    case D_POINTS_COUNT: *integer = source->n; return;
-    case D_CONNECTIVITY:
-    case D_OFFSETS: /* each point is a VTK cell */
-        for (int64_t row = 0; row < n; row++) integer[row] = row;
-        return;
-    default: break;
-    }
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t i = 0; i < sim->kind[kind].n; i++) {
-            if (!snapshot_file_real(what)) {
-                *integer++ = integer_value(what, sim, (enum kind)kind, i);
-                continue;
-            }
-            const double value = snapshot_value(what, sim, (enum kind)kind, i, column);
-            *real++ = unit > 0 ? nearbyint(value / unit) * unit : value;
-        }
-}
-
 /* Points of this snapshot, or the most of any. */
 static int64_t count_points(const struct simulation *sim, bool most)
 {
@@ -68,23 +15,6 @@ static int64_t count_points(const struct simulation *sim, bool most)
     for (int k = 0; k < KIND_COUNT; k++) n += most ? sim->kind[k].capacity : sim->kind[k].n;
     return n;
 }
-
-static bool append_snapshot(const struct snapshot_layout *layout, hid_t file,
-                            struct simulation *sim)
-{
-    int64_t rows[D_COUNT];
-    const int64_t n = count_points(sim, false), steps = snapshot_file_steps(file);
-    /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
-     * below carry no information, and would take as long to compress as all other fields together.
-     */
-    const double unit = layout->doubles ? 0 : ldexp(1, ilogb(sim->scene->top.dp) - 20);
-    const bool ok = steps >= 0 && snapshot_file_rows(file, steps, rows);
-    const struct source source = {sim, unit, n, steps, ok ? rows[D_POINTS] : 0};
-    return ok && snapshot_file_append(file, layout, n, values_of, &source) &&
-           snapshot_file_set_steps(file, steps + 1);
-}
-
-/* --- files --- */
 
 /* Opens the spare, or creates a new one: if there is none, if it is damaged, or if a reader that
  * opened it under the final name still locks it. */
@@ -142,7 +72,7 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
     const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points, named) : -1;
     const bool ok = file >= 0 &&
                     (named < 0 || snapshot_file_copy_missing(&w->layout, named, file, steps)) &&
-                    (!sim || append_snapshot(&w->layout, file, sim));
+                    (!sim || snapshot_file_append(file, &w->layout, sim));
     if (named >= 0) H5Fclose(named);
     return (file < 0 || H5Fclose(file) >= 0) && ok;
 }
@@ -284,7 +214,7 @@ double snapshots_seconds(struct simulation *sim)
         bool ok = snapshot_file_create(file, sim->scene, "", n, -1) &&
                   snapshot_file_create(spare, sim->scene, "", n, file);
         const double begin = thread_clock();
-        ok = ok && append_snapshot(&layout, file, sim) &&
+        ok = ok && snapshot_file_append(file, &layout, sim) &&
              snapshot_file_copy_missing(&layout, file, spare, 1);
         H5Fclose(file);
         H5Fclose(spare);

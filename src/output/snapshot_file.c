@@ -75,6 +75,58 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
     return layout;
 }
 
+/* --- its values --- */
+
+/* The source of a snapshot. */
+struct source {
+    const struct simulation *sim;
+    double unit; /* to which positions are rounded; 0: not rounded */
+    int64_t n, steps_before, points_before;
+};
+
+static int64_t integer_value(enum data what, const struct simulation *sim, enum kind kind,
+                             int64_t i)
+{
+    switch (what) {
+    case D_KIND: return kind;
+    case D_ID: return sim->kind[kind].id[i];
+    case D_BODY: return sim->kind[kind].body[i];
+    default: return 1; /* VTK_VERTEX */
+    }
+}
+
+/* Those of one column, double or int64_t; rows are the particles of all kinds, in the order of the
+ * kinds. */
+static void values_of(const struct source *source, enum data what, int column, int64_t n,
+                      void *values)
+{
+    const struct simulation *const sim = source->sim;
+    const double unit = what == D_POINTS ? source->unit : 0;
+    double *real = values;
+    int64_t *integer = values;
+    switch (what) {
+    case D_TIME: *real = simulation_time(sim); return;
+    case D_PARTS_BEFORE: *integer = source->steps_before; return;
+    case D_PARTS: *integer = 1; return;
+    case D_POINTS_BEFORE: *integer = source->points_before; return;
+    case D_POINTS_COUNT: *integer = source->n; return;
+    case D_CONNECTIVITY:
+    case D_OFFSETS: /* each point is a VTK cell */
+        for (int64_t row = 0; row < n; row++) integer[row] = row;
+        return;
+    default: break;
+    }
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t i = 0; i < sim->kind[kind].n; i++) {
+            if (!is_real(columns[what].item)) {
+                *integer++ = integer_value(what, sim, (enum kind)kind, i);
+                continue;
+            }
+            const double value = snapshot_value(what, sim, (enum kind)kind, i, column);
+            *real++ = unit > 0 ? nearbyint(value / unit) * unit : value;
+        }
+}
+
 /* --- one dataset --- */
 
 /* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds
@@ -131,7 +183,7 @@ static int64_t count_rows(hid_t set)
 /* Appends n rows to a dataset, one column at a time, in which HDF5 compresses them. The rank in
  * memory is that of the file: otherwise HDF5 moves one item at a time. */
 static bool append_rows(hid_t file, hid_t how, const struct column *c, int64_t n,
-                        snapshot_values *values_of, const void *context, void *values)
+                        const struct source *source, void *values)
 {
     const hid_t set = H5Dopen2(file, c->name, H5P_DEFAULT);
     const int64_t first = count_rows(set);
@@ -140,7 +192,7 @@ static bool append_rows(hid_t file, hid_t how, const struct column *c, int64_t n
     const hid_t in_file = H5Dget_space(set), in_memory = H5Screate_simple(rank_of(c), size, NULL);
     for (int column = 0; ok && n > 0 && column < c->width; column++) {
         const hsize_t at[2] = {(hsize_t)first, (hsize_t)column};
-        values_of(context, (enum data)(c - columns), column, n, values);
+        values_of(source, (enum data)(c - columns), column, n, values);
         ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, at, NULL, size, NULL) >= 0 &&
              H5Dwrite(set, memory_type(c), in_memory, in_file, how, values) >= 0;
     }
@@ -162,23 +214,6 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values)
     H5Sclose(in_file);
     H5Dclose(set);
     return ok || (n == 0 && set >= 0);
-}
-
-bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout, int64_t n,
-                          snapshot_values *values_of, const void *context)
-{
-    static const int64_t more[] = {[BY_STEP] = 1, [BY_POINT] = 0, [BY_POINT_AND_ONE] = 1};
-    void *const values = malloc((size_t)(n + 1) * sizeof(double));
-    const hid_t how = H5Pcreate(H5P_DATASET_XFER);
-    bool ok = values && H5Pset_buffer(how, CONVERTED_BYTES, NULL, NULL) >= 0;
-    for (int k = 0; ok && k < D_COUNT; k++) {
-        const struct column *const c = &columns[k];
-        const int64_t rows = more[c->growth] + (c->growth == BY_STEP ? 0 : n);
-        ok = !layout->has[k] || append_rows(file, how, c, rows, values_of, context, values);
-    }
-    H5Pclose(how);
-    free(values);
-    return ok;
 }
 
 /* --- a whole file --- */
@@ -276,7 +311,7 @@ int64_t snapshot_file_steps(hid_t file)
     return move_steps(file, &n, false) ? n : -1;
 }
 
-bool snapshot_file_set_steps(hid_t file, int64_t n) { return move_steps(file, &n, true); }
+static bool set_steps(hid_t file, int64_t n) { return move_steps(file, &n, true); }
 
 /* --- copying snapshots --- */
 
@@ -292,6 +327,32 @@ bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT])
                       ? steps
                       : points + (columns[k].growth == BY_POINT_AND_ONE ? steps : 0);
     return ok;
+}
+
+bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout,
+                          const struct simulation *sim)
+{
+    static const int64_t more[] = {[BY_STEP] = 1, [BY_POINT] = 0, [BY_POINT_AND_ONE] = 1};
+    struct source of = {.sim = sim, .steps_before = snapshot_file_steps(file)};
+    int64_t before[D_COUNT];
+    if (of.steps_before < 0 || !snapshot_file_rows(file, of.steps_before, before)) return false;
+    of.points_before = before[D_POINTS];
+    for (int k = 0; k < KIND_COUNT; k++) of.n += sim->kind[k].n;
+    /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
+     * below carry no information, and would take as long to compress as all other fields together.
+     */
+    of.unit = layout->doubles ? 0 : ldexp(1, ilogb(sim->scene->top.dp) - 20);
+    void *const values = malloc((size_t)(of.n + 1) * sizeof(double));
+    const hid_t how = H5Pcreate(H5P_DATASET_XFER);
+    bool ok = values && H5Pset_buffer(how, CONVERTED_BYTES, NULL, NULL) >= 0;
+    for (int k = 0; ok && k < D_COUNT; k++) {
+        const struct column *const c = &columns[k];
+        const int64_t rows = more[c->growth] + (c->growth == BY_STEP ? 0 : of.n);
+        ok = !layout->has[k] || append_rows(file, how, c, rows, &of, values);
+    }
+    H5Pclose(how);
+    free(values);
+    return ok && set_steps(file, of.steps_before + 1);
 }
 
 /* Copies the chunk that begins at a row and a column, compressed as it is. */
@@ -335,10 +396,8 @@ bool snapshot_file_copy_missing(const struct snapshot_layout *layout, hid_t from
     bool ok = snapshot_file_rows(from, steps, rows);
     for (int k = 0; ok && k < D_COUNT; k++)
         ok = !layout->has[k] || copy_rows(from, to, &columns[k], rows[k]);
-    return ok && snapshot_file_set_steps(to, steps);
+    return ok && set_steps(to, steps);
 }
-
-bool snapshot_file_real(enum data what) { return is_real(columns[what].item); }
 
 int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout)
 {

@@ -20,21 +20,12 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 bool snapshot_file_create(hid_t file, const struct scene *scene, const char *version, int64_t n,
                           hid_t like);
 
-/* Whether the values of a dataset are double in memory; otherwise they are int64. */
-bool snapshot_file_real(enum data what);
-
 /* Number of snapshots; negative: it cannot be read. */
 int64_t snapshot_file_steps(hid_t file);
-bool snapshot_file_set_steps(hid_t file, int64_t n);
 
-/* A callback that writes the n values of a snapshot in one column of a dataset: double or int64_t
- * (snapshot_file_real). */
-typedef void snapshot_values(const void *context, enum data what, int column, int64_t n,
-                             void *values);
-
-/* Appends a snapshot of n points to all datasets. */
-bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout, int64_t n,
-                          snapshot_values *values_of, const void *context);
+/* Appends the present state to all datasets. */
+bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout,
+                          const struct simulation *sim);
 
 /* Reads the first n rows of a dataset. */
 bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
