@@ -314,16 +314,23 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
     return envelope_create(&beams->matrix, a, n, first, d);
 }
 
-static void set_start(struct beams *beams)
+static enum err set_start(struct beams *beams, struct diag *d)
 {
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
-        const struct expr *const *const e =
-            (const struct expr *const *)beams->beam[node->beam].given->velocity.e;
+        const struct scene_beam *const given = beams->beam[node->beam].given;
+        double *const v = beams->state[k].v;
         for (int c = 0; c < 2; c++)
-            beams->state[k].v[c] = beams->state[k].w[c] =
-                e[c] && node->row[c] >= 0 ? expr_at(e[c], node->X[0], node->X[1]) : 0;
+            v[c] = beams->state[k].w[c] =
+                given->velocity.e[c] && node->row[c] >= 0
+                    ? expr_at(given->velocity.e[c], node->X[0], node->X[1])
+                    : 0;
+        if (!isfinite(v[0] + v[1]))
+            return fail_at(d, beams->scene, given->common.line,
+                           "[beam %s] velocity is not finite at (%g, %g) m; change the expression",
+                           given->common.name, node->X[0], node->X[1]);
     }
+    return ERR_OK;
 }
 
 static enum err create_all(struct beams *beams, struct arena *a, struct arena *temp, struct diag *d)
@@ -347,7 +354,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     }
     for (int k = 0; k < scene->n_load; k++) TRY(find_load(beams, k, temp, d));
     TRY(number_unknowns(beams, a, temp, d));
-    set_start(beams);
+    TRY(set_start(beams, d));
     TRY(create_springs(beams, a, d));
     TRY(beams_joints_create(beams, a, d));
     return beams_contact_create(beams, a, d);

@@ -127,6 +127,7 @@ struct beams {
     struct rigid *rigid;        /* NULL: none */
     bool crowded;               /* more places touch than the memory holds */
     bool pushed;                /* a beam has pushed a rigid body; the account resets it */
+    int infinite;               /* a [load], counted from 1, that was not finite; 0: none */
     bool failed;                /* no solution, however short the step */
 };
 

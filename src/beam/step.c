@@ -39,6 +39,7 @@ static void find_loads(struct beams *beams, double middle)
                        expr_at_time(value->e[c], X[0], X[1], t);
         if (from->moment.e[0])
             load[2] += factor * l->part * expr_at_time(from->moment.e[0], X[0], X[1], t);
+        if (!isfinite(load[0] + load[1] + load[2])) beams->infinite = l->section + 1;
     }
 }
 
@@ -169,7 +170,8 @@ static struct largest find_residual(struct beams *beams, double dt)
         for (int c = 0; c < 3; c++) {
             const int64_t row = beams->node[k].row[c];
             const double scale = c < 2 ? 1 : 1 / beams->node[k].length;
-            if (row >= 0) top.off = max2(top.off, scale * fabs(beams->unknown[row]));
+            const double off = row >= 0 ? scale * fabs(beams->unknown[row]) : 0;
+            top.off = isfinite(off) ? max2(off, top.off) : (double)NAN;
         }
     return top;
 }

@@ -164,6 +164,8 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
             const int32_t i = v->loaded[k].particle;
             const double per_mass =
                 load->factor * particles->free[i] / solid->body[particles->body[i]].mass;
+            if (!isfinite(load->factor * (v->loaded[k].f[0] + v->loaded[k].f[1])))
+                v->infinite = load->section + 1;
             particles->sx[i] += v->loaded[k].f[0] * per_mass;
             particles->sy[i] += v->loaded[k].f[1] * per_mass;
         }

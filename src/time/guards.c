@@ -384,6 +384,18 @@ static enum err check_springs(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+static enum err check_loads(struct simulation *sim, struct diag *d)
+{
+    const struct loads *const on_solids = sim->solid.loads;
+    const int k = on_solids && on_solids->infinite ? on_solids->infinite : sim->beams.infinite;
+    if (k == 0) return ERR_OK;
+    const struct scene_section_common *const load = &sim->scene->load[k - 1].common;
+    sim->guard.case_at_fault = true;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: %s: [load %s] gives a force that is not finite; change its expression",
+                     scene_place(sim->scene, load->line).text, time_text(sim).text, load->name);
+}
+
 static enum err check_newton(const struct simulation *sim, struct diag *d)
 {
     const struct implicit *const by = sim->solid.implicit;
@@ -401,6 +413,7 @@ static enum err check_newton(const struct simulation *sim, struct diag *d)
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
     TRY(check_springs(sim, d));
+    TRY(check_loads(sim, d));
     TRY(check_newton(sim, d));
     if (sim->beams.crowded)
         warn_once(sim, &sim->guard.warned_beams, d,

@@ -278,6 +278,8 @@ static void test_bad_input_is_refused(void)
         "did you mean `floor`?");
     rig_refuses(BEAM("[load f]\nbody = b\nforce = 0, 1\nshape = box 2, 2, 3, 3\n"),
                 "contains no node of [beam b]");
+    rig_refuses(BEAM("velocity = 0, 1/(x - 0.5)\n"),
+                "[beam b] velocity is not finite at (0.5, 0) m");
     rig_refuses("dp = 5 cm\nend_time = 1\n[beam b]\nshape = box 0, 0, 1, 1\nmass = 1\n"
                 "axial_stiffness = 1\nbending_stiffness = 1\n",
                 "a beam is a line");

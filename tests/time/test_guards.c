@@ -467,6 +467,36 @@ static void test_substeps_without_end(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "10001 sub-steps"), rig.diag.text);
 }
 
+/* A load without a value, at a particle or node or from a time on, is no fault of the solver. */
+static void test_a_load_that_is_not_finite(void)
+{
+    static const char beam[] = "dp = 5 cm\nend_time = 1\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
+                               "thickness = 1 cm\nyoung = 1e7\ndensity = 1000\n"
+                               "[load l]\nshape = box 0, -1, 2, 2\nbody = b\n",
+                      solid[] = "dp = 5 cm\nend_time = 1\n[solid b]\nshape = box 0, 0, 1, 0.2\n"
+                                "young = 1e7\ndensity = 1000\npoisson = 0\n"
+                                "[load l]\nshape = box 0, -1, 2, 2\nbody = b\n";
+    static const struct {
+        const char *text, *keys, *at;
+    } each[] = {{beam, "force = 0, 1/(x - 0.5)\n", "rig.cfg:8: t = "},
+                {beam, "traction = 0, log(0.02 - t)\n", "rig.cfg:8: t = 0.02"},
+                {beam, "moment = 1\nhistory = sqrt(0.02 - t)\n", "rig.cfg:8: t = 0.02"},
+                {solid, "force = 0, 1/(x - 0.525)\n", "rig.cfg:8: t = "},
+                {solid, "force = 0, sqrt(0.02 - t)\n", "rig.cfg:8: t = 0.02"}};
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        char text[500];
+        rig_close(&rig);
+        snprintf(text, sizeof text, "%s%s", each[k].text, each[k].keys);
+        rig_open(&rig, text, NULL);
+        enum err e = ERR_OK;
+        for (int n = 0; n < 1000 && !e; n++) e = simulation_step(&rig.sim, 1, &rig.diag);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_GUARD, e, each[k].keys);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, each[k].at), rig.diag.text);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[load l] gives a force that is not"),
+                                     rig.diag.text);
+    }
+}
+
 /* In a run: a velocity that is not a number is found by the step that meets it. */
 static void test_a_run_stops_at_once(void)
 {
@@ -501,6 +531,7 @@ int main(void)
     RUN_TEST(test_warnings_before_the_end);
     RUN_TEST(test_voids_in_a_full_channel);
     RUN_TEST(test_substeps_without_end);
+    RUN_TEST(test_a_load_that_is_not_finite);
     RUN_TEST(test_a_run_stops_at_once);
     return UNITY_END();
 }
