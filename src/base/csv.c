@@ -90,7 +90,7 @@ static int read_numbers(struct csv *c, const char *line, double *row)
         at = end + strspn(end, blanks);
         if (k + 1 < c->n && (*at == ',' || *at == ';')) at += 1 + strspn(at + 1, blanks);
     }
-    if (!*at || *at == '\n' || c->more) return 1;
+    if (!*at || *at == '\n' || *at == '#' || c->more) return 1;
     diag_add(c->diag, ERR_INPUT, "%s:%d: more than %d columns; %s are expected", c->path, c->line,
              c->n, c->columns);
     return -1;

@@ -15,8 +15,8 @@ int number_text(char text[NUMBER_TEXT], double value);
  * not end a field. */
 const char *csv_field(const char *line, int k, size_t *length);
 
-/* A table of numbers with a comma, a semicolon or blanks between them. Lines that begin with # are
- * comments. Names of the columns may come before the first row. */
+/* A table of numbers with a comma, a semicolon or blanks between them. What follows a # is a
+ * comment. Names of the columns may come before the first row. */
 enum { CSV_COLUMNS = 32 };
 struct csv {
     const char *path;    /* as in messages */

@@ -50,7 +50,7 @@ static void expect(double time, double d, double v, double a)
 }
 
 #define MOVES(x) CASE "[motion move]\nx = " x "\n" FILE_OF("way")
-static const char rows[] = "t,d\n# a comment\n0.1 0.01\n0.2; 0.04\n0.4,0\n";
+static const char rows[] = "t,d\n# a comment\n0.1 0.01 # one\n0.2; 0.04\n0.4,0\n";
 
 /* At a row the slope is that of the segment that follows. */
 static void test_linear_between_rows_and_constant_outside(void)
