@@ -82,7 +82,8 @@ static void add_touch(struct approach *a, const double at[2], const double n[2],
     if (to && gap <= to->gap) return;
     if (!to) {
         const int body[2] = {a->of[0]->rigid, a->of[1]->rigid};
-        if (a->rigid->n_rows == 2 * contact->most) return;
+        a->rigid->crowded |= a->rigid->n_rows == 2 * contact->most;
+        if (a->rigid->crowded) return;
         to = rigid_add_row(a->rigid, RIGID_GAP, body);
         (void)rigid_add_row(a->rigid, RIGID_FRICTION, body);
     }

@@ -59,6 +59,7 @@ struct rigid {
     double mean_time; /* h/c0: of the mean acceleration, s; 0: no fluid */
     bool centred;     /* forces are found in the middle of a step */
     double end;       /* of the step that has begun, s */
+    bool crowded;     /* more places touch than the memory holds */
 };
 
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,

@@ -334,6 +334,17 @@ static void check_rigid(struct simulation *sim, struct diag *d)
 /* Of dp. Hinges are met to round-off, unless they contradict each other or contact. */
 #define HINGE_GAP 1e-3
 
+static enum err check_touches(struct simulation *sim, struct diag *d)
+{
+    if (!sim->rigid.crowded) return ERR_OK;
+    sim->guard.case_at_fault = true;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: rigid bodies and walls touch at more places than the memory holds: every "
+                     "corner within dp of an outline is one; draw polygons with fewer points, and "
+                     "discs as `circle`",
+                     time_text(sim).text);
+}
+
 static enum err check_hinges(struct simulation *sim, struct diag *d)
 {
     int k = 0;
@@ -422,6 +433,7 @@ enum err guards_check(struct simulation *sim, struct diag *d)
                   BEAM_TOUCHES);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
+    if (sim->effects & FX_RIGID) TRY(check_touches(sim, d));
     if (sim->effects & FX_RIGID) TRY(check_hinges(sim, d));
     if (sim->effects & FX_RIGID) check_rigid(sim, d);
     if (sim->effects & FX_FLUID) TRY(check_fluid(sim, d));

@@ -278,6 +278,32 @@ static void test_a_box_slides_down_a_slope(void)
     assert_near(1e-3, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
 }
 
+/* Discs of many corners that touch each other: contact that the memory does not hold stops the run,
+ * and is not dropped. */
+static void test_too_many_corners_are_refused(void)
+{
+    enum { CORNERS = 200 };
+    char text[3 * 30 * CORNERS + 400];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s", FREE);
+    for (int k = 0; k < 3; k++) {
+        used += (size_t)snprintf(text + used, sizeof text - used,
+                                 "[rigid r%d]\nmass = 1\nshape = polygon ", k);
+        for (int n = 0; n < CORNERS; n++) {
+            const double angle = 2 * acos(-1) * (n + 0.5) / CORNERS;
+            used += (size_t)snprintf(text + used, sizeof text - used, "%.6f, %.6f%s",
+                                     0.1 * cos(angle) + (k == 2 ? 0.1 : 0.2 * k),
+                                     0.1 * sin(angle) + (k == 2 ? 0.1733 : 0),
+                                     n + 1 < CORNERS ? "; " : "\n");
+        }
+    }
+    rig_open(&rig, text, NULL);
+    enum err e = ERR_OK;
+    for (int n = 0; n < 3 && e == ERR_OK; n++) e = simulation_step(&rig.sim, 1, &rig.diag);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "draw polygons with fewer points"),
+                                 rig.diag.text);
+}
+
 /* A wall that rises lifts a body and does the work. */
 static void test_a_moving_wall_lifts_a_body(void)
 {
@@ -363,6 +389,7 @@ int main(void)
     RUN_TEST(test_two_boxes_collide);
     RUN_TEST(test_a_box_slides_down_a_slope);
     RUN_TEST(test_a_moving_wall_lifts_a_body);
+    RUN_TEST(test_too_many_corners_are_refused);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
