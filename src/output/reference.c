@@ -210,17 +210,21 @@ void reference_line(const struct reference *r, char *text, size_t size)
 {
     const struct score *const c = &r->score;
     const char *const name = r->from->label[0] ? r->from->label : r->from->common.name;
-    const double percent = c->scale > 0 ? 100 / c->scale : (double)NAN;
+    const double percent = 100 / c->scale;
+    char of_peak[48] = "", of_mean[80] = "", of_rms[48] = ""; /* of a reference of zero nothing */
+    if (c->scale > 0) {
+        snprintf(of_peak, sizeof of_peak, " (%.2g %% of the peak)", percent * c->rms);
+        snprintf(of_mean, sizeof of_mean, " (%+.2g %%)", percent * c->mean);
+        snprintf(of_rms, sizeof of_rms, " (%.2g %%)", percent * c->rms);
+    }
     if (c->points == 0)
         snprintf(text, size, "%s: its times do not overlap with those of %s", r->from->probe, name);
     else if (r->n == 1)
-        snprintf(text, size, "%s: mean %.4g, %+.2g (%+.2g %%) off %s; RMS %.2g (%.2g %%)",
-                 r->from->probe, c->probe_mean, c->mean, percent * c->mean, name, c->rms,
-                 percent * c->rms);
+        snprintf(text, size, "%s: mean %.4g, %+.2g%s off %s; RMS %.2g%s", r->from->probe,
+                 c->probe_mean, c->mean, of_mean, name, c->rms, of_rms);
     else
         snprintf(text, size,
-                 "%s: RMS %.3g (%.2g %% of the peak) from %s; peak %.4g at %.4g s instead of %.4g "
-                 "at %.4g s",
-                 r->from->probe, c->rms, percent * c->rms, name, c->peak, c->peak_time,
-                 c->peak_reference, c->peak_time_reference);
+                 "%s: RMS %.3g%s from %s; peak %.4g at %.4g s instead of %.4g at %.4g s",
+                 r->from->probe, c->rms, of_peak, name, c->peak, c->peak_time, c->peak_reference,
+                 c->peak_time_reference);
 }
