@@ -120,7 +120,7 @@ struct beams {
     double *unknown; /* [rows] */
     int iterations;  /* of Newton's method in the last step */
     double residual; /* over the largest force of a node */
-    double ahead;    /* steps that the fluid is evaluated after the start of a step */
+    double stage;    /* of the fluid's rates, in steps after the start of a step */
     bool alternates; /* the fluid has two solutions, which share the forces */
     struct beam_contact *contact;
     struct beam_joints *joints; /* with rigid bodies; NULL: none */
@@ -247,9 +247,9 @@ bool beam_spring_force(const struct beams *beams, int spring, double force[2]);
 
 /* --- wet.c: fluid on both sides: each beam is a thin line with its nodes --- */
 
-/* Ties the beams to their lines. `ahead`, `alternates`: as of the integrator (time/state.h). */
+/* Ties the beams to their lines. `stage`, `alternates`: as of the integrator (time/state.h). */
 enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *lines,
-                          struct particles *walls, double ahead, bool alternates, struct diag *d)
+                          struct particles *walls, double stage, bool alternates, struct diag *d)
     SPHFSI_CHECKED;
 
 /* Sets the lines and their dummies to where the beams are `since` after the last step. Returns the

@@ -208,7 +208,7 @@ void beams_return_bodies(struct beams *beams, double dt)
 /* --- a part of the step --- */
 
 /* An impulse of a joint on the node, and the opposite one on the body. */
-static void kick(struct beams *beams, struct beam_joint *j, double impulse)
+static void add_impulse(struct beams *beams, struct beam_joint *j, double impulse)
 {
     struct beam_body *const body = &beams->joints->body[j->body];
     const double(*const W)[3] = equations_of(beams, j->body)->yields;
@@ -234,7 +234,7 @@ static double meet(struct beams *beams)
         for (int c = 0; c < 3; c++) own += j->along[c] * dot(W[c], j->along);
         largest = max2(largest, fabs(faster));
         if (j->mass > 0)
-            kick(beams, j, -faster / (1 / j->mass + own));
+            add_impulse(beams, j, -faster / (1 / j->mass + own));
         else
             *v -= faster;
     }

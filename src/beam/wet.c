@@ -23,10 +23,10 @@ static void find_carriers(const struct beams *beams, const struct beam *b)
 }
 
 enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *lines,
-                          struct particles *walls, double ahead, bool alternates, struct diag *d)
+                          struct particles *walls, double stage, bool alternates, struct diag *d)
 {
     static const char what[] = "beams";
-    beams->ahead = ahead;
+    beams->stage = stage;
     beams->alternates = alternates;
     const size_t n = (size_t)beams->n_elements;
     beams->walls = walls;
@@ -193,7 +193,7 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double along[3])
 static void extrapolate(struct beams *beams, const struct beam_times *times)
 {
     const struct force_weights by =
-        force_weights(times->kick / times->dt, 0.5 - beams->ahead, beams->alternates);
+        force_weights(times->kick / times->dt, 0.5 - beams->stage, beams->alternates);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             double *const force = &beams->step[k].fluid[c];
@@ -252,7 +252,7 @@ void beams_return_impulse(struct beams *beams, const struct beam_times *times)
     const double dt = times->dt, before = beams->state[0].exchange,
                  after = exchange_time_after(before, dt), left = 1 - times->kick / before,
                  weight =
-                     acceleration_weight(beams->scene->h / beams->scene->c0, 1 + beams->ahead, dt);
+                     acceleration_weight(beams->scene->h / beams->scene->c0, 1 + beams->stage, dt);
     for (int k = 0; k < beams->n_nodes; k++) {
         struct beam_state *const now = &beams->state[k];
         struct beam_step *const s = &beams->step[k];

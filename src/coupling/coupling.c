@@ -87,7 +87,7 @@ static void move_after_substeps(struct coupling *coupling, double dt)
 }
 
 /* T-35, with sub-steps: position and velocity `half` ahead. */
-static void move_ahead(struct coupling *coupling, double half)
+static void predict_motion(struct coupling *coupling, double half)
 {
     struct particles *const particles = coupling->particles;
 #pragma omp parallel for simd schedule(static)
@@ -119,7 +119,7 @@ void coupling_predict(struct coupling *coupling, double dt)
 {
     if (coupling->impedance > 0)
         impulse_set_time(coupling, dt); /* for the force of the corrector */
-    move_ahead(coupling, coupling->ahead * dt);
+    predict_motion(coupling, coupling->stage * dt);
 }
 
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last)
@@ -127,9 +127,9 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, kick);
-    if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
+    if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* no predictor */
     const double middle = 0.5 * (coupling->centred ? dt : dt - dt / n);
-    coupling->lead = middle - coupling->ahead * dt;
+    coupling->lead = middle - coupling->stage * dt;
     if (particles->mean_fx) extrapolate_forces(coupling, dt, kick, last);
     /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)

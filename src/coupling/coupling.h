@@ -20,9 +20,9 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool substeps;               /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    /* Of the integrator: the evaluation whose rates advance the fluid is this fraction of a
-     * step after the step's start; the solid kicks in the middle of its drifts. */
-    double ahead;
+    /* Of the integrator: the stage of the rates that advance the fluid, in steps after the start of
+     * the step; the solid kicks in the middle of its drifts. */
+    double stage;
     bool centred;
     double lead; /* s: from the last evaluation to the middle of the structure's kicks */
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
@@ -66,7 +66,7 @@ SPHFSI_INLINE double averaging_time(const struct coupling *coupling)
  * step, half a step old at its end, and half a step older at the corrector of `symplectic`. */
 SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
 {
-    return 0.5 + coupling->ahead;
+    return 0.5 + coupling->stage;
 }
 
 /* Time over which the velocity is extrapolated, in half steps (T-35): from the middle of a
@@ -74,7 +74,7 @@ SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
  * extrapolates nothing. */
 SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
 {
-    return coupling->substeps ? 1 + 2 * coupling->ahead : 1;
+    return coupling->substeps ? 1 + 2 * coupling->stage : 1;
 }
 
 /* Weight of the acceleration of a step of dt in the mean. */

@@ -69,13 +69,14 @@ struct expr;
 bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
                 char why[EXPR_WHY]);
 
-/* Compiles for expr_at. ERR_INPUT: `why` has the error; ERR_MEMORY: in d. */
+/* Compiles for the functions below. ERR_INPUT: `why` has the error; ERR_MEMORY: in d. */
 enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
 
-/* Value of an expression at a point; of one in t or e alone at x = t or x = e. */
+/* Value of an expression at a point; of one in t or e alone, which is x here. */
 double expr_at(const struct expr *e, double x, double y);
+double expr_of(const struct expr *e, double x);
 /* Value of an expression in x, y and t. */
 double expr_at_time(const struct expr *e, double x, double y, double t);
 

@@ -188,7 +188,7 @@ struct fluid {
     struct lines lines; /* thin lines; unused without any */
     /* s: the next evaluation is for the state so much later by the rates of the last (Eqs. 22 and
      * 24a), of which the particles keep only dens, as dens0. */
-    double ahead;
+    double prediction;
     bool keeps_slopes; /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed; /* packed positions of walls at rest are valid */
     struct cells_around *around;    /* [active cells of fluid]: those behind, and of other chunks */

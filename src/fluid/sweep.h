@@ -57,7 +57,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                                const struct vector_constants *k, struct pair_set effects,
                                struct chunk_totals *top)
 {
-    four_double full = 1 + FOUR(fluid->ahead > 0 ? particles->dens0 : particles->dens, i);
+    four_double full = 1 + FOUR(fluid->prediction > 0 ? particles->dens0 : particles->dens, i);
     four_double factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(effects, MASSES)) { /* all sums contain the volume of the particle itself */

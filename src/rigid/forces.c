@@ -321,15 +321,15 @@ void rigid_add_springs(struct rigid *rigid, double dt)
         struct rigid_spring *const spring = &rigid->spring[k];
         const struct spring_now now = spring_now(rigid, spring);
         const bool law = spring->given->force.e[0] && !spring->given->slack;
-        const double ahead = law ? 0.5 * dt * now.rate : 0; /* T-100a */
-        spring->longer = now.longer + fabs(ahead);
+        const double half = law ? 0.5 * dt * now.rate : 0; /* T-100a */
+        spring->longer = now.longer + fabs(half);
         if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
         row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
         row->damping = spring->given->damping;
         const double shortest = -spring->length; /* both ends are in one place */
-        row->force = -spring_mean(spring->given, max2(now.longer - ahead, shortest),
-                                  max2(now.longer + ahead, shortest), 1);
+        row->force = -spring_mean(spring->given, max2(now.longer - half, shortest),
+                                  max2(now.longer + half, shortest), 1);
         row->later = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
         for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);

@@ -158,7 +158,7 @@ void loads_forces(struct loads *v, const struct solid *solid, struct particles *
     for (int n = 0; n < v->n_loads; n++) {
         struct load_region *const load = &v->load[n];
         const struct expr *const history = v->scene->load[load->section].history.e[0];
-        load->factor = history ? expr_at(history, max2(time, 0), 0) : 1;
+        load->factor = history ? expr_of(history, max2(time, 0)) : 1;
         if (load->varies) set_forces(v, load, particles, max2(time, 0));
         for (int64_t k = load->first; k < load->end; k++) {
             const int32_t i = v->loaded[k].particle;

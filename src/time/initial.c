@@ -202,7 +202,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .fluid = &sim->fluid,
         .solid = &sim->solid,
         .particles = &sim->kind[KIND_SOLID],
-        .ahead = sim->integrator->ahead,
+        .stage = sim->integrator->stage,
         .centred = sim->integrator->centred,
         .exchange_time = &sim->state.exchange_time,
     };
@@ -213,14 +213,14 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         if (sim->effects & FX_RIGID)
             TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
                              &sim->kind[KIND_WALL],
-                             sim->integrator->ahead > 0 || !(sim->effects & FX_FLUID), d));
+                             sim->integrator->stage > 0 || !(sim->effects & FX_FLUID), d));
         if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
     if (sim->effects & FX_BEAM && sim->effects & FX_RIGID) sim->beams.rigid = &sim->rigid;
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
         TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines, &sim->kind[KIND_WALL],
-                             sim->integrator->ahead, sim->integrator->alternates, d));
+                             sim->integrator->stage, sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);
     if (!(sim->effects & (FX_FLUID | FX_SOLID))) set_step_of_bodies(sim);

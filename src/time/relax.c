@@ -44,7 +44,7 @@ static void clear_velocities(struct simulation *sim)
     for (size_t k = 0; k < COUNT_OF(of_fluid); k++) particles_clear(of_fluid[k], f->n);
     if (sim->effects & FX_SOLID) clear_solid_velocities(sim);
     sim->state.verlet_count = 0; /* the next step is an Euler step */
-    sim->state.relax_energy = 0;
+    sim->state.relax_kinetic = 0;
     sim->evaluated = false;
 }
 
@@ -62,8 +62,8 @@ void relax_end(struct simulation *sim)
         .substeps_held = found.substeps_held,
         .exchange_time = found.exchange_time,
         .relax_time = found.time,
-        .relax_quiet = found.relax_quiet,
-        .relax_swings = found.relax_swings,
+        .relax_quiet_since = found.relax_quiet_since,
+        .relax_peaks = found.relax_peaks,
     };
     solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], 0);
     energy_begin(sim);
@@ -73,21 +73,21 @@ void relax_end(struct simulation *sim)
 static void test_for_rest(struct simulation *sim)
 {
     struct state *const st = &sim->state;
-    const double energy = kinetic_energy(sim), before = st->relax_energy;
-    st->relax_energy = energy;
-    st->relax_most = max2(st->relax_most, energy);
-    const double tolerated = square(sim->scene->relax.tolerance) * st->relax_most;
-    if (energy > tolerated) st->relax_quiet = st->time;
+    const double energy = kinetic_energy(sim), before = st->relax_kinetic;
+    st->relax_kinetic = energy;
+    st->relax_peak_most = max2(st->relax_peak_most, energy);
+    const double tolerated = square(sim->scene->relax.tolerance) * st->relax_peak_most;
+    if (energy > tolerated) st->relax_quiet_since = st->time;
     if (before > tolerated && energy < before) {
         clear_velocities(sim);
-        st->relax_left = before;
-        st->relax_swings++;
-        st->relax_longest = max2(st->relax_longest, st->time - st->relax_swing);
-        st->relax_swing = st->relax_quiet = st->time;
+        st->relax_peak_last = before;
+        st->relax_peaks++;
+        st->relax_swing_most = max2(st->relax_swing_most, st->time - st->relax_peak_time);
+        st->relax_peak_time = st->relax_quiet_since = st->time;
     }
-    const bool never = st->relax_most == 0;
-    const double still = st->time - st->relax_quiet;
-    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) relax_end(sim);
+    const bool never = st->relax_peak_most == 0;
+    const double still = st->time - st->relax_quiet_since;
+    if (never || (st->relax_peaks > 0 && still > 2 * st->relax_swing_most)) relax_end(sim);
 }
 
 /* T-78: what has moved further than the size of the domain since the last peak, by its mean
@@ -98,7 +98,7 @@ static enum err check_held(const struct simulation *sim, const struct particles 
 {
     const double *const low = sim->scene->domain_lower, *const high = sim->scene->domain_upper;
     const double size = elementary_hypot(high[0] - low[0], high[1] - low[1]),
-                 since = sim->state.time - sim->state.relax_swing;
+                 since = sim->state.time - sim->state.relax_peak_time;
     double n = 0, vx = 0, vy = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         if (body >= 0 && particles->body[i] != body) continue;
@@ -132,14 +132,14 @@ static enum err find_equilibrium(struct simulation *sim, struct diag *d)
 static enum err check_limit(const struct simulation *sim, struct diag *d)
 {
     const struct state *const st = &sim->state;
-    const double longest = st->relax_longest, limit = sim->scene->relax.limit;
-    if (st->relax_swings == 0 || st->time < limit * longest) return ERR_OK;
+    const double longest = st->relax_swing_most, limit = sim->scene->relax.limit;
+    if (st->relax_peaks == 0 || st->time < limit * longest) return ERR_OK;
     return diag_fail(
         d, ERR_GUARD,
         "[relax]: no state of rest within %.3g s (`limit` = %g times the longest time of %.3g s "
         "between two peaks of kinetic energy): the speed is still %.2g of its largest value; a "
         "larger tolerance or limit, `mass_damping` in a [solid]%s may help",
-        st->time, limit, longest, sqrt(st->relax_left / st->relax_most),
+        st->time, limit, longest, sqrt(st->relax_peak_last / st->relax_peak_most),
         sim->effects & FX_FLUID && sim->scene->top.scheme == SCHEME_PAPER
             ? " or `scheme = standard`, which keeps water still,"
             : "");
@@ -174,11 +174,12 @@ enum err relax_to_rest(struct simulation *sim, struct diag *d)
 void relax_progress(const struct simulation *sim, char text[RELAX_TEXT])
 {
     const struct state *const st = &sim->state;
-    const double share = st->relax_most > 0 ? sqrt(st->relax_energy / st->relax_most) : 0;
+    const double share =
+        st->relax_peak_most > 0 ? sqrt(st->relax_kinetic / st->relax_peak_most) : 0;
     snprintf(text, RELAX_TEXT,
              "seeking rest: after %.3g s and %lld peaks of kinetic energy the speed is %.2g of its "
              "largest value, tolerance = %g",
-             st->time, (long long)st->relax_swings, share, sim->scene->relax.tolerance);
+             st->time, (long long)st->relax_peaks, share, sim->scene->relax.tolerance);
 }
 
 void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
@@ -189,13 +190,13 @@ void relax_text(const struct simulation *sim, char text[RELAX_TEXT])
                  "at rest: Newton's method found static equilibrium by %d corrections in %d load "
                  "step%s",
                  sim->rest.corrections, sim->rest.load_steps, sim->rest.load_steps > 1 ? "s" : "");
-    else if (st->relax_swings == 0)
+    else if (st->relax_peaks == 0)
         snprintf(text, RELAX_TEXT, "nothing moves: the state at the start is one of rest");
     else
         snprintf(
             text, RELAX_TEXT,
             "at rest after %.3g s and %lld peaks of kinetic energy: over the last %.3g s, twice "
             "the longest time between two peaks, the speed stayed below %g of its largest value",
-            st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
+            st->relax_time, (long long)st->relax_peaks, st->relax_time - st->relax_quiet_since,
             sim->scene->relax.tolerance);
 }

@@ -26,9 +26,9 @@ void clear_fluid_sums(struct particles *particles)
  * predictor's second one is half a step of the present velocities later. */
 void find_skin_left(struct simulation *sim)
 {
-    const bool predicts = sim->integrator->ahead > 0;
-    const double ahead = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->sorting.speed2) : 0;
-    sim->sorting.skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + ahead);
+    const bool predicts = sim->integrator->stage > 0;
+    const double moved = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->sorting.speed2) : 0;
+    sim->sorting.skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + moved);
 }
 
 enum err sort_particles(struct simulation *sim, struct diag *d)
@@ -102,7 +102,7 @@ static void measure_overhangs(struct simulation *sim, enum kind first)
 bool sorting_due(struct simulation *sim)
 {
     if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
-    if (sim->integrator->ahead > 0) measure_overhangs(sim, KIND_WALL);
+    if (sim->integrator->stage > 0) measure_overhangs(sim, KIND_WALL);
     if (sim->sorting.skin_left > 1e-6 * sim->fluid.k.h) return false;
     measure_overhangs(sim, KIND_FLUID);
     return !(sim->sorting.skin_left > 0);

@@ -79,7 +79,7 @@ struct integrator {
     /* T-33b: a decay of density or velocity at a rate m is followed up to m dt of these. */
     double density_decay, velocity_decay;
     unsigned fluid_groups; /* fields that it needs beside those of its effect */
-    double ahead;    /* the rates that advance the fluid are found this fraction of a step ahead */
+    double stage;    /* of the rates that advance the fluid, in steps after the start of the step */
     bool centred;    /* the solid kicks in the middle of its drifts, else before them */
     bool alternates; /* carries on two solutions, by turns */
 };

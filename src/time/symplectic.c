@@ -126,13 +126,13 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (needs_fields)
         predict_fields(&sim->kind[KIND_FLUID], 0.5 * dt);
     else
-        sim->fluid.ahead = 0.5 * dt;
+        sim->fluid.prediction = 0.5 * dt;
     if (multirate) coupling_predict(&sim->coupling, dt);
     if (single_rate) predict_at_single_rate(sim, dt);
     phase_add(sim, PHASE_update, clock);
 
     evaluate_fluid(sim, time + 0.5 * dt);
-    sim->fluid.ahead = 0;
+    sim->fluid.prediction = 0;
     energy_of_evaluation(sim, dt);
     clock = phase_clock();
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, dt);
@@ -170,6 +170,6 @@ const struct integrator integrator_symplectic = {
     .density_decay = 2,
     .velocity_decay = 2,
     .fluid_groups = G_STAGE | G_STAGE_FLUID,
-    .ahead = 0.5,
+    .stage = 0.5,
     .centred = true,
 };

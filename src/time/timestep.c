@@ -155,7 +155,7 @@ static bool longer_is_safe(const struct simulation *sim, double ratio)
     const double z = sim->scene->numerics.solid_safety, less = z * ratio;
     const double root = sqrt((1 + z) * (1 - less) / ((1 - z) * (1 + less)));
     const double gain = root - 1 / root; /* at least the logarithm of root^2 */
-    return 0.5 * sim->solid.damping_max * (st->time - st->substeps_needed) > gain;
+    return 0.5 * sim->solid.damping_max * (st->time - st->substeps_needed_at) > gain;
 }
 
 int timestep_substeps(struct simulation *sim, double dt)
@@ -165,7 +165,7 @@ int timestep_substeps(struct simulation *sim, double dt)
     /* Enough for the longest step so far: shorter steps do not change the number. */
     const double most = ceil(max2(st->dt_max, dt) / sim->dt_solid * (1 - 1e-9));
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
-    if (needed >= held) st->substeps_needed = st->time;
+    if (needed >= held) st->substeps_needed_at = st->time;
     if (needed > held || (needed < held && longer_is_safe(sim, needed / held)))
         st->substeps_held = (int64_t)needed;
     return (int)st->substeps_held;
@@ -213,7 +213,7 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps)
     const double resolved = min2(sim->dt_lone_solid, sim->scene->numerics.solid_safety * RESOLVED /
                                                          sqrt(sim->contact.first_omega2));
     /* Sub-steps are held as a number. */
-    double *const needed = sim->effects & FX_MULTIRATE ? NULL : &sim->state.substeps_needed;
+    double *const needed = sim->effects & FX_MULTIRATE ? NULL : &sim->state.substeps_needed_at;
     const bool held = needed && *needed > 0 && !longer_is_safe(sim, resolved / sim->dt_lone_solid);
     sim->solid.contact = near ? &sim->contact : NULL;
     sim->dt_solid = near   ? min2(resolved, step_in_contact(sim))

@@ -18,7 +18,7 @@ static void find(bool by_newton)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
     TEST_ASSERT_EQUAL_INT(by_newton, rig.sim.rest.found);
-    TEST_ASSERT_EQUAL_INT(by_newton, rig.sim.state.relax_swings == 0);
+    TEST_ASSERT_EQUAL_INT(by_newton, rig.sim.state.relax_peaks == 0);
     TEST_ASSERT_EQUAL_DOUBLE(0, rig.sim.state.time);
 }
 

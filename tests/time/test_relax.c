@@ -161,7 +161,7 @@ static void test_a_search_can_be_continued(void)
     search(&image, 2 * STEPS);
     const uint64_t whole = simulation_hash(&rig.sim);
     search(&image, STEPS);
-    TEST_ASSERT_TRUE(rig.sim.state.relax_swings > 0);
+    TEST_ASSERT_TRUE(rig.sim.state.relax_peaks > 0);
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &rig.sim, "case", "test", &rig.diag));
     search(&image, STEPS);
     checkpoint_free(&image);
@@ -253,7 +253,7 @@ static void test_verlet_and_what_is_said(void)
                "value",
                &time, &stops, &span, &share),
         text);
-    TEST_ASSERT_EQUAL_INT64(rig.sim.state.relax_swings, stops);
+    TEST_ASSERT_EQUAL_INT64(rig.sim.state.relax_peaks, stops);
     assert_near(0.01 * time, rig.sim.state.relax_time, time, "time of the search");
     TEST_ASSERT_TRUE(span > 0 && span < time && share == 0.001);
 }
