@@ -34,14 +34,15 @@ static bool matters_to_restart(const struct line *line)
     return !is_word(line->section, "[output", "] ") || is_one_of(line->text, datasets, " ");
 }
 
-/* Keys that the state depends on: positions and masses of particles, the kernel, the equation of
- * state, and the fields of the integrator. */
+/* Keys that the state depends on: positions and masses of particles and bodies, the kernel, the
+ * equation of state, and the fields of the integrator. */
 static bool matters_to_fork(const struct line *line)
 {
     static const char *const kept[] = {
         "dp",        "integrator",   "h_over_dp",     "lattice_origin",  "lattice_angle",
         "shape",     "minus",        "clamp",         "density",         "sound_speed",
         "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge",
+        "mass",      "inertia",      "centre",        "thickness",       "element",
         NULL};
     static const char *const free_sections[] = {"[output", "[probe",  "[reference",
                                                 "[motion", "[table", NULL};
@@ -79,7 +80,7 @@ enum err case_change_check(const char *old, const char *now, bool fork, struct d
     return diag_fail(
         d, ERR_INPUT, "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
         what, a.section[0] ? a.section : "at the top", shown_a, a.text, shown_b, b.text,
-        fork ? "shapes, densities, sound speed, kernel and integrator must stay; materials, "
+        fork ? "shapes, masses, sound speed, kernel and integrator must stay; materials, "
                "motions, gravity and other numerics may change"
              : "only end_time, [output] and the number of threads may change; --fork starts a "
                "new run with other physics");

@@ -42,6 +42,10 @@ body = arch
 END
 
 restarts "$dir/beam.cfg" "$dir/all" 0.23
+for set in thickness=6mm element=2cm; do
+    expect 1 "fork: the case has changed since the checkpoint: .beam bar. .${set%=*} = " \
+        "$dir/beam.cfg" --fork "$dir/all" --set "bar.$set" --out "$dir/off"
+done
 expect 1 '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' \
     "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off"
 expect 1 '\[beam bar\] has no such quantity; a beam has displacement' \
