@@ -175,13 +175,14 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* Of rigid bodies and beams alone. */
+/* Of rigid bodies and beams alone; beside solids the step is that of solids. */
 static void set_step_of_bodies(struct simulation *sim)
 {
     double step = (double)INFINITY;
     if (sim->effects & FX_RIGID) step = rigid_longest_step(&sim->rigid);
     if (sim->effects & FX_BEAM) step = min2(step, beams_longest_step(&sim->beams));
-    sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step = step;
+    if (!(sim->effects & FX_SOLID))
+        sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step = step;
 }
 
 enum err initial_state(struct simulation *sim, struct diag *d)
@@ -223,7 +224,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
                              sim->integrator->stage, sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);
-    if (!(sim->effects & (FX_FLUID | FX_SOLID))) set_step_of_bodies(sim);
+    if (!(sim->effects & FX_FLUID)) set_step_of_bodies(sim);
     TRY(choose_rate(sim, d));
     set_guards(sim);
     update_extremes(sim);

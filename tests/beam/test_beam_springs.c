@@ -151,6 +151,26 @@ static void refuses_by_one(const char *spring, const char *why)
     TEST_ASSERT_NULL_MESSAGE(strchr(d.text, '\n'), d.text);
 }
 
+/* A law of a spring shortens the solid's step only where it is stiffer than at the start. */
+static void test_laws_of_springs_beside_a_dry_solid(void)
+{
+    static const char scene[] =
+        "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.1, 0.04\nyoung = 1e6\n"
+        "density = 1000\npoisson = 0\n[beam b]\nshape = polyline: 0, 1; 0, 1.1\n"
+        "thickness = 4 mm\nyoung = 1e7\ndensity = 1000\nclamp = 0, 1\n"
+        "[spring s]\nbody = b\nfrom = 0, 1.1\nto = 1, 1.1\n";
+    double step[2];
+    for (int k = 0; k < 2; k++) {
+        char text[600];
+        snprintf(text, sizeof text, "%s%s\n", scene, k ? "force = 100*e" : "stiffness = 100");
+        rig_close(&rig);
+        rig_open(&rig, text, NULL);
+        rig_steps(&rig, 3, 1);
+        step[k] = rig.sim.state.dt;
+    }
+    assert_near(1e-12 * step[0], step[0], step[1], "step with the same spring as a law");
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(BAR("") SPRING("s", "from = 0, 0.2\nto = 0, 1\n"),
@@ -176,6 +196,7 @@ int main(void)
     RUN_TEST(test_a_hanging_bar_pulls_with_its_weight);
     RUN_TEST(test_stiff_springs_shorten_the_step);
     RUN_TEST(test_free_beams_on_stiff_springs_take_the_step_of_bending);
+    RUN_TEST(test_laws_of_springs_beside_a_dry_solid);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
