@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A point and a segment: the geometry of contact between solids, rigid bodies and beams alike. */
+ * A point and a segment: the geometry of contact of solids and beams. */
 #pragma once
 
 #include "base/base.h"

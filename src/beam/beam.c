@@ -430,7 +430,7 @@ struct body_energy beam_energy(const struct beams *beams, int beam)
         const struct beam_state *const s = &beams->state[k];
         for (int c = 0; c < 3; c++) {
             sum.kinetic += 0.5 * node->mass[c] * square(s->v[c]);
-            sum.waiting += s->impulse[c] * s->w[c];
+            sum.undelivered += s->impulse[c] * s->w[c];
         }
         for (int c = 0; c < 2; c++) {
             sum.momentum[c] += node->mass[c] * s->v[c] - s->impulse[c];

@@ -115,7 +115,7 @@ struct beams {
     struct particles *walls;
     struct thin_line **line; /* [n]; NULL: no fluid */
     double *carries; /* [n_nodes] share of the motion that the fluid sees along a beam (T-111a) */
-    double (*added)[6][6]; /* [n_elements] T Z of T-105, kg/m, kg and kg m */
+    double (*added)[6][6]; /* [n_elements] Z of T-105, kg/(m s), kg/s, kg m/s */
     struct envelope matrix;
     double *unknown; /* [rows] */
     int iterations;  /* of Newton's method in the last step */

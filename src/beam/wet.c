@@ -78,8 +78,8 @@ static double displacement_between(const struct beams *beams, const struct line_
                elementary_hypot(to->normal[0] - from->normal[0], to->normal[1] - from->normal[1]);
 }
 
-/* The squared radius of gyration of a node's own mass, m^2. Of a beam whose mass is given it is 0:
- * above it, a single node that carries the beam turns it all the same. */
+/* The squared radius of gyration of a node's own mass, m^2. It is 0 where the mass of a beam is
+ * given. The least value keeps the division by the inertia of a single node finite. */
 static double gyration2(const struct beam_node *node)
 {
     return max2(node->mass[2] / node->mass[0], 1e-30);

@@ -41,7 +41,7 @@ static enum section_id other_kind(const struct scene *scene, const struct scene_
     }
 }
 
-/* What is measured of a body but for forces is that of one solid. */
+/* All quantities but `force` are of one body. */
 static enum err check_names(struct reader *r, const struct param *param, const void *section)
 {
     const char *const text = (const char *)section + param->offset;
@@ -299,7 +299,7 @@ static enum err check_body(struct reader *r, const struct scene_probe *p)
     if (!*p->body)
         return bad_section(r, "needs `body`, the %s measured",
                            p->quantity == PROBE_FORCE ? "solids or walls that are"
-                                                      : "solid that is");
+                                                      : "body that is");
     for (int k = 0; scene_listed(p->body, k, name); k++)
         for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)

@@ -286,10 +286,10 @@ double scene_open_flow(const struct scene_open *o, double time);
  * equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Energy and momentum of a rigid body or beam, per depth; `waiting`: the work that the fluid has
- * still to receive. */
+/* Energy and momentum of a rigid body or beam, per depth; `undelivered`: the work that the fluid
+ * has still to receive. */
 struct body_energy {
-    double kinetic, potential, elastic, momentum[2], mass, waiting;
+    double kinetic, potential, elastic, momentum[2], mass, undelivered;
 };
 
 /* Of a spring at an elongation, per depth: the elastic force (N/m), its slope (N/m^2); and the part

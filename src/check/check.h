@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Judges a scene before it runs: what can be simulated but is probably a mistake, or costs more
  * time than it needs. Each warning has the consequence and the remedy. What cannot be simulated is
- * refused where it is read or sampled. */
+ * refused where it is read or sampled, beams in beams.c. */
 #pragma once
 
 #include "geometry/sampling.h"

@@ -172,7 +172,7 @@ double coupling_added_mass_step(const struct coupling *coupling, int *lightest)
            ((1 + (acceleration_age(coupling) - 1) * b) * extrapolated_halves(coupling));
 }
 
-/* Viscosity stops the particles at the corner of a structure at a rate that is held over a
+/* T-35g: viscosity stops the particles at the corner of a structure at a rate that is held over a
  * step of the fluid. */
 double coupling_drag_step(const struct coupling *coupling)
 {

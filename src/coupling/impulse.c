@@ -11,10 +11,10 @@ static double impedance_of(const struct coupling *coupling, const struct solid_b
     return coupling->impedance * min2(1, body->thickness / (2 * coupling->scene->top.dp));
 }
 
-/* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
- * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
- * velocity of T-35 in the middle of the kicks. Zero for dry and clamped particles. dt = 0: the root
- * of the rate at which it is removed. */
+/* T-35a: face = sqrt(k/(1 + k)) A/|A| with k = dt Z |A|/m, so that face face^T removes the fraction
+ * k/(1 + k) of the normal velocity in a sub-step of dt. The update is implicit, so it adds no step
+ * bound. dt = 0, for implicit steps: sqrt(Z |A|/m) A/|A|, the root of the rate. Also the normal
+ * velocity of T-35 in the middle of the kicks. Zero for dry and clamped particles. */
 static void find_normal(const struct coupling *coupling, struct particles *particles, int64_t i,
                         double dt)
 {

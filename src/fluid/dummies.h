@@ -41,7 +41,7 @@ SPHFSI_INLINE four_double extrapolated_pressure(const struct fluid_constants *k,
     const four_double lift = (k->gravity[0] - ax) * four_widen(FOUR_REAL(sum->x)) +
                              (k->gravity[1] - ay) * four_widen(FOUR_REAL(sum->y));
     const four_double mean = (four_widen(FOUR_REAL(sum->p)) + k->rho0 * k->h * lift) / w;
-    const four_double lowest = k->lowest_wall_pressure + 0 * w;
+    const four_double lowest = k->lowest_wall_pressure + 0 * w; /* NaN at w = 0 is masked */
     return (four_double)((four_long)four_max(lowest, mean) & (w > LEAST_WEIGHT));
 }
 

@@ -92,14 +92,14 @@ static void put_mean(const struct rows *f, const struct probe *probe, double *ro
 
 /* --- rows --- */
 
-/* Writes the rows up to the present state. Those behind the end of the run are left to a restart,
- * for which the state before remains. */
+/* Writes the rows up to the present state. Rows after the end of the run are left to a restart; for
+ * them the state before is kept. */
 static enum err write_rows(const struct row_files *r, struct rows *f, struct diag *d)
 {
     double row[SERIES_MAX_COLUMNS];
-    while (!(f->next > r->end && f->next <= f->now[0])) {
+    while (f->next <= r->end || f->next > f->now[0]) {
         FOR_MEANS(r, f, probe) add_to_mean(f, probe);
-        if (!(f->next <= f->now[0])) {
+        if (f->next > f->now[0]) {
             f->before[0] = -1;
             break;
         }

@@ -53,7 +53,7 @@ void due_pass(struct due *u, double time);
 /* --- rows --- */
 
 /* The rows of a file. Before the last state and at it: the columns, of which the first is the time,
- * s (-1: not read), and their rates (NAN: not known). */
+ * s (-1: that state was not read), and their rates (NAN: not known). */
 struct rows {
     const char *name, *header;
     int file;       /* of probes; -1: the ledger */

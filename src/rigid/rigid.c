@@ -315,7 +315,7 @@ struct body_energy rigid_energy(const struct rigid *rigid, int k, double dt)
     at_end(rigid, dt, s->impulse, s->rate, impulse);
     for (int c = 0; c < 3; c++) {
         e.kinetic += 0.5 * body->mass[c] * square(v[c]);
-        e.waiting += impulse[c] * v[c];
+        e.undelivered += impulse[c] * v[c];
         if (c == 2) continue;
         e.momentum[c] = body->mass[c] * v[c] - impulse[c];
         e.potential -=

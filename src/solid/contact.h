@@ -77,8 +77,8 @@ struct contact {
     struct contact_law *law;         /* [n_bodies][n_bodies] */
     int32_t *group;                  /* [n_bodies] */
     bool friction;                   /* some pair has it */
-    double reach, spacing;           /* largest of all laws */
-    double first_omega2; /* and the largest of T-62e: of two faces at first contact, 1/s^2 */
+    double reach, spacing;           /* largest of all laws, m */
+    double first_omega2; /* largest T-62e of all laws: two faces at first contact, 1/s^2 */
     /* Points: those of solids first, then those of walls that move. */
     int64_t n_solid_points, n_moving_points, n_points;
     struct contact_point *point;
@@ -153,9 +153,9 @@ struct contact_closest {
     const struct contact_law *law;
     const struct contact_point *point, *a, *b;
     double at, offset[2], distance, reach;
-    double reach_a, reach_b; /* at the ends, */
-    double min_reach;   /* and the least of them, m: R of T-61c, at which the law is infinite */
-    double reach_apart; /* the same for a point that begins apart from them */
+    double reach_a, reach_b; /* at the ends, m */
+    double min_reach;   /* the lesser of the two, m: R of T-61c, at which the law is infinite */
+    double reach_apart; /* min_reach for a point that begins apart from the ends */
     double left;        /* r of T-61c: the least reach less the overlap, m */
 };
 

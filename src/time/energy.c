@@ -7,8 +7,8 @@ struct energies {
     double dummies;   /* compression energy of dummies by their pressure */
     double repulsion; /* of walls and structures, by L-7b */
     double damper;    /* that the acoustic damper holds and has yet to dissipate (T-9a) */
-    double waiting; /* work that the fluid has still to receive from a body: the impulse that waits
-                       (T-35b) at the velocity that the fluid uses */
+    double undelivered; /* work that the fluid has still to receive from a body: that of the
+                       interface impulse (T-35b), at the velocity that the fluid uses */
     double term[ENERGY_TERMS];
     double tolerance; /* below which a gain is an error of the sums */
 };
@@ -69,7 +69,7 @@ static double add_solids(struct simulation *sim, struct energies *solid)
         const double x = particles->interface_impulse_x[i], y = particles->interface_impulse_y[i];
         e->row.momentum_x -= x;
         e->row.momentum_y -= y;
-        e->waiting += x * particles->wx[i] + y * particles->wy[i];
+        e->undelivered += x * particles->wx[i] + y * particles->wy[i];
     }
     for (int k = 0; k < sim->scene->n_solid; k++) {
         double det;
@@ -88,7 +88,7 @@ static double add_solids(struct simulation *sim, struct energies *solid)
 static void add_late_work(struct simulation *sim, struct energies *solid)
 {
     struct particles *const particles = &sim->kind[KIND_SOLID];
-    struct solid alone = sim->solid; /* without forces whose work is booked */
+    struct solid alone = sim->solid; /* without forces whose work is booked; overwrites sx and sy */
     if (sim->coupling.centred || alone.implicit || sim->substeps == 0) return;
     const double half = 0.5 * sim->state.dt / sim->substeps;
     alone.coupled = false;
@@ -115,7 +115,7 @@ static void add_bodies(const struct simulation *sim, struct energies *body)
                                             .momentum_x = e.momentum[0],
                                             .momentum_y = e.momentum[1],
                                             .mass = e.mass},
-                                    .waiting = e.waiting};
+                                    .undelivered = e.undelivered};
     }
 }
 
@@ -186,7 +186,7 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 {
     if (!keeps_account(sim)) return;
     entry_of(sim, kind, section)->supplied += work;
-    entry_of(sim, kind, section)->noted += work;
+    entry_of(sim, kind, section)->supplied_before += work;
 }
 
 /* Work in dt by the last evaluation: on the fluid by a program, by the constraint at open
@@ -360,10 +360,10 @@ void energy_after_step(struct simulation *sim)
     }
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         struct energy_entry *const e = &sim->state.energy.entry[k];
-        const double done = e->supplied - e->noted;
+        const double done = e->supplied - e->supplied_before;
         e->work_change = max2(e->work_change, fabs(done - e->last_work));
         e->last_work = done;
-        e->noted = e->supplied;
+        e->supplied_before = e->supplied;
     }
     if (sim->contact.touched) join_bodies(sim); /* they may part before the test */
     if (sim->beams.pushed) join_beams(sim, scene_rigid_wall(sim->scene, 0));
@@ -385,8 +385,8 @@ void energy_begin(struct simulation *sim)
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         struct energy_entry *const e = &account->entry[k];
         e->region = k % SCENE_MAX_SECTIONS < sections[k / SCENE_MAX_SECTIONS] ? k : -1;
-        e->received = of[k].waiting;
-        e->supplied = e->noted = without_potential(&of[k]) + of[k].row.potential;
+        e->received = of[k].undelivered;
+        e->supplied = e->supplied_before = without_potential(&of[k]) + of[k].row.potential;
         e->lowest_potential = of[k].row.potential;
         e->lowest[TERM_FLUID] = e->lowest[TERM_ALL] = of[k].dummies;
         for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = without_potential(&of[k]);
@@ -450,10 +450,13 @@ struct energy_gain energy_find_gain(struct simulation *sim)
         const struct energy_entry *const e = &account->entry[k];
         double *const term = of[k].term;
         const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
+        /* T-46: own energy less the work on it. What a body was given, the fluid has lost: the work
+         * on the fluid is -given. What it received beyond that is a gain of the interface, but for
+         * an impulse that the fluid has still to receive. */
         term[body ? TERM_SOLID : TERM_FLUID] =
             without_potential(&of[k]) + of[k].row.potential - e->supplied;
         if (body) term[TERM_FLUID] = e->given;
-        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].waiting;
+        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].undelivered;
         term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
         of[k].tolerance +=
             e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));

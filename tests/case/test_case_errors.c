@@ -316,7 +316,7 @@ static const struct {
      "bad.cfg:6: [probe Q] measures the flux through the line from `point` to `to`; the two "
      "points"},
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
-     "bad.cfg:8: [probe M1] needs `body`, the solid that is measured"},
+     "bad.cfg:8: [probe M1] needs `body`, the body that is measured"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
      "bad.cfg:9: body = aa: there is no [solid] or [beam] of that name"},
     {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,

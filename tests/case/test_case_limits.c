@@ -79,7 +79,7 @@ static void test_values_that_do_not_fit_together(void)
         {TOP WATER "[probe p]\nquantity = force\n",
          "l.cfg:6: [probe p] needs `body`, the solids or walls that are measured"},
         {TOP SOLID "[probe p]\npoint = 5 mm, 5 mm\n",
-         "l.cfg:8: [probe p] needs `body`, the solid that is measured"},
+         "l.cfg:8: [probe p] needs `body`, the body that is measured"},
         {TOP SOLID "[probe p]\nquantity = reaction\nbody = a\n",
          "l.cfg:8: [probe p] measures the force that holds a, but nothing does"},
         {TOP SOLID "[probe p]\nquantity = pressure\npoint = 0, 0\n",
