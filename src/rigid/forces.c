@@ -355,12 +355,16 @@ void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energ
     }
 }
 
-double rigid_hinge_power(const struct rigid *rigid, int k, double time)
+double rigid_hinge_power(const struct rigid *rigid, int k, double dt)
 {
     const struct rigid_body *const body = &rigid->body[k];
+    double power = 0;
     if (body->hinge_motion < 0) return 0;
-    const struct motion_point at = hinge_at(rigid, body, time);
-    return rigid->state[k].reaction[0] * at.v[0] + rigid->state[k].reaction[1] * at.v[1];
+    const struct motion_point from = hinge_at(rigid, body, rigid->end - dt),
+                              to = hinge_at(rigid, body, rigid->end);
+    for (int c = 0; c < 2; c++)
+        power += rigid->state[k].reaction[c] * 0.5 * (from.v[c] + to.v[c]);
+    return power;
 }
 
 /* What a unit of a force on an end of a spring does to it at most, 1/kg. */

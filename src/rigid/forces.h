@@ -9,8 +9,9 @@ enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag 
 /* Adds that of the springs whose first end a body has. */
 void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energy *sum);
 
-/* Power of the motion of a wall on the body that is hinged to it, W/m. */
-double rigid_hinge_power(const struct rigid *rigid, int k, double time);
+/* Mean power over the step of a wall's motion, which may have a kink, on the body hinged to it,
+ * W/m. */
+double rigid_hinge_power(const struct rigid *rigid, int k, double dt);
 
 /* Position and velocity of a body as its hinge in place or on a wall, or its guide, allows them:
  * of its angle, or of its place along the line. The hinge is where it is at the time `place`, with

@@ -208,7 +208,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);
     }
-    body->driven += kick * rigid_hinge_power(rigid, k, rigid->end - 0.5 * dt);
+    body->driven += kick * rigid_hinge_power(rigid, k, dt);
     const double before = s->exchange, left = 1 - part_of(rigid, k, kick);
     s->exchange = exchange_time_after(s->exchange, dt);
     if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);

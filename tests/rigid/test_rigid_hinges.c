@@ -239,6 +239,22 @@ static void test_an_impact_passes_through_hinges(void)
     assert_near(1e-11, 0, gap_at(0, 1, 1, 0), "distance in the hinge");
 }
 
+/* A wall that turns back at once gives a body hinged at its centre as much energy as it takes, and
+ * one that is hinged at its face the energy of the turn. */
+static void test_a_hinge_on_a_wall_with_a_kink(void)
+{
+    for (int face = 0; face < 2; face++) {
+        rig_close(&rig);
+        rig_open(&rig,
+                 "dp = 1 cm\nend_time = 1\n[wall bed]\nshape = box -0.2, -0.05, 0.6, 0\n"
+                 "motion = m\n[motion m]\nx = -0.1*abs(t - 0.1)\n[rigid r]\n"
+                 "shape = box 0.1, 0.05, 0.2, 0.1\ndensity = 500\nhinge = 0.15, 0.075, bed\n",
+                 face ? "r.hinge=0.15,0.05,bed" : NULL, NULL);
+        rig_run(&rig, 0.2);
+        assert_near(2e-8, 0, simulation_ledger(&rig.sim).dissipated, "dissipated");
+    }
+}
+
 static void test_bad_input_is_refused(void)
 {
 #define BOX "[rigid a]\nshape = box 0, 0, 1, 1\ndensity = 1\n"
@@ -269,6 +285,7 @@ int main(void)
     RUN_TEST(test_a_hinge_on_a_carriage);
     RUN_TEST(test_drives_of_a_closed_loop);
     RUN_TEST(test_an_impact_passes_through_hinges);
+    RUN_TEST(test_a_hinge_on_a_wall_with_a_kink);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
 }
