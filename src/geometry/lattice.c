@@ -128,7 +128,7 @@ static void omit_hinges(struct outlines *clamp, const struct shape_list *list, d
 static int merge_edges(struct crossing *c, int n, double dp)
 {
     int kept = 0;
-    qsort(c, (size_t)n, sizeof *c, geometry_ascending);
+    if (n) qsort(c, (size_t)n, sizeof *c, geometry_ascending); /* else c is NULL */
     for (int k = 0, end; k < n; k = end) {
         double weight = 0, moment = 0, spread = 0.02 * dp;
         const double first = c[k].at;
