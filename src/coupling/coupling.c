@@ -173,7 +173,7 @@ double coupling_added_mass_step(const struct coupling *coupling, int *lightest)
 }
 
 /* T-35g: viscosity stops the particles at the corner of a structure at a rate that is held over a
- * step of the fluid. */
+ * step of the fluid. 8.6 is the kernel's sum there. */
 double coupling_drag_step(const struct coupling *coupling)
 {
     const struct scene *const scene = coupling->scene;

@@ -238,13 +238,14 @@ void lines_tie(struct lines *lines, const struct wall_motion *m)
         }
 }
 
-/* T-110b: how much passes a piece that the connection `way` crosses between these ends, which are
- * relative to its beginning. */
+/* T-110b: how much passes a piece that the connection `offset` crosses between these ends, which
+ * are relative to its beginning. */
 static double passes_piece(const struct thin_line *line, const struct line_piece *piece,
-                           const double way[2], const double from[2], const double to[2],
+                           const double offset[2], const double from[2], const double to[2],
                            double reach)
 {
-    const double a = way[0] * from[1] - way[1] * from[0], b = way[0] * to[1] - way[1] * to[0];
+    const double a = offset[0] * from[1] - offset[1] * from[0],
+                 b = offset[0] * to[1] - offset[1] * to[0];
     const double along = piece->start + piece->length * a / (a - b);
     const double first = line->tip[0] ? along : reach,
                  last = line->tip[1] ? line->length - along : reach;
@@ -252,7 +253,7 @@ static double passes_piece(const struct thin_line *line, const struct line_piece
 }
 
 double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
-                  const double from[2], const double way[2], int32_t own)
+                  const double from[2], const double offset[2], int32_t own)
 {
     double clear = 1;
     for (int k = 0; k < lines->n; k++) {
@@ -267,10 +268,10 @@ double lines_seen(const struct lines *lines, const struct cells *cells, double r
                 const double one[2] = {start[0] + shift[0] - from[0],
                                        start[1] + shift[1] - from[1]},
                              other[2] = {end[0] + shift[0] - from[0], end[1] + shift[1] - from[1]};
-                if (!crosses_piece(way, one, other)) continue;
+                if (!crosses_piece(offset, one, other)) continue;
                 odd = !odd;
                 passes =
-                    min2(passes, passes_piece(line, &line->piece[m], way, one, other, reach));
+                    min2(passes, passes_piece(line, &line->piece[m], offset, one, other, reach));
             }
         }
         if (!odd) passes = 1;

@@ -71,6 +71,7 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
 void line_slides(const struct thin_line *line, int64_t i, double t[2]);
 
 /* T-110: how much of each other two places see, of which the second is a dummy of the line `own`,
- * from 1; 0: of none. `way`: the second place less the first, `from`; `reach` of the kernel, m. */
+ * from 1; 0: of none. `offset`: the second place less the first, `from`; `reach` of the kernel, m.
+ */
 double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
-                  const double from[2], const double way[2], int32_t own);
+                  const double from[2], const double offset[2], int32_t own);

@@ -46,7 +46,7 @@ static double place_body(const struct moving_wall *b, struct particles *particle
 void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct particles *walls,
                        double time)
 {
-    double way = 0;
+    double most = 0;
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
         m->moved |= b->motion < 0;
@@ -58,9 +58,9 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct 
         b->known = true;
         b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
         m->moved = true;
-        way = max2(way, place_body(b, walls));
+        most = max2(most, place_body(b, walls));
     }
-    m->way += way;
+    m->moved_most += most;
 }
 
 void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particles *walls)

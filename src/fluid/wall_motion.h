@@ -18,7 +18,7 @@ struct wall_motion {
     int n;
     struct moving_wall *body;
     bool moved;      /* any wall, since the last sorting */
-    double way;      /* m; no particle moved further since it was last set to 0 */
+    double moved_most; /* m; no particle moved further since it was last set to 0 */
     bool never_skip; /* nothing is skipped; set by tests */
 };
 

@@ -151,13 +151,13 @@ double geometry_line_distance(const struct scene *scene, const double at[2])
 
 int geometry_between(const struct scene *scene, const double from[2], const double to[2])
 {
-    const double way[2] = {to[0] - from[0], to[1] - from[1]};
+    const double offset[2] = {to[0] - from[0], to[1] - from[1]};
     for (int j = 0; j < scene->n_line; j++) {
         const struct scene_line *const line = &scene->line[j];
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
             const double *const a = line->seen[k], *const b = line->seen[k + 1];
-            odd ^= crosses_piece(way, (const double[]){a[0] - from[0], a[1] - from[1]},
+            odd ^= crosses_piece(offset, (const double[]){a[0] - from[0], a[1] - from[1]},
                                  (const double[]){b[0] - from[0], b[1] - from[1]});
         }
         if (odd) return j + 1;

@@ -109,8 +109,8 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 
 /* --- a step --- */
 
-/* The kick is this part of the time in which the fluid receives what waits. */
-static double part_of(const struct rigid *rigid, int k, double kick)
+/* The part of the waiting impulse that the fluid receives in a kick (T-97). */
+static double received_part(const struct rigid *rigid, int k, double kick)
 {
     return rigid->mean_time > 0 ? kick / rigid->state[k].exchange : 0;
 }
@@ -121,7 +121,8 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     struct rigid_equations *const eq = &rigid->eq[k];
-    const double exchange = exchange_time_after(s->exchange, dt), part = part_of(rigid, k, kick);
+    const double exchange = exchange_time_after(s->exchange, dt),
+                 part = received_part(rigid, k, kick);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
     memcpy(eq->at_start, rigid->scene->rigid_motion[k].now.v, 2 * sizeof(double));
@@ -170,7 +171,7 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double kick = step->kick, part = part_of(rigid, k, kick);
+    const double kick = step->kick, part = received_part(rigid, k, kick);
     rigid_find_reaction(rigid, k, kick);
     body->work = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
@@ -209,7 +210,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
         s->a[c] += weight * (steady - s->a[c]);
     }
     body->driven += kick * rigid_hinge_power(rigid, k, dt);
-    const double before = s->exchange, left = 1 - part_of(rigid, k, kick);
+    const double before = s->exchange, left = 1 - received_part(rigid, k, kick);
     s->exchange = exchange_time_after(s->exchange, dt);
     if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);
 }

@@ -14,7 +14,8 @@ void move_walls(struct simulation *sim, double time)
         if (line->own) line_follow(line, &line->own->placed);
         line_place(line, &sim->kind[KIND_WALL]);
     }
-    if (sim->beams.line) sim->wall_motion.way += beams_place(&sim->beams, time - sim->state.time);
+    if (sim->beams.line)
+        sim->wall_motion.moved_most += beams_place(&sim->beams, time - sim->state.time);
 }
 
 void find_external(struct simulation *sim, enum kind kind, double time)

@@ -47,7 +47,7 @@ enum err simulation_external(struct simulation *sim, enum kind kind, external_fu
 void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 
 /* Adds the magnitude of the impulse that fluid and structure exchanged in the last step. */
-static void add_exchange(struct simulation *sim)
+static void add_exchanged_impulse(struct simulation *sim)
 {
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     double fx = 0, fy = 0;
@@ -80,7 +80,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     find_speed(sim);
     if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
     energy_after_step(sim);
-    if (sim->effects & FX_COUPLING) add_exchange(sim);
+    if (sim->effects & FX_COUPLING) add_exchanged_impulse(sim);
     /* Before the guards, which read the result: a checkpoint does not hold it. */
     if (!(sim->effects & FX_FLUID)) energy_test_due(sim);
     TRY(guards_check(sim, d));

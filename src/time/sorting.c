@@ -81,10 +81,10 @@ void use_skin_left(struct simulation *sim, double speed2_before)
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
                          sim->sorting.shifted;
-    const double other = max2(sim->sorting.solid_move, sim->wall_motion.way);
+    const double other = max2(sim->sorting.solid_move, sim->wall_motion.moved_most);
     for (int side = 0; side < 4; side++) sim->cells.kind[KIND_FLUID].overhang[side] += moved;
     sim->sorting.skin_left -= moved + max2(moved, other);
-    sim->wall_motion.way = 0;
+    sim->wall_motion.moved_most = 0;
 }
 
 static void measure_overhangs(struct simulation *sim, enum kind first)
