@@ -358,13 +358,11 @@ void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energ
 double rigid_hinge_power(const struct rigid *rigid, int k, double dt)
 {
     const struct rigid_body *const body = &rigid->body[k];
-    double power = 0;
+    const double *const by = rigid->state[k].reaction;
     if (body->hinge_motion < 0) return 0;
     const struct motion_point from = hinge_at(rigid, body, rigid->end - dt),
                               to = hinge_at(rigid, body, rigid->end);
-    for (int c = 0; c < 2; c++)
-        power += rigid->state[k].reaction[c] * 0.5 * (from.v[c] + to.v[c]);
-    return power;
+    return 0.5 * (by[0] * (from.v[0] + to.v[0]) + by[1] * (from.v[1] + to.v[1]));
 }
 
 /* What a unit of a force on an end of a spring does to it at most, 1/kg. */

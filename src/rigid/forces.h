@@ -9,8 +9,7 @@ enum err rigid_springs_create(struct rigid *rigid, struct arena *a, struct diag 
 /* Adds that of the springs whose first end a body has. */
 void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energy *sum);
 
-/* Mean power over the step of a wall's motion, which may have a kink, on the body hinged to it,
- * W/m. */
+/* Mean power of a wall's motion, which may have kinks, on the body hinged to it in a step, W/m. */
 double rigid_hinge_power(const struct rigid *rigid, int k, double dt);
 
 /* Position and velocity of a body as its hinge in place or on a wall, or its guide, allows them:
