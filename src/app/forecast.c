@@ -174,8 +174,8 @@ static enum err open_coarse(struct session *coarse, const struct sphfsi_options 
     return e;
 }
 
-/* Its first stretch, until the time of the trial and some more, and all of it. Without rows where a
- * probe does not fit the coarse particles. */
+/* Runs the coarse scene: its first stretch, until the time of the trial and some more, then all of
+ * it. Without rows where a probe does not fit the coarse particles. */
 static void run_coarse(struct stretch *first, struct stretch *whole, struct simulation *sim,
                        double trial_end, double seconds)
 {

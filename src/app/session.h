@@ -48,7 +48,7 @@ struct diag session_diag(const struct sphfsi_options *o);
 
 /* Sends one line to the user, through the message callback. */
 void session_say(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
-/* The same for what --quiet shows, too: what was asked for, and how to go on. */
+/* Says what --quiet shows, too: what was asked for, and how to go on. */
 void session_result(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
 
 /* Sends what `write` writes as one text through the message callback. */
@@ -84,7 +84,7 @@ void manual_example(const struct param *param, char *text, size_t size);
 
 /* --- forecast.c: the cost of a run, from trial steps and a run at a coarser spacing --- */
 
-/* Of the whole run. Wall times on this machine, idle, with the threads of the session, s. */
+/* What a whole run will take. Wall times on this machine, idle, with the session's threads, s. */
 struct forecast {
     double dt;                          /* mean, of the fluid, or of a solid without fluid, s */
     double steps;                       /* of the fluid, or of a solid without fluid */

@@ -61,7 +61,7 @@ struct diag {
 /* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO,
  * ...)`. */
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
-/* The same, but where d holds a failure already, the sentence is added to `more`. */
+/* As diag_fail, but where d holds a failure already, the sentence is added to `more`. */
 enum err diag_add(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
 /* Failures so far. */
 int diag_count(const struct diag *d);
@@ -96,14 +96,14 @@ struct arena {
  * ARENA_MARGIN bytes. */
 void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
     SPHFSI_CHECKED;
-/* The same for the pointer that `to` points at. */
+/* As arena_alloc, for the pointer that `to` points at. */
 enum err arena_place(struct arena *a, void *to, size_t count, size_t size, const char *what,
                      struct diag *d) SPHFSI_CHECKED;
 /* Gives a list of n items, at which `to` points, a place for one more: a larger copy if it is full,
  * as it is at powers of two. The list begins as NULL. */
 enum err arena_grow(struct arena *a, void *to, size_t n, size_t size, const char *what,
                     struct diag *d) SPHFSI_CHECKED;
-/* Both for items of the type that *to points at. */
+/* arena_place and arena_grow for items of the type that *to points at. */
 #define arena_array(a, to, n, what, d) arena_place(a, to, (size_t)(n), sizeof **(to), what, d)
 #define arena_more(a, to, n, what, d) arena_grow(a, to, (size_t)(n), sizeof **(to), what, d)
 void arena_free(struct arena *a);

@@ -12,7 +12,7 @@ static const struct dd half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 static const struct dd ln_2 = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 static const double half_pi_rest = -0x1.f1976b7ed8fbcp-110;
 
-/* Of two doubles, without rounding. */
+/* Sum of two doubles, without rounding. */
 static struct dd sum(double a, double b)
 {
     const double s = a + b, b_in_s = s - a;

@@ -198,8 +198,8 @@ int64_t beams_find_solid(const struct beams *beams, const struct particles *soli
 
 enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Of the whole step from a time on, which follows as one part or several: the motion of the bodies
- * without the beams; after it, what they have had. */
+/* A step may follow as one part or several. Before it: the motion of the bodies in the whole step
+ * from `time` on, without the beams. After it: the impulses that the bodies have had. */
 void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times);
 void beams_return_bodies(struct beams *beams, double dt);
 

@@ -5,7 +5,7 @@
 #include "geometry/motion.h"
 #include "geometry/outline.h"
 
-/* Of the particle spacing: a distance that counts as kept. */
+/* A distance that counts as kept, over the particle spacing. */
 #define KEPT 1e-9
 
 /* A face of a wall or rigid body at the start: a segment, or a circle if `radius` is above 0. */

@@ -4,7 +4,7 @@
 #include "base/cholesky.h"
 #include "rigid/forces.h"
 
-/* Of the particle spacing: a distance that counts as none. */
+/* A distance that counts as none, over the particle spacing. */
 #define JOINED 1e-9
 
 /* A component of a node that a body takes along. */

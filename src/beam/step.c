@@ -6,7 +6,8 @@
 
 #include <float.h>
 
-/* Of the residual over the largest force; of round-off over the largest stiffness. */
+/* Newton's method ends at this residual over the largest force. Round-off over the largest
+ * stiffness. */
 #define TOLERANCE 1e-9
 #define ROUNDING (64 * DBL_EPSILON)
 

@@ -207,7 +207,7 @@ static enum err unknown_in_set(struct reader *r, const char *prefix, int id)
                      e->key, hint);
 }
 
-/* Of the sections that the prefix of --set means, the only one that has the key. */
+/* Finds the only section with the key among those that the prefix of --set means. */
 static enum err find_target(struct reader *r, const char *prefix, int *target)
 {
     const struct entry *const e = r->entry;

@@ -164,7 +164,7 @@ struct scene_line {
     struct line_dummy *dummy; /* [n_dummies] */
 };
 
-/* Of a rigid body, per depth: kg/m, kg m, m. */
+/* Mass of a rigid body, kg/m, its moment of inertia, kg m, and its centre of mass, m. */
 struct rigid_mass {
     double mass, inertia, centre[2];
 };
@@ -292,7 +292,7 @@ struct body_energy {
     double kinetic, potential, elastic, momentum[2], mass, undelivered;
 };
 
-/* Of a spring at an elongation, per depth: the elastic force (N/m), its slope (N/m^2); and the part
+/* The elastic force of a spring at an elongation, N/m, and its slope, N/m^2, per depth; the part
  * `taut` of its mean between two elongations. */
 double spring_force(const struct scene_spring *spring, double e);
 double spring_slope(const struct scene_spring *spring, double e);
@@ -350,7 +350,7 @@ int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, c
                      const double b[2]);
 /* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *scene, int solid);
-/* Its smoothing length, m. */
+/* Smoothing length of a solid, m. */
 double scene_solid_h(const struct scene *scene, int solid);
 /* Gives solids that are bonded to each other, directly or through others, the number of the first
  * of them. */

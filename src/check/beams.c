@@ -3,7 +3,7 @@
  * themselves, in a body, or with a free point on its face. */
 #include "check/check.h"
 
-/* Of dp: lengths along a line and beside it that count as nothing, and between places that are
+/* Lengths over dp: along a line and beside it, that count as nothing; between places that are
  * looked at. */
 static const double ahead = 1e-3, beside = 1e-5, between = 0.02;
 

@@ -145,7 +145,7 @@ static void warn_of_material(struct check *check, int body)
             "has a density of %.4g kg/m^3, less than any foam, so it has hardly any inertia; "
             "rubber has about 1100 kg/m^3",
             b->density);
-    /* Its own weight, or the water beside it. */
+    /* The body is loaded by its own weight or by the water beside it. */
     double water = 0;
     for (int f = 0; f < scene->n_fluid; f++)
         water = max2(water, scene->rho0 * extent_along(scene, KIND_FLUID, f, scene->top.gravity));

@@ -20,8 +20,8 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool substeps;               /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    /* Of the integrator: the stage of the rates that advance the fluid, in steps after the start of
-     * the step; the solid kicks in the middle of its drifts. */
+    /* From the integrator. Stage of the rates that advance the fluid, in steps after the start of
+     * the step. `centred`: the solid kicks in the middle of its drifts. */
     double stage;
     bool centred;
     double lead; /* s: from the last evaluation to the middle of the structure's kicks */

@@ -93,7 +93,7 @@ static bool operate(struct compiler *c, enum op_code code, double value)
 
 static const struct dim pure = {DIM_KNOWN, {0, 0, 0}};
 
-/* Of a sum, a minimum: both must agree; a plain number adopts the other's. */
+/* Units of a sum or a minimum: both must agree; a plain number adopts those of the other. */
 static bool join_dims(struct compiler *c, struct dim *a, const struct dim *b)
 {
     if (a->kind == DIM_ANY || b->kind == DIM_PLAIN) return true;
@@ -133,7 +133,7 @@ static bool pure_argument(struct compiler *c, const char *what, const struct dim
     return fail(c, "%s of %s; it needs a number without a unit", what, dim_text(d).text);
 }
 
-/* Of base^exponent; the exponent, if it is a number, is the last operation. */
+/* Units of base^exponent; the exponent, if it is a number, is the last operation. */
 static bool power_dims(struct compiler *c, struct dim *base, const struct dim *exponent)
 {
     const struct op *const last = &c->op[c->n - 1];

@@ -113,7 +113,7 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
     return found;
 }
 
-/* Of "m/s^2", "1/s", or "1". */
+/* The dimension of a unit such as "m/s^2", "1/s" or "1". */
 struct dim unit_dim(const char *unit)
 {
     const bool inverse = strncmp(unit, "1/", 2) == 0;

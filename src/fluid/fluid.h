@@ -37,7 +37,7 @@ SPHFSI_INLINE double particle_mass(const struct fluid_constants *k,
     return k->mass * relative_mass(particles, i);
 }
 
-/* Its kinetic energy, potential energy in gravity g and compression energy (T-5), J/m. */
+/* Kinetic energy of a particle, potential energy in gravity g, compression energy (T-5), J/m. */
 SPHFSI_INLINE double particle_energy(const struct fluid_constants *k, const double g[2],
                                      const struct particles *particles, int64_t i)
 {
@@ -109,7 +109,7 @@ typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, int32_t first, int32_t end,
                          struct fluid_extremes *top);
 
-/* They for a set of pair effects. */
+/* The sweeps for a set of pair effects. */
 struct fluid_variant {
     const char *name;
     effect_set effects; /* ANY_EFFECTS: generic */

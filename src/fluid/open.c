@@ -52,7 +52,7 @@ struct place {
     double in, along, strip;
 };
 
-/* Of strips. */
+/* Width of a strip, m. */
 static double width_of(const struct open *o, const struct scene_open *b)
 {
     return b->length / max2(1, round(b->length / o->k->dp));

@@ -128,7 +128,7 @@ SPHFSI_INLINE vreal law_repulsion(vreal near, vreal inv, const struct vector_con
     return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
-/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the
+/* The repulsion of a pair that approaches at a speed u: zeta rho0 c0 u, the pressure of the
  * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
 SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal vx,
                                     const struct vector_constants *k)
@@ -170,7 +170,7 @@ SPHFSI_INLINE vreal law_diffused(const struct receiver *a, const struct pair *q,
     return step;
 }
 
-/* Its factor. */
+/* The factor of the density diffusion. */
 SPHFSI_INLINE vreal law_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
                                  struct pair_set effects)
 {

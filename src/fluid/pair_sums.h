@@ -166,7 +166,7 @@ SPHFSI_INLINE four_double own_sum(const struct cluster_sums *s, enum pair_sum wh
     return four_widen(FOUR_REAL(sum));
 }
 
-/* The same sum of the contributions deferred for them; resets it to zero for the next chunk. */
+/* The sum of the contributions deferred for receivers; resets it to zero for the next chunk. */
 SPHFSI_INLINE four_double take_deferred(real *at)
 {
     four_real *const by = (four_real *)(void *)at; /* [receiver] */

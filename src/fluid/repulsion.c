@@ -19,7 +19,7 @@ static double repulsion_held(double r, double r0, double h)
     return sum * (r0 - r);
 }
 
-/* That of a dummy of a kind, times its volume, m^2. */
+/* Repulsion of a dummy of a kind, times its volume, m^2. */
 static double repulsion_of(const struct fluid *fluid, const struct cell_visit *v)
 {
     const enum kind kind = (enum kind)v->kind;

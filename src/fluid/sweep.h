@@ -30,7 +30,7 @@ struct chunk {
     real *deferred; /* scratch of the thread */
 };
 
-/* Of a chunk: largest values, reduced over the SIMD lanes once. */
+/* Largest values in a chunk, reduced over the SIMD lanes once. */
 struct chunk_totals {
     vreal approach;
     four_double acceleration2;

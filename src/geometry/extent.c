@@ -131,7 +131,7 @@ static enum err check_periodic(const struct scene *scene, struct diag *d)
 
 /* --- probes --- */
 
-/* Of a probe in a solid, or on it. */
+/* Checks the point of a probe in or on a solid. */
 static enum err check_body_probe(struct sampler *sampler, const struct scene_probe *probe, int body)
 {
     const struct scene *scene = sampler->scene;

@@ -19,7 +19,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
 
 /* --- motions --- */
 
-/* Its value at t = 0 is subtracted, so that a body starts where it was sampled. */
+/* The displacement at t = 0 is subtracted, so that a body starts where it was sampled. */
 static struct expr_jet displacement_at(const struct scene_expr *of, double t)
 {
     if (!of->e[0]) return (struct expr_jet){0, 0, 0};

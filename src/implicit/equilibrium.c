@@ -4,7 +4,7 @@
 #include "implicit/implicit.h"
 #include "solid/contact.h"
 
-/* Of the residual over the largest force of a particle: it is enough, and it is as good as none. */
+/* Residuals over the largest force of a particle: one that is enough, one as good as none. */
 #define TOLERANCE 1e-7
 #define FINE 1e-12
 

@@ -11,8 +11,7 @@
  * when dt^2 differs from its own by this fraction. It decides on the cost, not on the solution. */
 #define SLOW 0.5
 
-/* Of the residual over the largest force of a particle: floats of the same force have errors of
- * 6e-8. */
+/* Largest residual over the largest force of a particle. Floats of a force have errors of 6e-8. */
 #define TOLERANCE 1e-7
 
 /* Limits of the effort before the step is halved, and before the run stops. */

@@ -21,13 +21,13 @@ struct implicit {
     struct envelope springs; /* of T-28, the same for both components, N/m^2; constant */
     struct envelope matrix;  /* the factors of the last matrix */
     double *unknown;         /* both components, one particle after the other */
-    /* Of hinges, two items each: their forces, N/m; places of their points, m; [2 n][2 n] the
+    /* Two items for each hinge: their forces, N/m; places of their points, m; [2 n][2 n] the
      * displacements that forces give the points, m^2/N; and a vector of unknowns. */
     double *hinge_force, *hinge_place, *flexibility, *column;
     double *start[4]; /* displacement gradient at the start of the step */
     bool factored;
     double period; /* the longest of the bodies about their undeformed state, s */
-    /* Of the last step, or of a load step. */
+    /* The last step, or load step. */
     double left_out; /* part of the forces of the start that a load step leaves out */
     int iterations;  /* solutions with the matrix */
     double residual; /* over the largest force of a particle */

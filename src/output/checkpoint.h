@@ -87,9 +87,9 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SP
  * derived fields (simulation_resume). */
 enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* The same for a case with other physics. Particles are sorted again if the grid is another one; a
- * motion must continue from the present position of its wall; dissipation is counted from this
- * time. */
+/* As checkpoint_apply, for a case with other physics. Particles are sorted again if the grid is
+ * another one; a motion must continue from the present position of its wall; dissipation is counted
+ * from this time. */
 enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Removes the checkpoints of more than `newest` steps, of the others all but the last two, and

@@ -6,7 +6,7 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
-/* Of the beam that a dummy of a line is of, at the place that the dummy lies behind. */
+/* A value of a beam where dummy i of its line is. */
 static double beam_value(enum data what, const struct simulation *sim, const struct thin_line *line,
                          int64_t i)
 {

@@ -299,7 +299,7 @@ static void pose(const struct probe *probe, const struct simulation *sim, double
     rate[2] = (along * to_across - across * to_along) / (square(across) + square(along));
 }
 
-/* Of a rigid body: the angle counts turns. */
+/* The angle of a rigid body counts turns. */
 static void rigid_pose(const struct probe *probe, const struct simulation *sim, double out[3],
                        double rate[3])
 {
@@ -313,8 +313,8 @@ static void rigid_pose(const struct probe *probe, const struct simulation *sim, 
     rate[2] = m.rate;
 }
 
-/* Of its hinge or guide on a rigid body in the last step; of a spring on what its end `to` is fixed
- * to. */
+/* Force of the hinge or guide on a rigid body in the last step, or of a spring on what its end `to`
+ * is fixed to. */
 static void rigid_reaction(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     double at[2];
@@ -374,7 +374,7 @@ static void surface_pressure(const struct probe *probe, const struct simulation 
     fluid_pressure_on(sim, from, to, out);
 }
 
-/* Of a beam: linear between its nodes. */
+/* Values of a beam, linear between its nodes. */
 static void evaluate_beam(const struct probe *probe, const struct simulation *sim, double *row,
                           double *rate)
 {

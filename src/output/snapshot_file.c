@@ -95,8 +95,8 @@ static int64_t integer_value(enum data what, const struct simulation *sim, enum 
     }
 }
 
-/* Those of one column, double or int64_t; rows are the particles of all kinds, in the order of the
- * kinds. */
+/* The values of one column, double or int64_t; rows are the particles of all kinds, in the order of
+ * the kinds. */
 static void values_of(const struct source *source, enum data what, int column, int64_t n,
                       void *values)
 {

@@ -192,7 +192,7 @@ SPHFSI_INLINE struct cell_window cells_window(const struct cells *cells, const d
     return w;
 }
 
-/* Its m-th cell; -1: outside the grid. */
+/* The m-th cell of a window; -1: outside the grid. */
 SPHFSI_INLINE int32_t window_cell(const struct cells *cells, const struct cell_window *w, int m)
 {
     return cell_at(cells, w->first[0] + m % w->n[0], w->first[1] + m / w->n[0]);

@@ -398,7 +398,7 @@ double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)
     return omega2;
 }
 
-/* Of oscillations without fluid and solids, s: a part of their time scale. */
+/* Step for oscillations without fluid and solids, s: a part of their time scale. */
 static double part_of_time(double rate2) { return 1e-3 / sqrt(rate2); }
 
 double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only)

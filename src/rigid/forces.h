@@ -40,7 +40,7 @@ void rigid_solve(struct rigid *rigid, int k, double end, double kick);
 /* The reaction of hinge or guide. */
 void rigid_find_reaction(struct rigid *rigid, int k, double kick);
 
-/* Of the masses of a body alone, as it may move at a time: eq->alone. */
+/* Finds eq->alone, the masses of a body alone as it may move at a time. */
 void rigid_find_alone(struct rigid *rigid, int k, double time);
 
 /* --- relations of a body to another one, to a wall or to a place --- */

@@ -27,7 +27,7 @@ struct rigid_body {
     const struct hinge_point *fixed; /* a hinge in place or on a wall; NULL: none */
     int hinge_motion;                /* of this wall; -1: in place */
     double mean[3];                  /* velocity over the last step, m/s and 1/s */
-    /* Of contact with solids: the force now; its impulse and what it moves in the coming step. */
+    /* Contact with solids: the force now, its impulse, and what it moves in the coming step. */
     double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
     double work, driven, passed;

@@ -12,7 +12,7 @@ static double elastic_energy(double stiffness, double min_reach, double r)
     return stiffness * square(min_reach) * (s - 1 - elementary_log(s));
 }
 
-/* Its derivative, k R (R/r - 1), and its second derivative, k (R/r)^2. */
+/* The derivative of the energy, k R (R/r - 1), and its second derivative, k (R/r)^2. */
 static double elastic_force(double stiffness, double min_reach, double r)
 {
     return stiffness * min_reach * (min_reach / r - 1);
@@ -49,7 +49,7 @@ static void point_force(const struct contact_constants *q, const struct contact_
     f[1] = normal * n[1];
 }
 
-/* The same for an end of the edge. */
+/* The force of an end of the edge. */
 static void end_force(const struct contact_constants *q, const struct contact_closest *closest,
                       const struct contact_point *end, double reach, double f[2])
 {
@@ -93,7 +93,7 @@ static void pair_force(const struct contact *contact, struct contact_pair *pair)
     }
 }
 
-/* Of T-61 at the place s of an edge from a to b where the reach is `reach`. */
+/* Energy of T-61 at the place s of an edge from a to b where the reach is `reach`. */
 static double place_energy(const struct contact_constants *q, const struct contact_closest *closest,
                            const struct contact_point *a, const struct contact_point *b, double s,
                            double reach)

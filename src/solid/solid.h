@@ -161,7 +161,7 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
 
-/* Of n threads, those that step a solid of this size. */
+/* Sets how many of n threads step a solid of this size. */
 void solid_use_threads(struct solid *solid, const struct particles *particles, int n);
 
 /* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
@@ -290,7 +290,7 @@ enum err loads_create(struct solid *solid, struct arena *a, const struct scene *
 /* Finds what the clamps do at a time. */
 void loads_move(struct loads *v, double time);
 
-/* And with it the motion of particle i of a clamp. */
+/* The motion of particle i of a clamp. */
 SPHFSI_INLINE struct motion_point loads_motion(const struct loads *v,
                                                const struct particles *particles, int64_t i)
 {
@@ -356,7 +356,7 @@ void hinges_start(struct hinges *hinges, struct particles *particles);
 void hinges_forces(struct hinges *hinges, struct particles *particles, double time, double dt,
                    bool resisted);
 
-/* The same without dt for accelerations `by`; adds the forces, N/m. */
+/* As hinges_forces without dt, for accelerations `by`; adds the forces, N/m. */
 void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time);
 
 /* Subtracts a field at the points of the hinges from two items of each. */

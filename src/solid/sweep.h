@@ -235,7 +235,7 @@ SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *solid,
                              (sums->stress_y + own_y) * inv_density + pairs.y};
 }
 
-/* The same for a variational body, whose forces of pairs are known. */
+/* The acceleration by stress in a variational body, whose forces of pairs are known. */
 SPHFSI_INLINE struct vvector2 stress_acceleration(const struct solid *solid,
                                                   const struct solid_pack *pack)
 {

@@ -16,7 +16,7 @@ enum err initial_state(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
  * positions at `time`. */
 void evaluate_fluid(struct simulation *sim, double time);
 
-/* The same for the state at the start of a step. Not repeated if output has just evaluated it. The
+/* Evaluates the state at the start of a step. Not repeated if output has just evaluated it. The
  * acoustic damper's density then follows, once a step (T-9b); an evaluation for output changes
  * nothing. */
 void evaluate_start(struct simulation *sim);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/simulation.h"
 
-/* Of a section or region: its share of the ledger, and what only the account has. Doubles only. */
+/* Share of a section or region in the ledger, and what only the account has. Doubles only. */
 struct energies {
     struct ledger row;
     double dummies;   /* compression energy of dummies by their pressure */
@@ -436,8 +436,8 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
     struct energy_gain worst = {.entry = -1};
     const int first_wall = energy_entry(KIND_WALL, 0);
-    /* Of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it
-     * the energy at the start from rest says nothing. */
+    /* Energy of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive.
+     * Beside it the energy at the start from rest says nothing. */
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
     const double driven = sim->effects & FX_OPEN ? flow * (double)sim->kind[KIND_FLUID].n : 0;
     find_energies(sim, of);

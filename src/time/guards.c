@@ -331,7 +331,7 @@ static void check_rigid(struct simulation *sim, struct diag *d)
     }
 }
 
-/* Of dp. Hinges are met to round-off, unless they contradict each other or contact. */
+/* A gap over dp. Hinges are met to round-off, unless they contradict each other or contact. */
 #define HINGE_GAP 1e-3
 
 static enum err check_touches(struct simulation *sim, struct diag *d)

@@ -175,7 +175,7 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* Of rigid bodies and beams alone; beside solids the step is that of solids. */
+/* The step of rigid bodies and beams alone; beside solids the step is that of solids. */
 static void set_step_of_bodies(struct simulation *sim)
 {
     double step = (double)INFINITY;
