@@ -47,7 +47,7 @@ struct beam_state {
     double a[3];       /* change of v over the last step; in fluid the mean of T-35c of that of w */
     double impulse[3]; /* that the fluid has still to receive, N s/m and N s (T-105b) */
     double pushed[3];  /* mean of the fluid's force (T-36a), N/m and N */
-    double exchange;   /* time T_e in which the fluid receives the impulse (T-35e), s */
+    double exchange_time; /* time T_e in which the fluid receives the impulse (T-35e), s */
     double reaction[3]; /* of a clamp or hinge in the last step, N/m and N */
 };
 enum { BEAM_NUMBERS = sizeof(struct beam_state) / sizeof(double) };
@@ -80,8 +80,8 @@ struct beam_step {
 struct beam {
     const struct scene_beam *given;
     int first_node, end_node, first_element, end_element;
-    double work;     /* of loads, clamps and hinges in the last step, J/m */
-    double received; /* work of the fluid in it, J/m */
+    double driven;   /* work of loads, clamps and hinges in the last step, J/m */
+    double received; /* that of the fluid, J/m */
 };
 
 /* A node that a [load] acts on: its part of the force and moment, or the length for a traction. */

@@ -411,7 +411,7 @@ void beams_finish_touches(struct beams *beams, double time, double dt)
         struct beam *const beam = &beams->beam[beams->node[t->node[0]].beam];
         if (!(t->force > 0) || t->wall < 0) continue;
         if (t->wall < rigid_wall) {
-            beam->work += t->force * t->moved;
+            beam->driven += t->force * t->moved;
             continue;
         }
         const double force[2] = {-t->force * t->normal[0], -t->force * t->normal[1]};

@@ -265,9 +265,9 @@ static void finish(struct beams *beams, double time, double dt)
             const double heavy = c < 2 && beam->given->gravity ? node->mass[c] * g[c] : 0;
             if (node->row[c] < 0) now->x[c] = x[c];
             now->reaction[c] = 0;
-            beam->work += (s->load[c] - heavy) * s->d[c];
+            beam->driven += (s->load[c] - heavy) * s->d[c];
         }
-        beam->work += finish_held(beams, k, v, dt);
+        beam->driven += finish_held(beams, k, v, dt);
         for (int c = 0; c < 3 && !beams->line; c++) now->a[c] = (now->v[c] - s->v[c]) / dt;
     }
 }
@@ -296,7 +296,7 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
 void beams_advance(struct beams *beams, double time, const struct beam_times *times)
 {
     beams->iterations = 0;
-    for (int k = 0; k < beams->n; k++) beams->beam[k].work = beams->beam[k].received = 0;
+    for (int k = 0; k < beams->n; k++) beams->beam[k].driven = beams->beam[k].received = 0;
     beams_take_bodies(beams, time, times);
     beams->failed |= !step(beams, time, times, HALVINGS);
     beams_return_bodies(beams, times->dt);

@@ -42,7 +42,7 @@ enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *li
     }
     /* Longer than any step. */
     for (int k = 0; k < beams->n_nodes; k++)
-        beams->state[k].exchange = beams->scene->h / beams->scene->c0;
+        beams->state[k].exchange_time = beams->scene->h / beams->scene->c0;
     beams_place(beams, 0);
     return ERR_OK;
 }
@@ -220,7 +220,7 @@ void beams_find_fluid(struct beams *beams, const struct beam_times *times)
 {
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_state *const now = &beams->state[k];
-        for (int c = 0; c < 3; c++) beams->step[k].fluid[c] = -now->impulse[c] / now->exchange;
+        for (int c = 0; c < 3; c++) beams->step[k].fluid[c] = -now->impulse[c] / now->exchange_time;
     }
     memset(beams->added, 0, (size_t)beams->n_elements * sizeof *beams->added);
     for (int k = 0; k < beams->n; k++) {
@@ -249,14 +249,14 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
 
 void beams_return_impulse(struct beams *beams, const struct beam_times *times)
 {
-    const double dt = times->dt, before = beams->state[0].exchange,
+    const double dt = times->dt, before = beams->state[0].exchange_time,
                  after = exchange_time_after(before, dt), left = 1 - times->kick / before,
                  weight =
                      acceleration_weight(beams->scene->h / beams->scene->c0, 1 + beams->stage, dt);
     for (int k = 0; k < beams->n_nodes; k++) {
         struct beam_state *const now = &beams->state[k];
         struct beam_step *const s = &beams->step[k];
-        now->exchange = after;
+        now->exchange_time = after;
         for (int c = 0; c < 3; c++) {
             now->impulse[c] = left * now->impulse[c] - dt * s->resisted[c];
             beams->beam[beams->node[k].beam].received += (s->fluid[c] - s->resisted[c]) * s->d[c];

@@ -7,7 +7,7 @@
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest)
 {
     const bool impedance = effects & FX_IMPEDANCE;
-    coupling->substeps = effects & FX_MULTIRATE;
+    coupling->multirate = effects & FX_MULTIRATE;
     coupling->impedance = impedance ? coupling->scene->rho0 * coupling->scene->c0 : 0;
     coupling->solid->kick = impedance ? impedance_kick : solid_free_kick;
     if (!impedance) *coupling->exchange_time = 0;

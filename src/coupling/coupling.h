@@ -12,13 +12,13 @@ typedef void force_sweep(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, bool all);
 extern force_sweep find_force_mixed, find_force_double;
 
-/* All but `substeps`, `impedance` and `lead` are set by its owner. */
+/* All but `multirate`, `impedance` and `lead` are set by its owner. */
 struct coupling {
     const struct scene *scene;
     const struct fluid *fluid;
     struct solid *solid;
     struct particles *particles; /* of the solid */
-    bool substeps;               /* the structure takes several steps in one of the fluid */
+    bool multirate;              /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
     /* From the integrator. Stage of the rates that advance the fluid, in steps after the start of
      * the step. `centred`: the solid kicks in the middle of its drifts. */
@@ -74,7 +74,7 @@ SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
  * extrapolates nothing. */
 SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
 {
-    return coupling->substeps ? 1 + 2 * coupling->stage : 1;
+    return coupling->multirate ? 1 + 2 * coupling->stage : 1;
 }
 
 /* Weight of the acceleration of a step of dt in the mean. */

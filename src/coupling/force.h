@@ -61,12 +61,12 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
             stress = stress + law_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
         if (effects & FX_WALL_DAMPING)
             stress = stress + law_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.v_xi, k);
-        const vreal g = q.slope * stress;
+        const vreal g = q.weight * stress;
         sum_x[part] = vfma(g, q.x, sum_x[part]);
         sum_y[part] = vfma(g, q.y, sum_y[part]);
         if (!(effects & FX_IMPEDANCE)) continue;
-        wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
-        wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
+        wet_x[part] = vfma(q.weight, q.x, wet_x[part]);
+        wet_y[part] = vfma(q.weight, q.y, wet_y[part]);
     }
     add_force(sum_x, sum_y, PAIR_SLOPE * fluid->k.h, volume, force[0], force[1]);
     if (effects & FX_IMPEDANCE)

@@ -186,9 +186,9 @@ struct fluid {
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
     struct lines lines; /* thin lines; unused without any */
-    /* s: the next evaluation is for the state so much later by the rates of the last (Eqs. 22 and
-     * 24a), of which the particles keep only dens, as dens0. */
-    double prediction;
+    /* s: the sweeps pack the state predicted by so much (Eqs. 22, 24a), of which the particles keep
+     * only dens, as dens0; 0: the present one. */
+    double predict_by;
     bool keeps_slopes; /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed; /* packed positions of walls at rest are valid */
     struct cells_around *around;    /* [active cells of fluid]: those behind, and of other chunks */

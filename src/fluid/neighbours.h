@@ -161,10 +161,10 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const s
  * three columns and rows of cells around. */
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
-    vreal slope_x, slope_y; /* -h/2 times the gradient of dens, if it is used */
-    vreal specific;         /* of PACKED_SPECIFIC, with artificial viscosity */
-    vreal line;             /* of a dummy: the line that has to lie between, or 0 */
-    int n_pieces;           /* of thin lines near its cell */
+    vreal dens_x, dens_y; /* -h/2 times the gradient of dens, if it is used */
+    vreal specific;       /* of PACKED_SPECIFIC, with artificial viscosity */
+    vreal line;           /* of a dummy: the line that has to lie between, or 0 */
+    int n_pieces;         /* of thin lines near its cell */
     const struct near_piece *piece; /* NULL: the scene has no thin lines */
 };
 
@@ -174,9 +174,9 @@ struct pair {
     vreal r2;      /* |xi_ab|^2 */
     vreal u, v;    /* v_ab, m/s */
     vreal v_xi;    /* v_ab . xi_ab, m/s */
-    vreal slope;   /* V_b/h^2 t^3; in the sums of the fluid times V_a/h^2 */
+    vreal weight;  /* V_b/h^2 t^3; in the sums of the fluid times V_a/h^2 */
     vreal p, dens; /* of b */
-    vreal slope_x, slope_y;
+    vreal dens_x, dens_y;
 };
 
 /* Receivers from their packed fields: geometry only. */
@@ -218,8 +218,7 @@ SPHFSI_INLINE vreal vpick(vmask mask, vreal yes, vreal no)
     return (vreal)(((vmask)yes & mask) | ((vmask)no & ~mask));
 }
 
-/* T-110: how much of a pair with the separation (x, y) is seen if `line` has to lie between both.
- */
+/* T-110: how much of a pair with the separation (x, y) is seen if `line` has to lie between. */
 SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal line)
 {
     vreal clear = vset(1), seen = vset(0), passes = vset(1);
@@ -280,7 +279,7 @@ SPHFSI_INLINE vreal weight_seen(const struct receiver *a, const struct separatio
     return a->piece ? weight * d->seen : weight;
 }
 
-/* Geometry of the pairs, Eq. 5, with the volume in their slope; and with the line that has to lie
+/* Geometry of the pairs, Eq. 5, with the volume in their weight; and with the line that has to lie
  * between (T-110). */
 SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b,
                                     vreal volume, vreal line)
@@ -290,8 +289,8 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, con
     separate(a, code, b, line, &q.x, &q.y, &seen);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
-    q.slope = (volume * t) * (t * t);
-    if (a->piece) q.slope = q.slope * seen;
+    q.weight = (volume * t) * (t * t);
+    if (a->piece) q.weight = q.weight * seen;
     q.u = a->u - lane(b, PACKED_U);
     q.v = a->v - lane(b, PACKED_V);
     q.v_xi = vfma(q.v, q.y, q.u * q.x);

@@ -49,7 +49,7 @@ struct packing {
     double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
     double slope;          /* factor of the gradient of dens, m */
     double per_viscosity;  /* 1/(-2 alpha c0 rho0) of Eq. 7, m^2 s/kg */
-    double prediction;     /* s */
+    double predict_by;     /* s */
     effect_set effects;
     bool keeps_slopes;
 };
@@ -64,7 +64,7 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             k->rho0 * square(k->c0),
                             -0.5 * k->h,
                             -0.5 / (k->model->artificial_viscosity * k->c0 * k->rho0),
-                            fluid->prediction,
+                            fluid->predict_by,
                             *fluid->effects,
                             *fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
@@ -96,12 +96,12 @@ SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles
 {
     four_double dens = FOUR(particles->dens, i), x = FOUR(particles->x, i),
                 y = FOUR(particles->y, i), u = FOUR(particles->vx, i), v = FOUR(particles->vy, i);
-    if (by->prediction > 0) {
-        x = x + by->prediction * u; /* Eq. 22a */
-        y = y + by->prediction * v;
-        u = u + by->prediction * FOUR(particles->ax, i); /* Eq. 22b */
-        v = v + by->prediction * FOUR(particles->ay, i);
-        dens = dens + by->prediction * FOUR(particles->ddens, i); /* Eq. 24a */
+    if (by->predict_by > 0) {
+        x = x + by->predict_by * u; /* Eq. 22a */
+        y = y + by->predict_by * v;
+        u = u + by->predict_by * FOUR(particles->ax, i); /* Eq. 22b */
+        v = v + by->predict_by * FOUR(particles->ay, i);
+        dens = dens + by->predict_by * FOUR(particles->ddens, i); /* Eq. 24a */
         store_four(particles->dens0 + i, dens, count);
     }
     put_four(out, PACKED_X, (x - centre[0]) * by->inv_h);

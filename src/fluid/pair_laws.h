@@ -16,7 +16,7 @@
 /* The contribution of a pair to its receiver: factors of xi, v and v.xi, whose products the sums
  * take with one rounding. The candidate gets the opposite, except for the rate and div_r, which are
  * even. With the volumes of both, over h^4. */
-struct exchange {
+struct pair_terms {
     struct pair pair;
     vreal radial; /* of xi in the forces, Pa */
     vreal drag;   /* of -v in the forces, kg/(m^2 s) */
@@ -64,9 +64,9 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
 }
 
 /* Eq. 4a: factor of v.xi in the sum of V_b v_ab . grad W. */
-SPHFSI_INLINE vreal law_continuity(const struct pair *q) { return q->slope; }
+SPHFSI_INLINE vreal law_continuity(const struct pair *q) { return q->weight; }
 
-/* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the slope of the pair. */
+/* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the weight of the pair. */
 SPHFSI_INLINE vreal law_pressure(const struct receiver *a, const struct pair *q)
 {
     return a->p + q->p;
@@ -130,10 +130,10 @@ SPHFSI_INLINE vreal law_repulsion(vreal near, vreal inv, const struct vector_con
 
 /* The repulsion of a pair that approaches at a speed u: zeta rho0 c0 u, the pressure of the
  * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
-SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal vx,
+SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal v_xi,
                                     const struct vector_constants *k)
 {
-    const vreal speed = -(vmin(vx, vset(0)) * vsqrt(inv));
+    const vreal speed = -(vmin(v_xi, vset(0)) * vsqrt(inv));
     return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
@@ -143,7 +143,7 @@ SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal vx,
  * The factor of -v_ab. This kernel's gradient needs no division by |x|^2. */
 SPHFSI_INLINE vreal law_laminar(const struct pair *q, const struct vector_constants *k)
 {
-    return k->laminar * q->slope;
+    return k->laminar * q->weight;
 }
 
 /* Eq. 28b: the pair's rate of approach or separation. */
@@ -166,7 +166,7 @@ SPHFSI_INLINE vreal law_diffused(const struct receiver *a, const struct pair *q,
     vreal step = a->dens - q->dens;
     if (PAIR_HAS(effects, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
     if (PAIR_HAS(effects, ANTUONO))
-        step = vfma(a->slope_y + q->slope_y, q->y, vfma(a->slope_x + q->slope_x, q->x, step));
+        step = vfma(a->dens_y + q->dens_y, q->y, vfma(a->dens_x + q->dens_x, q->x, step));
     return step;
 }
 
@@ -174,7 +174,7 @@ SPHFSI_INLINE vreal law_diffused(const struct receiver *a, const struct pair *q,
 SPHFSI_INLINE vreal law_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
                                  struct pair_set effects)
 {
-    const vreal mixing = q->slope * (q->r2 * inv);
+    const vreal mixing = q->weight * (q->r2 * inv);
     return PAIR_HAS(effects, LIMITER) ? mixing * law_limiter(q, inv, k) : mixing;
 }
 
@@ -182,7 +182,7 @@ SPHFSI_INLINE vreal law_diffusion(const struct pair *q, vreal inv, const struct 
  * - sum of V_b x_ab . grad W. */
 SPHFSI_INLINE void law_concentration(const struct pair *q, vreal sum[SUMS])
 {
-    sum[SUM_GRAD_C_X] = vfma(q->slope, q->x, sum[SUM_GRAD_C_X]);
-    sum[SUM_GRAD_C_Y] = vfma(q->slope, q->y, sum[SUM_GRAD_C_Y]);
-    sum[SUM_DIV_R] = vfma(q->slope, q->r2, sum[SUM_DIV_R]);
+    sum[SUM_GRAD_C_X] = vfma(q->weight, q->x, sum[SUM_GRAD_C_X]);
+    sum[SUM_GRAD_C_Y] = vfma(q->weight, q->y, sum[SUM_GRAD_C_Y]);
+    sum[SUM_DIV_R] = vfma(q->weight, q->r2, sum[SUM_DIV_R]);
 }

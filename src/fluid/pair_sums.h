@@ -11,8 +11,8 @@ struct cluster_sums {
 
 /* Adds pairs to the sums of their receivers, or to those deferred for their candidates, which may
  * be `fluid` or dummies. */
-SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struct pair_set effects,
-                                bool fluid)
+SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
+                                  struct pair_set effects, bool fluid)
 {
     const struct pair *const q = &e->pair;
     sum[SUM_X] = vfma(e->radial, q->x, sum[SUM_X]);
@@ -27,7 +27,7 @@ SPHFSI_INLINE void add_exchange(vreal sum[SUMS], const struct exchange *e, struc
     if (PAIR_HAS(effects, SHIFTING)) law_concentration(q, sum);
 }
 
-/* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the
+/* Pairs with the volumes of both sides, as struct pair_terms has them, and the pressure of the
  * candidates. */
 SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b,
                                        vreal line)
@@ -39,11 +39,11 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
 
 /* Contributions of pairs of receivers and candidates; in specialised sweeps the effects are a
  * constant. */
-SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k,
-                                            struct pair_set effects, vreal *approach)
+SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t code,
+                                              const real *b, const struct vector_constants *k,
+                                              struct pair_set effects, vreal *approach)
 {
-    struct exchange e = {.pair = pair_between(a, code, b, vset(0))};
+    struct pair_terms e = {.pair = pair_between(a, code, b, vset(0))};
     struct pair *const q = &e.pair;
     e.rate = law_continuity(q);
     vreal stress = law_pressure(a, q), inv;
@@ -58,14 +58,14 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     if (PAIR_HAS(effects, DIFFUSION)) {
         q->dens = lane(b, PACKED_DENS);
         if (PAIR_HAS(effects, ANTUONO)) {
-            q->slope_x = lane(b, PACKED_SLOPE_X);
-            q->slope_y = lane(b, PACKED_SLOPE_Y);
+            q->dens_x = lane(b, PACKED_SLOPE_X);
+            q->dens_y = lane(b, PACKED_SLOPE_Y);
         }
         e.step = law_diffused(a, q, k, effects);
         e.mixing = law_diffusion(q, inv, k, effects);
     }
     if (PAIR_HAS(effects, TENSILE)) stress = stress + law_tensile(a, q, k);
-    e.radial = q->slope * stress;
+    e.radial = q->weight * stress;
     if (PAIR_HAS(effects, LAMINAR)) e.drag = law_laminar(q, k);
     *approach = vmax(*approach, law_approach(q, inv));
     return e;
@@ -85,11 +85,11 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 }
 
 /* Adds pairs of fluid to the sums deferred for their candidates. */
-SPHFSI_INLINE void defer_exchange(real *at, const struct exchange *e, struct pair_set effects)
+SPHFSI_INLINE void defer_pair_terms(real *at, const struct pair_terms *e, struct pair_set effects)
 {
     vreal sum[SUMS];
     for (int k = 0; k < pair_sums(effects.bits); k++) sum[k] = vload(DEFERRED(at, k));
-    add_exchange(sum, e, effects, true);
+    add_pair_terms(sum, e, effects, true);
     for (int k = 0; k < pair_sums(effects.bits); k++) vstore(DEFERRED(at, k), sum[k]);
 }
 
@@ -104,21 +104,22 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
         const size_t place = deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
         real *const at = chunk->deferred + place * deferred_stride(effects) + part * LANES;
         for (int row = 0; row < ROWS; row++) {
-            const struct exchange e = pair_of_fluid(&a[row], code, b, k, effects, &sums->approach);
-            add_exchange(sums->of[row][part], &e, effects, true);
-            defer_exchange(at + row * GROUPS * CLUSTER, &e, effects);
+            const struct pair_terms e =
+                pair_of_fluid(&a[row], code, b, k, effects, &sums->approach);
+            add_pair_terms(sums->of[row][part], &e, effects, true);
+            defer_pair_terms(at + row * GROUPS * CLUSTER, &e, effects);
         }
     }
 }
 
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid
  * sticks. */
-SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k,
-                                            struct pair_set effects, vreal *approach)
+SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t code,
+                                              const real *b, const struct vector_constants *k,
+                                              struct pair_set effects, vreal *approach)
 {
     const vreal line = PAIR_HAS(effects, THIN) ? lane(b, PACKED_LINE) : vset(0);
-    struct exchange e = {.pair = pair_between(a, code, b, line)};
+    struct pair_terms e = {.pair = pair_between(a, code, b, line)};
     struct pair *const q = &e.pair;
     e.rate = PAIR_HAS(effects, ONE_SIDED) ? law_one_sided_rate(q) : law_continuity(q);
     const vreal inv = vset(1) / (q->r2 + k->eta2);
@@ -129,7 +130,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     if (PAIR_HAS(effects, REPULSION)) stress = stress + law_repulsion(lane(b, PACKED_NEAR), inv, k);
     if (PAIR_HAS(effects, WALL_DAMPING))
         stress = stress + law_wall_damping(lane(b, PACKED_NEAR), inv, q->v_xi, k);
-    e.radial = q->slope * stress;
+    e.radial = q->weight * stress;
     *approach = vmax(*approach, law_approach(q, inv));
     if (PAIR_HAS(effects, THIN)) law_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
     if (PAIR_HAS(effects, NO_SLIP)) {
@@ -148,8 +149,9 @@ SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct
     EACH_CANDIDATE(neighbours, part, code, b)
     {
         for (int row = 0; row < ROWS; row++) {
-            const struct exchange e = pair_of_dummy(&a[row], code, b, k, effects, &sums->approach);
-            add_exchange(sums->of[row][part], &e, effects, false);
+            const struct pair_terms e =
+                pair_of_dummy(&a[row], code, b, k, effects, &sums->approach);
+            add_pair_terms(sums->of[row][part], &e, effects, false);
         }
     }
 }

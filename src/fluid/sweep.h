@@ -57,7 +57,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                                const struct vector_constants *k, struct pair_set effects,
                                struct chunk_totals *top)
 {
-    four_double full = 1 + FOUR(fluid->prediction > 0 ? particles->dens0 : particles->dens, i);
+    four_double full = 1 + FOUR(fluid->predict_by > 0 ? particles->dens0 : particles->dens, i);
     four_double factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(effects, MASSES)) { /* all sums contain the volume of the particle itself */
@@ -99,8 +99,8 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
     if (PAIR_HAS(effects, VISCOSITY)) a.specific = vspread(own + PACKED_SPECIFIC * CLUSTER);
     if (PAIR_HAS(effects, ANTUONO)) {
-        a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
-        a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
+        a.dens_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
+        a.dens_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
     }
     return a;
 }

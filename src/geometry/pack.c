@@ -132,8 +132,8 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
 /* --- particles --- */
 
 /* All regions together. */
-struct packing {
-    struct sampler *g;
+struct settling {
+    struct sampler *sampler;
     struct point_grid cells, air; /* cut by an edge; near them, perhaps outside all shapes */
     int64_t n, n_free;            /* points; those that may move come first */
     double *x, *y, *volume;
@@ -143,9 +143,9 @@ struct packing {
 
 /* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
  * filled when the sum of the shares exceeds the number of filled cells by a half. */
-static enum err refill(struct packing *packing, const struct cut_cells *c, struct scene_points *to)
+static enum err refill(struct settling *s, const struct cut_cells *c, struct scene_points *to)
 {
-    const struct scene_points *const from = &packing->g->scene->points[KIND_FLUID];
+    const struct scene_points *const from = &s->sampler->scene->points[KIND_FLUID];
     const struct scene_lattice *const l = &c->region->lattice;
     for (int64_t k = 0; k < from->n; k++) {
         double cell[2];
@@ -158,8 +158,8 @@ static enum err refill(struct packing *packing, const struct cut_cells *c, struc
     }
     double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
-        TRY(point_grid_add(&packing->cells, c->grid.x[k], c->grid.y[k], &packing->g->temp,
-                           packing->g->diag));
+        TRY(point_grid_add(&s->cells, c->grid.x[k], c->grid.y[k], &s->sampler->temp,
+                           s->sampler->diag));
         excess += c->share[k];
         if (excess < 0.5) continue;
         excess--;
@@ -173,9 +173,9 @@ static enum err refill(struct packing *packing, const struct cut_cells *c, struc
 }
 
 /* Fluid that begins nearer to a thin line than half a spacing: its cells are cut. */
-static enum err visit_lines(struct packing *packing)
+static enum err visit_lines(struct settling *s)
 {
-    const struct scene *const scene = packing->g->scene;
+    const struct scene *const scene = s->sampler->scene;
     const struct scene_points *const p = &scene->points[KIND_FLUID];
     const double near = (0.5 - beside_line) * scene->top.dp;
     for (int64_t k = 0; k < p->n && scene->n_line; k++) {
@@ -183,26 +183,27 @@ static enum err visit_lines(struct packing *packing)
         double cell[2];
         if (geometry_line_distance(scene, at) >= near) continue;
         cell_of_place(&scene->lattice, at[0], at[1], cell);
-        TRY(point_grid_add(&packing->cells, cell[0], cell[1], &packing->g->temp, packing->g->diag));
+        TRY(point_grid_add(&s->cells, cell[0], cell[1], &s->sampler->temp, s->sampler->diag));
     }
     return ERR_OK;
 }
 
 /* Whether a position is within `reach` smoothing lengths of a cut cell. */
-static bool beside(const struct packing *packing, double x, double y, double reach)
+static bool beside(const struct settling *s, double x, double y, double reach)
 {
-    const struct scene *const scene = packing->g->scene;
+    const struct scene *const scene = s->sampler->scene;
     double at[2];
     cell_of_place(&scene->lattice, x, y, at);
-    return point_grid_any(&packing->cells, at[0], at[1], reach * scene->h / scene->top.dp);
+    return point_grid_any(&s->cells, at[0], at[1], reach * scene->h / scene->top.dp);
 }
 
 /* What covers a place in the lattice: a shape of fluid, any other, or none. */
 enum cover { COVER_NONE, COVER_FLUID, COVER_BODY };
 
-static enum cover cover_of(const struct sampler *sampler, const double cell[2], double at[2])
+static enum cover cover_of(const struct sampler *sampler, const double cell[2])
 {
     enum cover found = COVER_NONE;
+    double at[2];
     place_of_cell(&sampler->scene->lattice, cell, at);
     for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
         if (geometry_covers(&sampler->regions[r], at[0], at[1]))
@@ -214,130 +215,125 @@ static enum cover cover_of(const struct sampler *sampler, const double cell[2], 
  * fluid. Beside walls and bodies, whose particles are not in the lattice, it is the share of
  * points in it. Their rows and columns differ in number, so that an edge along the diagonal meets
  * one of them at most. */
-static double air_share(const struct sampler *sampler, const double cell[2], double at[2])
+static double air_share(const struct sampler *sampler, const double cell[2])
 {
     enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
     int air = 0, body = 0;
     for (int k = 0; k < COLUMNS * ROWS_OF_CELL; k++) {
         const double part[2] = {cell[0] + (k % COLUMNS + 0.5) / COLUMNS - 0.5,
                                 cell[1] + (k / COLUMNS + 0.5) / ROWS_OF_CELL - 0.5};
-        const enum cover cover = cover_of(sampler, part, at);
+        const enum cover cover = cover_of(sampler, part);
         air += cover == COVER_NONE;
         body += cover == COVER_BODY;
     }
-    const enum cover centre = cover_of(sampler, cell, at);
-    return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : centre == COVER_NONE;
+    return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : cover_of(sampler, cell) == COVER_NONE;
 }
 
 /* Cells of the lattice count as points by their share outside all shapes, so that nothing moves
  * into the air. */
-static enum err add_air(struct packing *packing)
+static enum err add_air(struct settling *s)
 {
-    const struct sampler *const sampler = packing->g;
+    struct sampler *const sampler = s->sampler;
     const int64_t around =
         (int64_t)ceil(2 * KERNEL_REACH * sampler->scene->h / sampler->scene->top.dp);
-    for (int64_t k = 0; k < packing->cells.n; k++)
+    for (int64_t k = 0; k < s->cells.n; k++)
         for (int64_t j = -around; j <= around; j++)
             for (int64_t i = -around; i <= around; i++) {
-                const double cell[2] = {packing->cells.x[k] + (double)i,
-                                        packing->cells.y[k] + (double)j};
-                if (!point_grid_any(&packing->air, cell[0], cell[1], 0.1))
-                    TRY(point_grid_add(&packing->air, cell[0], cell[1], &packing->g->temp,
+                const double cell[2] = {s->cells.x[k] + (double)i, s->cells.y[k] + (double)j};
+                if (!point_grid_any(&s->air, cell[0], cell[1], 0.1))
+                    TRY(point_grid_add(&s->air, cell[0], cell[1], &sampler->temp,
                                        sampler->diag));
             }
     return ERR_OK;
 }
 
-static void add_point(struct packing *packing, double x, double y, double volume)
+static void add_point(struct settling *s, double x, double y, double volume)
 {
-    packing->x[packing->n] = x;
-    packing->y[packing->n] = y;
-    packing->volume[packing->n++] = volume;
+    s->x[s->n] = x;
+    s->y[s->n] = y;
+    s->volume[s->n++] = volume;
 }
 
 /* The points that take part: fluid within the kernel's reach of a cut cell moves, all else
  * stays. */
-static enum err gather(struct packing *packing)
+static enum err gather(struct settling *s)
 {
-    const struct sampler *const sampler = packing->g;
+    struct sampler *const sampler = s->sampler;
     const struct scene *const scene = sampler->scene;
-    size_t n = (size_t)packing->air.n;
+    size_t n = (size_t)s->air.n;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)scene->points[kind].n;
-    TRY(geometry_array(packing->g, &packing->x, n));
-    TRY(geometry_array(packing->g, &packing->y, n));
-    TRY(geometry_array(packing->g, &packing->volume, n));
-    TRY(geometry_array(packing->g, &packing->particle, n));
-    TRY(geometry_array(packing->g, &packing->line, n));
+    TRY(geometry_array(sampler, &s->x, n));
+    TRY(geometry_array(sampler, &s->y, n));
+    TRY(geometry_array(sampler, &s->volume, n));
+    TRY(geometry_array(sampler, &s->particle, n));
+    TRY(geometry_array(sampler, &s->line, n));
     for (int fixed = 0; fixed < 2; fixed++) {
         for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
             const struct scene_points *const from = &scene->points[kind];
             for (int64_t k = 0; k < from->n; k++) {
                 const bool moves =
-                    kind == KIND_FLUID && beside(packing, from->x[k], from->y[k], KERNEL_REACH);
+                    kind == KIND_FLUID && beside(s, from->x[k], from->y[k], KERNEL_REACH);
                 if (moves == (fixed == 1) ||
-                    !beside(packing, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
+                    !beside(s, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
                     continue;
-                if (moves) packing->particle[packing->n] = k;
-                if (kind == KIND_WALL) packing->line[packing->n] = scene_line_of(scene, k);
+                if (moves) s->particle[s->n] = k;
+                if (kind == KIND_WALL) s->line[s->n] = scene_line_of(scene, k);
                 const double dp =
                     kind == KIND_SOLID ? scene_solid_dp(scene, from->body[k]) : scene->top.dp;
-                add_point(packing, from->x[k], from->y[k], square(dp));
+                add_point(s, from->x[k], from->y[k], square(dp));
             }
         }
-        if (!fixed) packing->n_free = packing->n;
+        if (!fixed) s->n_free = s->n;
     }
-    for (int64_t k = 0; k < packing->air.n; k++) {
+    for (int64_t k = 0; k < s->air.n; k++) {
+        const double cell[2] = {s->air.x[k], s->air.y[k]}, share = air_share(sampler, cell);
         double at[2];
-        const double share =
-            air_share(sampler, (const double[]){packing->air.x[k], packing->air.y[k]}, at);
-        if (share > 0) add_point(packing, at[0], at[1], share * square(scene->top.dp));
+        place_of_cell(&scene->lattice, cell, at);
+        if (share > 0) add_point(s, at[0], at[1], share * square(scene->top.dp));
     }
     return ERR_OK;
 }
 
 /* Minus the gradient of C, 1/m (T-80). */
-static void push(const struct packing *packing, const struct point_grid *t, int64_t k,
-                 double sum[2])
+static void push(const struct settling *s, const struct point_grid *t, int64_t k, double sum[2])
 {
-    const double h = packing->g->scene->h, x = packing->x[k], y = packing->y[k];
+    const double h = s->sampler->scene->h, x = s->x[k], y = s->y[k];
     sum[0] = sum[1] = 0;
     struct point_visit v = point_grid_visit(t, x, y, KERNEL_REACH * h);
     while (point_grid_next(t, &v)) {
-        const double from[2] = {x, y}, to[2] = {packing->x[v.k], packing->y[v.k]};
-        if (geometry_between(packing->g->scene, from, to) != packing->line[v.k]) continue;
-        const double dx = x - packing->x[v.k], dy = y - packing->y[v.k],
-                     r = sqrt(dx * dx + dy * dy);
-        const double factor = -packing->volume[v.k] * kernel_slope(r, h);
+        const double from[2] = {x, y}, to[2] = {s->x[v.k], s->y[v.k]};
+        if (geometry_between(s->sampler->scene, from, to) != s->line[v.k]) continue;
+        const double dx = x - s->x[v.k], dy = y - s->y[v.k], r = sqrt(dx * dx + dy * dy);
+        const double factor = -s->volume[v.k] * kernel_slope(r, h);
         sum[0] += factor * dx;
         sum[1] += factor * dy;
     }
 }
 
 /* The shifts of T-80. */
-static enum err settle(struct packing *packing)
+static enum err settle(struct settling *s)
 {
-    const struct sampler *const sampler = packing->g;
+    struct sampler *const sampler = s->sampler;
     const double h = sampler->scene->h, dp = sampler->scene->top.dp;
     struct point_grid t;
-    TRY(point_grid_create(&t, KERNEL_REACH * h, packing->n, packing->x, packing->y,
-                          &packing->g->temp, sampler->diag));
+    TRY(point_grid_create(&t, KERNEL_REACH * h, s->n, s->x, s->y, &sampler->temp, sampler->diag));
     double(*move)[2];
-    TRY(geometry_array(packing->g, &move, packing->n_free + 1));
+    TRY(geometry_array(sampler, &move, s->n_free + 1));
     double largest = HUGE_VAL;
     for (int step = 0; step < max_shifts && largest > still * dp; step++) {
         largest = 0;
         point_grid_clear(&t);
-        for (int64_t k = 0; k < packing->n; k++) point_grid_insert(&t, k);
-        for (int64_t k = 0; k < packing->n_free; k++) push(packing, &t, k, move[k]);
-        for (int64_t k = 0; k < packing->n_free; k++) {
+        for (int64_t k = 0; k < s->n; k++) point_grid_insert(&t, k);
+        for (int64_t k = 0; k < s->n_free; k++) push(s, &t, k, move[k]);
+        for (int64_t k = 0; k < s->n_free; k++) {
             for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);
             const double length = elementary_hypot(move[k][0], move[k][1]);
             const double part = min2(1, longest * dp / max2(length, 1e-300));
-            const double from[2] = {packing->x[k], packing->y[k]},
+            const double from[2] = {s->x[k], s->y[k]},
                          to[2] = {from[0] + part * move[k][0], from[1] + part * move[k][1]};
             if (geometry_between(sampler->scene, from, to)) continue; /* a thin line stops it */
-            packing->x[k] = to[0];
-            packing->y[k] = to[1];
+            s->x[k] = to[0];
+            s->y[k] = to[1];
             largest = max2(largest, part * length);
         }
     }
@@ -358,22 +354,22 @@ enum err geometry_pack(struct sampler *sampler)
         TRY(find_cells(&cut[n_cut], sampler, &sampler->regions[k]));
         most += cut[n_cut++].grid.n;
     }
-    struct packing packing = {.g = sampler,
-                              .cells.side = KERNEL_REACH * scene->h / scene->top.dp,
-                              .air.side = 1};
-    TRY(visit_lines(&packing));
-    if (most == 0 && packing.cells.n == 0) return ERR_OK;
+    struct settling settling = {.sampler = sampler,
+                                .cells.side = KERNEL_REACH * scene->h / scene->top.dp,
+                                .air.side = 1};
+    TRY(visit_lines(&settling));
+    if (most == 0 && settling.cells.n == 0) return ERR_OK;
     scene->packed = true;
     struct scene_points to;
     TRY(geometry_points(sampler, KIND_FLUID, points->n + most, false, &to));
-    for (int k = 0; k < n_cut; k++) TRY(refill(&packing, &cut[k], &to));
+    for (int k = 0; k < n_cut; k++) TRY(refill(&settling, &cut[k], &to));
     *points = to;
-    TRY(add_air(&packing));
-    TRY(gather(&packing));
-    TRY(settle(&packing));
-    for (int64_t k = 0; k < packing.n_free; k++) {
-        points->x[packing.particle[k]] = packing.x[k];
-        points->y[packing.particle[k]] = packing.y[k];
+    TRY(add_air(&settling));
+    TRY(gather(&settling));
+    TRY(settle(&settling));
+    for (int64_t k = 0; k < settling.n_free; k++) {
+        points->x[settling.particle[k]] = settling.x[k];
+        points->y[settling.particle[k]] = settling.y[k];
     }
     return ERR_OK;
 }

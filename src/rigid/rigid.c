@@ -24,7 +24,7 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
         rigid->state[k] =
             (struct rigid_state){.v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1],
                                        scene->rigid[k].spin},
-                                 .exchange = rigid->mean_time}; /* longer than any step */
+                                 .exchange_time = rigid->mean_time}; /* longer than any step */
     }
     TRY(rigid_hinges_create(rigid, a, d));
     TRY(rigid_springs_create(rigid, a, d));
@@ -112,7 +112,7 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 /* The part of the waiting impulse that the fluid receives in a kick (T-97). */
 static double received_part(const struct rigid *rigid, int k, double kick)
 {
-    return rigid->mean_time > 0 ? kick / rigid->state[k].exchange : 0;
+    return rigid->mean_time > 0 ? kick / rigid->state[k].exchange_time : 0;
 }
 
 static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
@@ -121,7 +121,7 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     struct rigid_equations *const eq = &rigid->eq[k];
-    const double exchange = exchange_time_after(s->exchange, dt),
+    const double after = exchange_time_after(s->exchange_time, dt),
                  part = received_part(rigid, k, kick);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
@@ -135,7 +135,7 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
         eq->before[c] = s->v[c];
         eq->from_fluid[c] = kick * force[c] - part * s->impulse[c];
         eq->impulse[c] = eq->from_fluid[c] + kick * heavy;
-        for (int e = 0; e < 3; e++) eq->fluid[c][e] = exchange * impedance[c][e];
+        for (int e = 0; e < 3; e++) eq->fluid[c][e] = after * impedance[c][e];
     }
 }
 
@@ -173,13 +173,13 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double kick = step->kick, part = received_part(rigid, k, kick);
     rigid_find_reaction(rigid, k, kick);
-    body->work = body->passed = body->driven = 0;
+    body->received = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
         const double change = kick * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
         body->mean[c] = eq->before[c] + 0.5 * (change - change_by_solids(rigid, k, c));
-        body->work += (eq->from_fluid[c] - resisted) * body->mean[c];
+        body->received += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
         s->impulse[c] += kick * s->rate[c];
         s->v[c] = eq->before[c] + change;
@@ -210,9 +210,9 @@ static void end_body(struct rigid *rigid, int k, double dt, double kick)
         s->a[c] += weight * (steady - s->a[c]);
     }
     body->driven += kick * rigid_hinge_power(rigid, k, dt);
-    const double before = s->exchange, left = 1 - received_part(rigid, k, kick);
-    s->exchange = exchange_time_after(s->exchange, dt);
-    if (rigid->impedance > 0) add_pressure(rigid, body, left * before / s->exchange, eq->faster);
+    const double left = (1 - received_part(rigid, k, kick)) * s->exchange_time;
+    s->exchange_time = exchange_time_after(s->exchange_time, dt);
+    if (rigid->impedance > 0) add_pressure(rigid, body, left / s->exchange_time, eq->faster);
 }
 
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick)

@@ -8,14 +8,14 @@
 
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
 struct rigid_state {
-    double x[3];        /* displacement, m, rad */
-    double v[3];        /* velocity; half a step before x unless `centred` */
-    double last[3];     /* acceleration of the last step, m/s^2, 1/s^2 */
-    double a[3];        /* mean acceleration, as the fluid's equations use it (T-98) */
-    double impulse[3];  /* that the fluid has still to receive, N s/m and N s (T-97) */
-    double rate[3];     /* of the impulse in the last step, N/m and N */
-    double reaction[3]; /* of hinge and guide in the last step, N/m and N */
-    double exchange;    /* time in which the fluid receives the impulse (T-35e), s */
+    double x[3];          /* displacement, m, rad */
+    double v[3];          /* velocity; half a step before x unless `centred` */
+    double last[3];       /* acceleration of the last step, m/s^2, 1/s^2 */
+    double a[3];          /* mean acceleration, as the fluid's equations use it (T-98) */
+    double impulse[3];    /* that the fluid has still to receive, N s/m and N s (T-97) */
+    double rate[3];       /* of the impulse in the last step, N/m and N */
+    double reaction[3];   /* of hinge and guide in the last step, N/m and N */
+    double exchange_time; /* time in which the fluid receives the impulse (T-35e), s */
 };
 enum { RIGID_NUMBERS = sizeof(struct rigid_state) / sizeof(double) };
 
@@ -30,7 +30,7 @@ struct rigid_body {
     /* Contact with solids: the force now, its impulse, and what it moves in the coming step. */
     double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
-    double work, driven, passed;
+    double received, driven, passed;
 };
 
 /* A [spring]: the bodies of its ends, -1: in place; of a beam both. */

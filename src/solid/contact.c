@@ -260,8 +260,8 @@ static void watch_pair(struct contact *contact, const struct particles *particle
     const double closing =
         r > 0 ? max2(0, -(v[0] * closest.offset[0] + v[1] * closest.offset[1]) / r) : 0;
     if (closing > 0)
-        contact->approach =
-            min2(contact->approach,
+        contact->step_before_contact =
+            min2(contact->step_before_contact,
                  (max2(0, left - min_reach) + ADVANCE * min2(left, min_reach)) / closing);
     const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, min_reach));
     if (then > NEAR * min_reach) return;
@@ -340,7 +340,7 @@ bool contact_watch(struct contact *contact, const struct particles *particles, d
         contact_list(contact, want + SKIN * contact->spacing);
     contact->near = false;
     contact->omega2 = contact->damping = 0;
-    contact->approach = (double)INFINITY;
+    contact->step_before_contact = (double)INFINITY;
     contact->deepest = (struct contact_depth){0};
     watch_pairs(contact, particles, longest, span);
     return contact->near;

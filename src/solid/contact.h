@@ -102,9 +102,9 @@ struct contact {
     double power;                    /* of walls that a [motion] moves, from contact_forces, W/m */
     bool touched;                    /* bodies, or one and a driven wall; the account resets it */
     /* What the next step must respect, from contact_watch. */
-    bool near;              /* some surfaces may touch */
-    double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
-    double approach;        /* longest step in which nothing can pass through a surface, s */
+    bool near;                  /* some surfaces may touch */
+    double omega2, damping;     /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
+    double step_before_contact; /* longest step in which nothing can pass through a surface, s */
     struct contact_depth deepest;
     double seconds; /* of its forces since the last query */
 };

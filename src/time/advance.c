@@ -6,7 +6,7 @@ void advance_structure(struct simulation *sim, double dt, double kick)
 {
     const int n = timestep_substeps(sim, dt);
     sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
-    energy_of_solid(sim, dt, n, sim->coupling.centred);
+    energy_book_solid(sim, dt, n, sim->coupling.centred);
     sim->substeps = n;
     sim->state.solid_substeps += n;
     sim->state.solid_evaluations += n;
@@ -24,7 +24,7 @@ void advance_rigid(struct simulation *sim, double time, double dt, double kick)
     rigid_advance(&sim->rigid, time, dt, kick);
     for (int k = 0; k < sim->rigid.n; k++) {
         const struct rigid_body *const b = &sim->rigid.body[k];
-        energy_of_body(sim, scene_rigid_wall(sim->scene, k), b->work, b->driven, b->passed);
+        energy_book_body(sim, scene_rigid_wall(sim->scene, k), b->received, b->driven, b->passed);
     }
 }
 
@@ -34,7 +34,7 @@ void advance_beams(struct simulation *sim, double time, double dt, double kick)
     beams_advance(&sim->beams, time, &times);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
-        energy_of_body(sim, scene_beam_wall(sim->scene, k), b->received, b->work, 0);
+        energy_book_body(sim, scene_beam_wall(sim->scene, k), b->received, b->driven, 0);
     }
 }
 
@@ -105,7 +105,7 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
     const double kick = 0.5 * (sim->state.dt + dt);
-    energy_of_step(sim, dt);
+    energy_book_step(sim, dt);
     by->update(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);

@@ -14,7 +14,7 @@ enum err initial_state(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* One evaluation of the fluid's rates and of the fluid's force on the solid, with walls at their
  * positions at `time`. */
-void evaluate_fluid(struct simulation *sim, double time);
+void evaluate_rates(struct simulation *sim, double time);
 
 /* Evaluates the state at the start of a step. Not repeated if output has just evaluated it. The
  * acoustic damper's density then follows, once a step (T-9b); an evaluation for output changes

@@ -192,7 +192,7 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 /* Work in dt by the last evaluation: on the fluid by a program, by the constraint at open
  * boundaries and by moving walls; on structures by the fluid's force, at the velocity that the
  * fluid uses. */
-void energy_of_evaluation(struct simulation *sim, double dt)
+void energy_book_evaluation(struct simulation *sim, double dt)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const fluid = &sim->kind[KIND_FLUID];
@@ -215,7 +215,7 @@ void energy_of_evaluation(struct simulation *sim, double dt)
             dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
 }
 
-void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
+void energy_book_solid(struct simulation *sim, double dt, int n, bool centred)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const particles = &sim->kind[KIND_SOLID];
@@ -239,7 +239,8 @@ void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
     }
 }
 
-void energy_of_body(struct simulation *sim, int wall, double received, double driven, double passed)
+void energy_book_body(struct simulation *sim, int wall, double received, double driven,
+                      double passed)
 {
     struct energy_entry *const e = entry_of(sim, KIND_WALL, wall);
     sim->state.wall_work += driven;
@@ -495,15 +496,15 @@ void energy_test_due(struct simulation *sim)
     account->tested_steps = (double)sim->state.steps;
 }
 
-void energy_of_step(struct simulation *sim, double dt)
+void energy_book_step(struct simulation *sim, double dt)
 {
     double *const pending = &sim->state.energy.pending;
     if (test_is_due(sim)) {
-        energy_of_evaluation(sim, *pending);
+        energy_book_evaluation(sim, *pending);
         *pending = 0;
     }
     energy_test_due(sim);
-    energy_of_evaluation(sim, *pending + 0.5 * dt);
+    energy_book_evaluation(sim, *pending + 0.5 * dt);
     *pending = 0.5 * dt;
 }
 

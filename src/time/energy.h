@@ -47,17 +47,17 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 /* After an evaluation: counts the work of its forces over dt; at the state from which a step of dt
  * starts, over half of the last step and half of this one, and tests for gains in between if that
  * is due. */
-void energy_of_evaluation(struct simulation *sim, double dt);
-void energy_of_step(struct simulation *sim, double dt);
+void energy_book_evaluation(struct simulation *sim, double dt);
+void energy_book_step(struct simulation *sim, double dt);
 
 /* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work of the fluid, of the
  * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
-void energy_of_solid(struct simulation *sim, double dt, int n, bool centred);
+void energy_book_solid(struct simulation *sim, double dt, int n, bool centred);
 
 /* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,
  * which the ledger has, too; and by other bodies. */
-void energy_of_body(struct simulation *sim, int wall, double received, double driven,
-                    double passed);
+void energy_book_body(struct simulation *sim, int wall, double received, double driven,
+                      double passed);
 
 /* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which
  * the ledger has, too. */

@@ -57,7 +57,7 @@ static bool keeps_slopes(const struct simulation *sim, double time)
     return st->steps > 0 && floor(time / interval) <= floor(before / interval);
 }
 
-void evaluate_fluid(struct simulation *sim, double time)
+void evaluate_rates(struct simulation *sim, double time)
 {
     sim->state.evaluations++;
     if (sim->evaluated) return;
@@ -85,7 +85,7 @@ void evaluate_fluid(struct simulation *sim, double time)
 
 void evaluate_start(struct simulation *sim)
 {
-    evaluate_fluid(sim, sim->state.time);
+    evaluate_rates(sim, sim->state.time);
     sim->evaluated = false;
     if (sim->effects & FX_DAMPER)
         fluid_follow_density(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
@@ -96,7 +96,7 @@ void simulation_refresh(struct simulation *sim)
     if ((sim->effects & FX_FLUID) && !sim->cells_overfull) {
         double seconds[PHASE_COUNT];
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
-        evaluate_fluid(sim, sim->state.time);
+        evaluate_rates(sim, sim->state.time);
         sim->state.evaluations--;
         /* A caller's own forces and motions may change between two steps. */
         sim->evaluated = !sim->external[KIND_FLUID].at && !sim->external[KIND_SOLID].at &&

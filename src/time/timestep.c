@@ -53,7 +53,7 @@ static double bound_value(const struct simulation *sim, enum bound k,
         return bound_solid(sim);
     case BOUND_contact: /* with sub-steps only what passes within the step */
         if (!sim->solid.contact) return never;
-        return sim->effects & FX_MULTIRATE || sim->solid.implicit ? sim->contact.approach
+        return sim->effects & FX_MULTIRATE || sim->solid.implicit ? sim->contact.step_before_contact
                                                                   : sim->dt_solid;
     case BOUND_added_mass: return coupling_added_mass_step(&sim->coupling, &lightest);
     case BOUND_zone: {
@@ -155,7 +155,7 @@ static bool longer_is_safe(const struct simulation *sim, double ratio)
     const double z = sim->scene->numerics.solid_safety, less = z * ratio;
     const double root = sqrt((1 + z) * (1 - less) / ((1 - z) * (1 + less)));
     const double gain = root - 1 / root; /* at least the logarithm of root^2 */
-    return 0.5 * sim->solid.damping_max * (st->time - st->substeps_needed_at) > gain;
+    return 0.5 * sim->solid.damping_max * (st->time - st->short_steps_needed_at) > gain;
 }
 
 int timestep_substeps(struct simulation *sim, double dt)
@@ -165,7 +165,7 @@ int timestep_substeps(struct simulation *sim, double dt)
     /* Enough for the longest step so far: shorter steps do not change the number. */
     const double most = ceil(max2(st->dt_max, dt) / sim->dt_solid * (1 - 1e-9));
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
-    if (needed >= held) st->substeps_needed_at = st->time;
+    if (needed >= held) st->short_steps_needed_at = st->time;
     if (needed > held || (needed < held && longer_is_safe(sim, needed / held)))
         st->substeps_held = (int64_t)needed;
     return (int)st->substeps_held;
@@ -194,7 +194,7 @@ static double step_in_contact(const struct simulation *sim)
     const double slowing = sim->state.solid_slowing;
     const double step = solid_step_of(square(sim->solid.omega_max / slowing) + contact->omega2,
                                       sim->solid.damping_max / slowing + contact->damping);
-    return min2(sim->scene->numerics.solid_safety * step, contact->approach);
+    return min2(sim->scene->numerics.solid_safety * step, contact->step_before_contact);
 }
 
 /* T-62e, in parts of 1/omega: a point that meets a surface or leaves it then changes the energy of
@@ -212,8 +212,8 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps)
         contact_watch(&sim->contact, &sim->kind[KIND_SOLID], time, longest, steps * longest);
     const double resolved = min2(sim->dt_lone_solid, sim->scene->numerics.solid_safety * RESOLVED /
                                                          sqrt(sim->contact.first_omega2));
-    /* Sub-steps are held as a number. */
-    double *const needed = sim->effects & FX_MULTIRATE ? NULL : &sim->state.substeps_needed_at;
+    /* Sub-steps are held as a number. Without them this is the last time with surfaces near. */
+    double *const needed = sim->effects & FX_MULTIRATE ? NULL : &sim->state.short_steps_needed_at;
     const bool held = needed && *needed > 0 && !longer_is_safe(sim, resolved / sim->dt_lone_solid);
     sim->solid.contact = near ? &sim->contact : NULL;
     sim->dt_solid = near   ? min2(resolved, step_in_contact(sim))

@@ -389,7 +389,7 @@ static void test_the_step_after_a_collision(void)
             rig_run(&rig, sim->state.time + 1e-3);
             TEST_ASSERT_TRUE(!sim->solid.contact || sim->dt_solid < sim->dt_lone_solid);
         }
-        TEST_ASSERT_TRUE(!sim->solid.contact && sim->state.substeps_needed_at > 0);
+        TEST_ASSERT_TRUE(!sim->solid.contact && sim->state.short_steps_needed_at > 0);
         TEST_ASSERT_TRUE(k == (sim->dt_solid == sim->dt_lone_solid));
     }
 }

@@ -179,7 +179,7 @@ static void test_number_is_held(void)
     st->time += 2.31 * limit;
     TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
     /* From 6 to 3 at 0.9: root^2 = (1.9 * 0.55)/(0.1 * 1.45), root - 1/root = 2.312. */
-    st->time = st->substeps_needed_at + 2.32 * limit;
+    st->time = st->short_steps_needed_at + 2.32 * limit;
     TEST_ASSERT_EQUAL_INT(3, timestep_substeps(&rig.sim, limit));
     rig.sim.dt_solid = limit;
     rig.sim.effects &= ~(effect_set)FX_MULTIRATE;
