@@ -128,7 +128,8 @@ static void omit_hinges(struct outlines *clamp, const struct shape_list *list, d
 static int merge_edges(struct crossing *c, int n, double dp)
 {
     int kept = 0;
-    if (n) qsort(c, (size_t)n, sizeof *c, geometry_ascending); /* else c is NULL */
+    if (n == 0) return 0; /* qsort must not get NULL */
+    qsort(c, (size_t)n, sizeof *c, geometry_ascending);
     for (int k = 0, end; k < n; k = end) {
         double weight = 0, moment = 0, spread = 0.02 * dp;
         const double first = c[k].at;
