@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Beams in fluid: lines and dummies that follow them, force and resistance of the fluid, and
- * the impulse that it has still to receive (T-105, T-111a, T-111b). */
+ * the impulse that it has still to receive (T-105, T-111a). */
 #include "beam/beam.h"
 
 static double impedance(const struct beams *beams) { return beams->scene->rho0 * beams->scene->c0; }
@@ -134,7 +134,7 @@ double beams_place(struct beams *beams, double since)
                 place_end(beams, &beams->element[m], last, since, end);
                 largest = max2(largest, displacement_between(beams, &before, end));
             }
-        line_place(line, beams->walls);
+        line_place(line, beams->walls, since != 0);
     }
     return largest;
 }

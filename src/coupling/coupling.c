@@ -32,7 +32,7 @@ void coupling_find_forces(const struct coupling *coupling, struct particles kind
                           const struct cells *cells)
 {
     find_forces_on(coupling, &kinds[KIND_SOLID], KIND_SOLID, cells, false);
-    if (*coupling->fluid->effects & FX_MOTION)
+    if (coupling->fluid->effects & FX_MOTION)
         find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, false);
 }
 

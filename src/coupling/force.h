@@ -144,7 +144,7 @@ void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, e
 {
     const struct vector_constants k = constants_of_sweep(fluid);
     const effect_set effects =
-        (*fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(*fluid->effects, kind);
+        (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t m = 0; m < n; m++)

@@ -93,7 +93,7 @@ SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummi
                                    const struct particles *particles, double u[CLUSTER],
                                    double v[CLUSTER])
 {
-    const bool moves = *fluid->effects & FX_MOTION, solid = d->kind == KIND_SOLID;
+    const bool moves = fluid->effects & FX_MOTION, solid = d->kind == KIND_SOLID;
     gather(d, solid ? particles->wx : moves ? particles->vx : NULL, u);
     gather(d, solid ? particles->wy : moves ? particles->vy : NULL, v);
 }
@@ -142,11 +142,11 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
     for (int r = 0; r < d->count && sides->piece; r++)
         if (fluid_line_of(fluid, d->kind, d->at[r]))
             near2[r] = square(fluid->k.dp / fluid->k.h) + ETA2;
-    if (*fluid->effects & FX_ONE_SIDED) {
+    if (fluid->effects & FX_ONE_SIDED) {
         put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
         put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
     }
-    if (*fluid->effects & FX_REPULSION) pack_four(d, near2, PACKED_NEAR);
+    if (fluid->effects & FX_REPULSION) pack_four(d, near2, PACKED_NEAR);
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
@@ -155,7 +155,7 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
                            const struct dummies *d, const struct neighbours *neighbours,
                            const struct cell_sides *sides)
 {
-    const bool own_image = *fluid->effects & FX_ONE_SIDED;
+    const bool own_image = fluid->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
     gather_velocity(fluid, d, particles, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
@@ -242,15 +242,15 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
     /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
      * (L-6); and on a structure that of the interface impulse (T-35b). */
     gather(d,
-           d->kind == KIND_SOLID || *fluid->effects & (FX_RIGID | FX_BEAM)
+           d->kind == KIND_SOLID || fluid->effects & (FX_RIGID | FX_BEAM)
                ? particles->interface_pressure
                : NULL,
            acting);
-    if (!(*fluid->effects & FX_ONE_SIDED)) *(four_double_at *)acting += FOUR(pressure, 0);
+    if (!(fluid->effects & FX_ONE_SIDED)) *(four_double_at *)acting += FOUR(pressure, 0);
     for (int r = 0; r < d->count; r++)
         volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
     /* At rest, particles whose masses fit their density fill a cell at any depth: so do dummies. */
-    if (!(*fluid->effects & FX_MASSES)) *(four_double_at *)volume /= 1 + FOUR(dens, 0);
+    if (!(fluid->effects & FX_MASSES)) *(four_double_at *)volume /= 1 + FOUR(dens, 0);
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
@@ -279,8 +279,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (*fluid->effects & SURFACE_EFFECTS) pack_surface_fields(fluid, particles, &d, &sides);
-        if (*fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
+        if (fluid->effects & SURFACE_EFFECTS) pack_surface_fields(fluid, particles, &d, &sides);
+        if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
         if (thin) pack_sliding(fluid, &d, &neighbours, &sides);
         if (neighbours.n > 0) {
             dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);
@@ -309,7 +309,7 @@ static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIN
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < n; k++)
-        if (*fluid->effects & FX_THIN)
+        if (fluid->effects & FX_THIN)
             dummies_of_cell(fluid, particles, kind, cells, cell[k], true);
         else
             dummies_of_cell(fluid, particles, kind, cells, cell[k], false);

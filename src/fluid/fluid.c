@@ -61,7 +61,7 @@ static enum err describe_bodies(struct fluid *fluid, struct arena *a, const stru
         fluid->near2[kind][k] = square(REPULSION_REACH * spacing / fluid->k.h) + ETA2;
         fluid->moves[kind][k] = !wall || scene->wall[k].motion[0] || k >= scene_beam_wall(scene, 0);
     }
-    if (!(*fluid->effects & FX_NO_SLIP)) return ERR_OK;
+    if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
     TRY(arena_array(a, &fluid->sticks[kind], n, "walls", d));
     for (int k = 0; k < (int)n; k++)
         fluid->sticks[kind][k] = (wall ? scene->wall[k].slip : scene->solid[k].slip) == SLIP_NONE;
@@ -74,7 +74,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
 {
     const int64_t largest = CHUNK_CELLS * (CELL_CAPACITY / CLUSTER);
     const size_t places = 1 + (size_t)(clusters < largest ? clusters : largest);
-    const size_t size = places * (size_t)pair_sums(*fluid->effects) * CLUSTER * CLUSTER *
+    const size_t size = places * (size_t)pair_sums(fluid->effects) * CLUSTER * CLUSTER *
                         fluid->sweeps->packed_item_size;
     fluid->thread_bytes = size + sizeof *fluid->neighbour_scratch;
     TRY(arena_array(a, &fluid->neighbour_scratch, fluid->threads, "neighbour clusters", d));
@@ -82,7 +82,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
     TRY(arena_place(a, &deferred, (size_t)fluid->threads, size, "sums over pairs", d));
     for (int t = 0; t < fluid->threads; t++)
         fluid->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
-    for (int t = 0; t < fluid->threads && *fluid->effects & FX_THIN; t++) {
+    for (int t = 0; t < fluid->threads && fluid->effects & FX_THIN; t++) {
         TRY(arena_place(a, &fluid->neighbour_scratch[t].pieces,
                         (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), 5 * sizeof(double),
                         "thin walls", d));
@@ -93,7 +93,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
                       struct particles kinds[KIND_COUNT], const struct cells *cells, struct diag *d)
 {
-    const effect_set effects = *fluid->effects;
+    const effect_set effects = fluid->effects;
     fluid->k = constants_of(scene);
     fluid->never_skip = scene->test.never_skip;
     fluid->sweeps =
@@ -261,7 +261,7 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                   {PHASE_fluid, rates_of_fluid}};
     double since = phase_clock();
     for (size_t k = 0; k < COUNT_OF(passes); k++) {
-        if (!phase_runs(passes[k].phase, *fluid->effects)) continue;
+        if (!phase_runs(passes[k].phase, fluid->effects)) continue;
         passes[k].run(fluid, kinds, cells);
         const double now = phase_clock();
         phase_seconds[passes[k].phase] += now - since;

@@ -174,7 +174,7 @@ struct neighbour_scratch {
 
 struct fluid {
     struct fluid_constants k;
-    const effect_set *effects;           /* of the simulation */
+    effect_set effects; /* of the simulation: a copy, since sweeps test them for each cluster */
     bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
     double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
@@ -204,7 +204,7 @@ struct fluid {
 SPHFSI_INLINE bool dummies_move(const struct fluid *fluid, enum kind kind,
                                 const struct particles *particles, const int32_t *index, int count)
 {
-    if (kind == KIND_SOLID || !(*fluid->effects & FX_MOTION)) return kind == KIND_SOLID;
+    if (kind == KIND_SOLID || !(fluid->effects & FX_MOTION)) return kind == KIND_SOLID;
     for (int r = 0; r < count; r++)
         if (fluid->moves[kind][particles->body[index[r]]]) return true;
     return false;
@@ -247,14 +247,14 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
 /* The thin line that particle i of a kind is a dummy of, from 1; 0: none. */
 SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, int64_t i)
 {
-    return *fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
+    return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
 /* How much a place and particle i of a kind, (x, y) away, see each other (T-110). */
 SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *cells,
                                 const double from[2], enum kind kind, int64_t i, double x, double y)
 {
-    if (!(*fluid->effects & FX_THIN)) return 1;
+    if (!(fluid->effects & FX_THIN)) return 1;
     return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
                       (const double[]){x, y}, fluid_line_of(fluid, kind, i));
 }

@@ -179,11 +179,11 @@ static void place_pieces(struct thin_line *line)
     line->box = box;
 }
 
-void line_place(struct thin_line *line, struct particles *walls)
+void line_place(struct thin_line *line, struct particles *walls, bool predicted)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t j = 0; j < line->scene->n_dummies; j++) place_dummy(line, j, walls);
-    leave_walls(line);
+    if (!predicted) leave_walls(line);
     place_pieces(line);
 }
 
@@ -219,7 +219,7 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
         TRY(arena_array(a, &line->piece, (size_t)parts + 2, what, d));
         lines->n_pieces += parts + 2;
         start_ends(line);
-        line_place(line, walls);
+        line_place(line, walls, false);
     }
     return ERR_OK;
 }

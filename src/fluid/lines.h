@@ -52,8 +52,9 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
 void line_follow(struct thin_line *line, const struct motion_state *motion);
 
 /* Sets a line and its dummies from its ends. A dummy is tied to both ends of its part, as if it
- * were rigid with each, by linear shape functions (T-111). */
-void line_place(struct thin_line *line, struct particles *walls);
+ * were rigid with each, by linear shape functions (T-111). Ends leave walls (T-111b) by places of
+ * the state alone: those of a predictor differ from a wall's by its error. */
+void line_place(struct thin_line *line, struct particles *walls, bool predicted);
 
 /* The place on the line that its dummy number j lies behind. */
 void line_foot(const struct thin_line *line, int64_t j, double at[2]);
@@ -66,8 +67,8 @@ void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, d
 void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
 
 /* T-110c: the direction in which fluid slides past particle i of the walls, a dummy of the line;
- * left as it is on a line without tips (T-110d), beyond a corner, and beyond an end that is no
- * tip. */
+ * left as it is on a line without tips (T-110d), beyond a corner, and beyond an end that
+ * begins at a wall. */
 void line_slides(const struct thin_line *line, int64_t i, double t[2]);
 
 /* T-110: how much of each other two places see, of which the second is a dummy of the line `own`,

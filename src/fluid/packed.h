@@ -65,8 +65,8 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             -0.5 * k->h,
                             -0.5 / (k->model->artificial_viscosity * k->c0 * k->rho0),
                             fluid->predict_by,
-                            *fluid->effects,
-                            *fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
+                            fluid->effects,
+                            fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
 
 /* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
@@ -243,7 +243,7 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
     if (fluid->keeps_slopes) return; /* packed with the other fields */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
-        if (*fluid->effects & FX_THIN)
+        if (fluid->effects & FX_THIN)
             slopes_of_cell(fluid, particles, cells, list->active[k], true);
         else
             slopes_of_cell(fluid, particles, cells, list->active[k], false);

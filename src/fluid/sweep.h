@@ -210,7 +210,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
         rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top);  \
     }
 #include "fluid/variants.def"
-VARIANT(any, *fluid->effects &(effect_set)PAIR_EFFECTS)
+VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
 
 static const struct fluid_variant SWEEP(variants)[] = {

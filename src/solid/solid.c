@@ -107,9 +107,9 @@ static enum err packed_create(struct solid *solid, struct arena *a,
 
 void solid_use_threads(struct solid *solid, const struct particles *particles, int n)
 {
-    /* The loops of several threads would be shorter than the barriers between them. */
-    enum { ONE_THREAD_BELOW = 2048 };
-    solid->threads = particles->n < ONE_THREAD_BELOW ? 1 : n;
+    /* Else the loops of several threads would be shorter than the barriers between them. */
+    enum { WORTH_THREADS = 2048 };
+    if (particles->n >= WORTH_THREADS) solid->threads = n;
 }
 
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
@@ -142,6 +142,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     for (int k = 0; k < (int)COUNT_OF(solid->scratch); k++)
         TRY(arena_array(a, &solid->scratch[k], particles->n, "search of the step", d));
     TRY(arena_array(a, &solid->work_on, solid->n_bodies, "work on bodies", d));
+    solid->threads = 1;
     solid_use_threads(solid, particles, thread_count());
     return ERR_OK;
 }

@@ -161,7 +161,7 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
 
-/* Sets how many of n threads step a solid of this size. */
+/* Lets n threads step a solid that is large enough; a small one keeps what it has. */
 void solid_use_threads(struct solid *solid, const struct particles *particles, int n);
 
 /* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and

@@ -12,7 +12,7 @@ void move_walls(struct simulation *sim, double time)
         struct thin_line *const line = &sim->fluid.lines.line[j];
         if (line->bends || !(line->own || line->into[0] || line->into[1])) continue;
         if (line->own) line_follow(line, &line->own->placed);
-        line_place(line, &sim->kind[KIND_WALL]);
+        line_place(line, &sim->kind[KIND_WALL], time != sim->state.time);
     }
     if (sim->beams.line)
         sim->wall_motion.moved_most += beams_place(&sim->beams, time - sim->state.time);

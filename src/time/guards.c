@@ -424,7 +424,7 @@ static enum err check_newton(const struct simulation *sim, struct diag *d)
 enum err guards_check(struct simulation *sim, struct diag *d)
 {
     TRY(check_springs(sim, d));
-    TRY(check_loads(sim, d));
+    if (sim->effects & (FX_LOAD | FX_BEAM)) TRY(check_loads(sim, d));
     TRY(check_newton(sim, d));
     if (sim->beams.crowded)
         warn_once(sim, &sim->guard.warned_beams, d,

@@ -107,6 +107,7 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
         sim->effects |= FX_MULTIRATE;
     if (!(sim->effects & FX_MULTIRATE))
         sim->effects &= ~(effect_set)(FX_IMPEDANCE | FX_SPLIT_IMPULSE);
+    sim->fluid.effects = sim->effects;
     coupling_set_rate(&sim->coupling, sim->effects, timestep_fluid_limit(sim));
     return ERR_OK;
 }

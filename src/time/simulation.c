@@ -13,7 +13,7 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     memset(sim, 0, sizeof *sim);
     sim->scene = scene;
     sim->effects = effects_of_scene(scene);
-    sim->fluid.effects = &sim->effects;
+    sim->fluid.effects = sim->effects;
     sim->integrator = integrators[scene->top.integrator];
     sim->state.seeks_rest = (sim->effects & FX_RELAX) != 0;
     team_begin(&sim->team, thread_count());

@@ -169,7 +169,7 @@ static const char all[] =
  * solid. */
 static void sums_with(effect_set effects, uint64_t *fluid, uint64_t *force)
 {
-    rig.sim.effects = effects;
+    rig.sim.effects = rig.sim.fluid.effects = effects;
     rig_evaluate(&rig);
     const struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
                                                                              &rig.sim

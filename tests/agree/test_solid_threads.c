@@ -44,6 +44,7 @@ static uint64_t run(const char *text, int threads, const char *set, const char *
     rig_open(&rig, text, set, other, NULL);
     rig.sim.solid.threads = threads;
     rig_steps(&rig, 20, 1);
+    TEST_ASSERT_EQUAL_INT(threads, rig.sim.solid.threads);
     return simulation_hash(&rig.sim);
 }
 

@@ -185,6 +185,33 @@ static void test_packing_does_not_pass_a_line(void)
     }
 }
 
+/* An end that a clamp, a hinge or a rigid body holds stays at its moving wall, also in the
+ * predictor, which places wall and line by different laws. */
+static void test_a_held_end_stays_at_its_wall(void)
+{
+    static const char *const scenes[] = {
+        "[wall bed]\nshape = box -0.2, -0.1, 0.6, 0\nmotion = m\n[motion m]\n"
+        "y = 0.01*sin(20*t)\n[beam line]\nshape = polyline: 0.3, 0; 0.3, 0.1\nthickness = 4 mm\n"
+        "young = 1e7\ndensity = 1000\nclamp = 0.3, 0, bed\n",
+        "[wall bed]\nshape = box -0.2, -0.1, 0.6, 0\n[rigid line]\nshape = polyline thickness 0: "
+        "0.3, 0; 0.3, 0.1\nmass = 2\ninertia = 0.01\ncentre = 0.3, 0.05\nhinge = 0.3, 0, bed\n"
+        "spin = 1\n",
+    };
+    for (size_t k = 0; k < 2 * COUNT_OF(scenes); k++) {
+        char text[800];
+        snprintf(text, sizeof text,
+                 "dp = 10 mm\nend_time = 1\ngravity = 0, -9.81\n[fluid w]\nsound_speed = 15\n"
+                 "shape = box 0, 0, 0.2, 0.1\nsurface = 0.1\n%s",
+                 scenes[k / 2]);
+        rig_open(&rig, text, k % 2 ? "integrator=leapfrog" : "integrator=symplectic", NULL);
+        rig_steps(&rig, 20, 1);
+        const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
+        TEST_ASSERT_TRUE(line->scene->extend[0] > 0);
+        TEST_ASSERT_FALSE_MESSAGE(line->tip[0], scenes[k / 2]);
+        TEST_ASSERT_TRUE(line->extend[0] == line->scene->extend[0]);
+    }
+}
+
 /* T-111b: below an end that rises from the bed fluid sees fluid. All of the line in the bed hid it,
  * and slowed what ran out below a gate. */
 static void test_an_end_leaves_its_wall(void)
@@ -270,6 +297,7 @@ int main(void)
     RUN_TEST(test_one_side_is_refused);
     RUN_TEST(test_packing_does_not_pass_a_line);
     RUN_TEST(test_an_end_leaves_its_wall);
+    RUN_TEST(test_a_held_end_stays_at_its_wall);
     RUN_TEST(test_a_float_with_edges_turns_as_a_rigid_one);
     RUN_TEST(test_a_held_beam_of_given_mass);
     return UNITY_END();

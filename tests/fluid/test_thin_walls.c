@@ -226,6 +226,7 @@ static void test_an_end_leaves_its_wall(void)
         const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
         const double reach = KERNEL_REACH * rig.sim.fluid.k.h, way[2] = {0.01, 0};
         for (double rise = 0; rise < 2; rise += 0.25) {
+            rig.sim.state.time = rise;
             move_walls(&rig.sim, rise);
             const double from[2] = {-0.005, line->end[1].x[1] - 0.002};
             const double seen = rise > 0 && scenes[k].leaves ? min2(1, rise + 0.002 / reach) : 0;
@@ -284,7 +285,7 @@ static void test_places_and_loads(void)
     const struct motion_state motion = motion_at(&rig.scene, 0, 0.3);
     rig_run(&rig, 0.1);
     line_follow(&rig.sim.fluid.lines.line[0], &motion);
-    line_place(&rig.sim.fluid.lines.line[0], walls);
+    line_place(&rig.sim.fluid.lines.line[0], walls, false);
     double sum[3] = {0}, load[6], handed[3] = {0};
     for (int64_t j = line->first; j < walls->n; j++) {
         const struct motion_point at = motion_of_point(&motion, walls->X[j], walls->Y[j]);
