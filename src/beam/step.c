@@ -34,13 +34,14 @@ static void find_loads(struct beams *beams, double middle)
         const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
         const double *const X = beams->node[l->node].X, t = max2(middle, 0);
         const double factor = from->history.e[0] ? expr_of(from->history.e[0], t) : 1;
-        double *const load = beams->step[l->node].load;
+        double own[3] = {0};
         for (int c = 0; c < 2 && value->e[c]; c++)
-            load[c] += factor * (from->traction.e[0] ? l->length : l->part) *
-                       expr_at_time(value->e[c], X[0], X[1], t);
+            own[c] = factor * (from->traction.e[0] ? l->length : l->part) *
+                     expr_at_time(value->e[c], X[0], X[1], t);
         if (from->moment.e[0])
-            load[2] += factor * l->part * expr_at_time(from->moment.e[0], X[0], X[1], t);
-        if (!isfinite(load[0] + load[1] + load[2])) beams->infinite = l->section + 1;
+            own[2] = factor * l->part * expr_at_time(from->moment.e[0], X[0], X[1], t);
+        for (int c = 0; c < 3; c++) beams->step[l->node].load[c] += own[c];
+        if (!isfinite(own[0] + own[1] + own[2])) beams->infinite = l->section + 1;
     }
 }
 
