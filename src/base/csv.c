@@ -69,7 +69,7 @@ static const char *doubtful_separator(const char *at, size_t length)
 
 static int read_numbers(struct csv *c, const char *line, double *row)
 {
-    const size_t length = strcspn(line, "\r\n");
+    const size_t length = strcspn(line, "#\r\n");
     const char *const doubtful = doubtful_separator(line, length), *at = line;
     const char *const blanks = " \t\r";
     if (doubtful) {

@@ -276,6 +276,7 @@ static void test_tables(void)
         {"0;0;0\n1;0,5;0\n", "test_case_limits.tmp:2: commas and semicolons in one row"},
         {"0\t0\t0\n0,5\t0\n", "test_case_limits.tmp:2: commas and tabs"},
         {"0,\t0,\t0\n1,\t0,\t0\n", NULL},
+        {"0; 0; 0\n1; 0; 0 # rise of 1,5 m\n", NULL},
         {"# nothing\n", "needs two rows or more; there are 0"},
     };
     for (size_t k = 0; k < COUNT_OF(row); k++) {
