@@ -67,6 +67,8 @@ static void next_line(struct line *line, bool fork)
     if (!matters) line->length = 0;
 }
 
+static bool is_key(const struct line *line) { return line->length > 0 && line->text[0] != '['; }
+
 enum err case_change_check(const char *old, const char *now, bool fork, struct diag *d)
 {
     const char *const what = fork ? "fork" : "restart";
@@ -76,10 +78,12 @@ enum err case_change_check(const char *old, const char *now, bool fork, struct d
         next_line(&b, fork);
     } while (a.length > 0 && a.length == b.length && memcmp(a.text, b.text, (size_t)a.length) == 0);
     if (a.length == 0 && b.length == 0) return ERR_OK;
+    /* The section of a key that only the case has; the checkpoint's line is in a later one. */
+    const char *const section = is_key(&b) && !is_key(&a) ? b.section : a.section;
     const int shown_a = a.length < 200 ? a.length : 200, shown_b = b.length < 200 ? b.length : 200;
     return diag_fail(
         d, ERR_INPUT, "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
-        what, a.section[0] ? a.section : "at the top", shown_a, a.text, shown_b, b.text,
+        what, section[0] ? section : "at the top", shown_a, a.text, shown_b, b.text,
         fork ? "shapes, masses, sound speed, kernel and integrator must stay; materials, "
                "motions, gravity and other numerics may change"
              : "only end_time, [output] and the number of threads may change; --fork starts a "

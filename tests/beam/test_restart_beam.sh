@@ -99,4 +99,6 @@ quantity = pose
 body = block
 END
 restarts "$dir/block.cfg" "$dir/block" 0.12
+expect 1 "the case has changed since the checkpoint: .rigid block. .* is now 'inertia = 0.1 kg" \
+    "$dir/block.cfg" --fork "$dir/block" --set block.inertia=0.1 --out "$dir/off"
 [ $failures = 0 ]
