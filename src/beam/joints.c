@@ -310,13 +310,13 @@ bool beams_stay_joined(const struct beams *beams)
 {
     const struct beam_joints *const joints = beams->joints;
     const double kept = JOINED * beams->scene->top.dp;
-    double largest = 0;
     for (int n = 0; joints && n < joints->n; n++) {
         const struct beam_joint *const j = &joints->joint[n];
-        largest = max2(largest, fabs(gap_of(beams, j)));
-        largest = max2(largest, fabs(dot(j->along, joints->body[j->body].off)));
+        if (!(fabs(gap_of(beams, j)) <= kept) ||
+            !(fabs(dot(j->along, joints->body[j->body].off)) <= kept))
+            return false;
     }
-    return largest <= kept;
+    return true;
 }
 
 static double *column_at(const struct beams *beams, int n)
@@ -330,7 +330,8 @@ static void close_open(const struct beams *beams, double *unknown)
     const struct beam_joints *const joints = beams->joints;
     const int n = joints->n;
     memcpy(joints->factors, joints->yields, (size_t)(n * n) * sizeof *joints->factors);
-    /* Not positive: joints stay open, and the step has no solution (beams_stay_joined). */
+    /* Not positive far from a solution: more corrections follow while joints are open
+     * (beams_stay_joined). */
     (void)cholesky_solve(joints->factors, n, n, 0, joints->open);
     for (int k = 0; k < n; k++)
         for (int64_t r = 0; r < beams->matrix.n; r++)

@@ -226,6 +226,18 @@ static void test_a_soft_flap_below_a_raft_that_turns(void)
     assert_at_most(1e-3, rig.sim.state.gain_share, "gain");
 }
 
+/* A gap that is not finite is no solution, though those after it are closed. */
+static void test_a_gap_that_is_not_finite_is_open(void)
+{
+    const struct beams *const beams = &rig.sim.beams;
+    rig_open(&rig, BEAM("clamp = 1, 0, r\n[rigid r]\nshape = box 1, -0.1, 1.2, 0.1\nmass = 1\n"),
+             NULL);
+    rig_steps(&rig, 1, 1e6);
+    TEST_ASSERT_TRUE(beams_stay_joined(beams));
+    beams->step[beams->n_nodes - 1].d[0] = (double)NAN;
+    TEST_ASSERT_FALSE(beams_stay_joined(beams));
+}
+
 static void test_bad_input_is_refused(void)
 {
     rig_refuses(BEAM("clamp = 1, 0, r\nhinge = 1, 0\n[rigid r]\nshape = box 1, -1, 2, 1\n"
@@ -270,6 +282,7 @@ int main(void)
     RUN_TEST(test_a_beam_on_a_body_with_a_hinge_in_place);
     RUN_TEST(test_a_heavy_flap_below_a_light_float);
     RUN_TEST(test_a_soft_flap_below_a_raft_that_turns);
+    RUN_TEST(test_a_gap_that_is_not_finite_is_open);
     RUN_TEST(test_bad_input_is_refused);
     RUN_TEST(test_holds_that_move_apart_are_refused);
     return UNITY_END();
