@@ -11,7 +11,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 13, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
+enum { FORMAT = 14, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 enum { KEEP = 2 }; /* checkpoints in the folder of a run */
 
 /* Owners of blocks: the kinds of particles, then these. */

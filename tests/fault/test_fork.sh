@@ -25,7 +25,7 @@ patched() {
     printf "$2" | dd of="$dir/patched.ckpt" bs=1 seek="$1" conv=notrunc status=none
 }
 patched 8 '\x02\0\0\0'
-expect 1 'has format 2, but this program reads format 13' --inspect "$dir/patched.ckpt"
+expect 1 'has format 2, but this program reads format 14' --inspect "$dir/patched.ckpt"
 expect 1 "has format 2" "$case" --out "$run" --restart "$dir/patched.ckpt"
 patched 8 '\0\0\0\0'
 expect 1 'has format 0' --inspect "$dir/patched.ckpt"
