@@ -6,7 +6,7 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
-/* A value of a beam where dummy i of its line is. */
+/* A value of a beam at the place on its line that dummy i lies behind. */
 static double beam_value(enum data what, const struct simulation *sim, const struct thin_line *line,
                          int64_t i)
 {
