@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Makes pictures for the repository small, without changing the colours that their legends name."""
 import sys
+from pathlib import Path
 
 from PIL import Image  # comes with matplotlib
 
@@ -54,12 +55,14 @@ def save(figure, path, **look):
 
 
 def shrink(path, width=1500):
-    """Makes a picture file small: at most `width` pixels wide, from a palette."""
-    with Image.open(path) as image:
-        image = image.convert("RGB")
-        if image.width > width:
-            image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-        indexed(image).save(path, optimize=True)
+    """Makes a picture file small: at most `width` pixels wide and 200 kB, from a palette."""
+    with Image.open(path) as file:
+        image = file.convert("RGB")
+    size = (width, round(image.height * width / image.width))
+    indexed(image.resize(size, Image.LANCZOS) if image.width > width else image).save(
+        path, optimize=True)
+    if Path(path).stat().st_size > 200_000:
+        shrink(path, min(width, image.width) - 100)
 
 
 if __name__ == "__main__":
