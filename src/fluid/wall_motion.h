@@ -17,9 +17,9 @@ struct moving_wall {
 struct wall_motion {
     int n;
     struct moving_wall *body;
-    bool moved;      /* any wall, since the last sorting */
+    bool moved;        /* any wall, since the last sorting */
     double moved_most; /* m; no particle moved further since it was last set to 0 */
-    bool never_skip; /* nothing is skipped; set by tests */
+    bool never_skip;   /* nothing is skipped; set by tests */
 };
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *scene,

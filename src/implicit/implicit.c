@@ -189,9 +189,13 @@ static bool solve(struct solid *solid, struct particles *particles, double dt)
         if (implicit->residual <= TOLERANCE && (k || !solid->hinges)) return true;
         if (!isfinite(implicit->residual)) break;
         const bool other_step = fabs(square(dt / *particles->matrix_dt) - 1) > SLOW;
-        if (!implicit->factored || other_step || implicit->residual > SLOW * last)
-            factor_here(solid, particles, dt);
-        if (!implicit->factored || !implicit_correct(solid, particles)) break;
+        const bool anew = !implicit->factored || other_step || implicit->residual > SLOW * last;
+        if (anew) factor_here(solid, particles, dt);
+        if (!implicit->factored) break;
+        if (!implicit_correct(solid, particles)) {
+            if (anew) break;
+            implicit->factored = false; /* old; those of the present state may do */
+        }
         last = implicit->residual;
     }
     return false;
