@@ -159,6 +159,7 @@ struct scene_line {
     double extend[2];         /* how far it continues into a wall beyond its ends, m */
     int into[2];              /* this wall */
     double (*seen)[2];        /* its points, the first and the last one moved by that */
+    double longest;           /* its longest part, m */
     bool tip[2];              /* whether fluid can flow round its ends, once they have left it */
     int64_t first, n_dummies; /* among the particles of walls */
     struct line_dummy *dummy; /* [n_dummies] */

@@ -119,7 +119,11 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
     const bool closed = a[0] == b[0] && a[1] == b[1];
     double length = 0, start = 0;
-    for (int k = 0; k + 1 < line->n; k++) length += line_part_at(line, k).length;
+    for (int k = 0; k + 1 < line->n; k++) {
+        const double part = line_part_at(line, k).length;
+        length += part;
+        line->longest = max2(line->longest, part);
+    }
     const double step = length / max2(1, round(length / scene->top.dp));
     for (int last = 0; last < 2 && !closed; last++) {
         line->extend[last] = extension(sampler, line, last);
@@ -149,16 +153,25 @@ double geometry_line_distance(const struct scene *scene, const double at[2])
     return nearest;
 }
 
+/* A connection that is further from the end of a piece than the next ones reach crosses none of
+ * them. The last piece may be longer. */
 int geometry_between(const struct scene *scene, const double from[2], const double to[2])
 {
     const double offset[2] = {to[0] - from[0], to[1] - from[1]};
+    const double length2 = square(offset[0]) + square(offset[1]), length = sqrt(length2);
     for (int j = 0; j < scene->n_line; j++) {
         const struct scene_line *const line = &scene->line[j];
+        const double piece = 1 / max2(length * line->longest, 1e-300);
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
-            const double *const a = line->seen[k], *const b = line->seen[k + 1];
-            odd ^= crosses_piece(offset, (const double[]){a[0] - from[0], a[1] - from[1]},
-                                 (const double[]){b[0] - from[0], b[1] - from[1]});
+            const double *const seen = line->seen[k + 1],
+                         a[2] = {line->seen[k][0] - from[0], line->seen[k][1] - from[1]},
+                         b[2] = {seen[0] - from[0], seen[1] - from[1]};
+            odd ^= crosses_piece(offset, a, b);
+            const double along = offset[0] * b[0] + offset[1] * b[1],
+                         across = offset[0] * b[1] - offset[1] * b[0],
+                         far = max2(fabs(across), max2(-along, along - length2));
+            k += (int)max2(0, min2(far * piece - 1, line->n - 3 - k));
         }
         if (odd) return j + 1;
     }

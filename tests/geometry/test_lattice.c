@@ -5,6 +5,8 @@
 #include "case/scene.h"
 #include "check/check.h"
 #include "geometry/load.h"
+#include "geometry/thin.h"
+#include "rig.h"
 #include "unity.h"
 
 #include <math.h>
@@ -438,6 +440,35 @@ static void test_fluid_around_a_cylinder_is_packed(void)
     TEST_ASSERT_TRUE(beside > 100);
 }
 
+/* Of a line of many short parts most are not tested: the result is that of a test of all. The ends
+ * of an arc within a wall continue there, further than its parts are long. */
+static void test_connections_across_an_arc(void)
+{
+    must_read("dp = 10 mm\nend_time = 1\ngravity = 0, -9.81\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 0.2, 0.1\nsurface = 0.1\n[wall tank]\n"
+              "shape = polyline thickness -0.05: 0, 0.2; 0, 0; 0.2, 0; 0.2, 0.2\n[wall a]\n"
+              "shape = arc: 0.1, 0, 0.06, 0, 180 deg\n",
+              NULL);
+    const struct scene_line *const line = &scene.line[0];
+    uint64_t state = 1;
+    int crossed = 0;
+    TEST_ASSERT_TRUE(line->n > 100 && line->extend[0] > 0.01);
+    for (int n = 0; n < 100000; n++) {
+        const double from[2] = {0.1 + 0.1 * noise(&state), 0.05 + 0.1 * noise(&state)},
+                     offset[2] = {0.03 * noise(&state), 0.03 * noise(&state)};
+        bool odd = false;
+        for (int k = 0; k + 1 < line->n; k++) {
+            const double *const a = line->seen[k], *const b = line->seen[k + 1];
+            odd ^= crosses_piece(offset, (const double[]){a[0] - from[0], a[1] - from[1]},
+                                 (const double[]){b[0] - from[0], b[1] - from[1]});
+        }
+        const double to[2] = {from[0] + offset[0], from[1] + offset[1]};
+        TEST_ASSERT_EQUAL_INT(odd, geometry_between(&scene, from, to));
+        crossed += odd;
+    }
+    TEST_ASSERT_TRUE(crossed > 1000);
+}
+
 static void test_a_periodic_domain_is_not_turned(void)
 {
     static const char text[] =
@@ -471,6 +502,7 @@ int main(void)
     RUN_TEST(test_fluid_beside_slopes_has_its_area);
     RUN_TEST(test_packed_water_keeps_below_its_surface);
     RUN_TEST(test_fluid_around_a_cylinder_is_packed);
+    RUN_TEST(test_connections_across_an_arc);
     RUN_TEST(test_a_periodic_domain_is_not_turned);
     return UNITY_END();
 }
