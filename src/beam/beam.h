@@ -226,8 +226,8 @@ void beams_finish_joints(struct beams *beams, double dt);
 /* --- springs.c: springs and mooring lines from a beam to a place (T-108) --- */
 
 /* Adds their forces for the present displacements to `touch` of struct beam_step, and the
- * derivative to the matrix. */
-void beams_add_springs(struct beams *beams, double dt);
+ * derivative to the matrix. Raises `rounding` to the largest stiffness times a length, N/m. */
+void beams_add_springs(struct beams *beams, double dt, double *rounding);
 
 /* Adds half of their stiffnesses to the matrix, as beams and springs are at the start; lines that
  * only pull as if they were taut. */

@@ -71,7 +71,7 @@ double beams_stiffer_step(const struct beams *beams)
 }
 
 /* T-108 */
-static void add_spring(struct beams *beams, struct beam_spring *s, double dt)
+static void add_spring(struct beams *beams, struct beam_spring *s, double dt, double *rounding)
 {
     struct beam_step *const step = &beams->step[s->node];
     const double after[2] = {step->x[0] + step->d[0], step->x[1] + step->d[1]};
@@ -88,13 +88,15 @@ static void add_spring(struct beams *beams, struct beam_spring *s, double dt)
         along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);
         step->touch[c] -= tension * along[c];
     }
+    *rounding =
+        max2(*rounding, (stiff + damp) * (l1 + fabs(s->given->to[0]) + fabs(s->given->to[1])));
     add_stiffness(beams, s->node, along, stiff + damp, max2(tension, 0) / (l0 + l1));
 }
 
-void beams_add_springs(struct beams *beams, double dt)
+void beams_add_springs(struct beams *beams, double dt, double *rounding)
 {
     for (int k = 0; k < beams->n_springs; k++)
-        if (beams->spring[k].node >= 0) add_spring(beams, &beams->spring[k], dt);
+        if (beams->spring[k].node >= 0) add_spring(beams, &beams->spring[k], dt, rounding);
 }
 
 void beam_add_spring_energy(const struct beams *beams, int beam, struct body_energy *sum)

@@ -149,7 +149,7 @@ static struct largest find_residual(struct beams *beams, double dt)
     add_elements(beams, dt, &top);
     beams_add_touches(beams);
     beams_add_joints(beams);
-    beams_add_springs(beams, dt);
+    beams_add_springs(beams, dt, &top.rounding);
     memset(beams->unknown, 0, (size_t)beams->matrix.n * sizeof *beams->unknown);
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];

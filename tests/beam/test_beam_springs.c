@@ -139,6 +139,18 @@ static void test_free_beams_on_stiff_springs_take_the_step_of_bending(void)
     assert_near(0.02 * step, step, rig.sim.dt_lone_solid, "step");
 }
 
+/* The residual of a step is at least the round-off of the spring. */
+static void test_a_very_stiff_spring_is_solved_to_its_rounding(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n[beam b]\nclamp = 0.3, 0\n"
+             "shape = polyline: 0.3, 0; 0.3, 0.1\nthickness = 4 mm\nyoung = 1e7\n"
+             "density = 1000\n" HELD("s", "0.3, 0.1", "to = 0.39, 0.1\nstiffness = 1e10\n"),
+             NULL);
+    rig_steps(&rig, 50, 1);
+    assert_near(1e-8, 0, rig.sim.beams.state[rig.sim.beams.n_nodes - 1].x[0], "end");
+}
+
 /* One sentence says all. */
 static void refuses_by_one(const char *spring, const char *why)
 {
@@ -196,6 +208,7 @@ int main(void)
     RUN_TEST(test_a_hanging_bar_pulls_with_its_weight);
     RUN_TEST(test_stiff_springs_shorten_the_step);
     RUN_TEST(test_free_beams_on_stiff_springs_take_the_step_of_bending);
+    RUN_TEST(test_a_very_stiff_spring_is_solved_to_its_rounding);
     RUN_TEST(test_laws_of_springs_beside_a_dry_solid);
     RUN_TEST(test_bad_input_is_refused);
     return UNITY_END();
