@@ -87,7 +87,7 @@ static void warn_of_area(struct check *check, const struct region *region)
     check->scene->off_lattice = true;
     warn_at(check->diag, check->scene, region->common->line,
             "the %.0f particles of %s%s cover %.2g %% %s than the shape there, %.4g m^2, so a thin "
-            "body is about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
+            "body is about %.2g %% too %s in bending; a smaller dp or another lattice_angle helps",
             ratio * l->area / square(l->dp), section_title(region->common).text,
             l->area_free ? " that no clamp holds" : "", 100 * fabs(ratio - 1),
             ratio > 1 ? "more" : "less", l->area, 100 * fabs(stiff - 1),
@@ -178,8 +178,8 @@ static void warn_of_thin(struct check *check, const struct region *region, const
             "the fluid behind it; %s prevents that",
             section_title(region->common).text, thick, 2 * scene->h,
             !directly ? "numerics.sides = one"
-            : wall    ? "a thicker wall or a finer dp"
-                      : "a finer dp");
+            : wall    ? "a thicker wall or a smaller dp"
+                      : "a smaller dp");
 }
 
 static void warn_of_thin_solid(struct check *check, const struct region *region)
@@ -188,7 +188,7 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
     if (across < 4)
         warn_section(check, region->common,
                      "is only %.0f particles thick at dp = %g m, so its bending will be "
-                     "inaccurate; use a finer dp, for 4 particles or more",
+                     "inaccurate; use a smaller dp, for 4 particles or more",
                      across, dp);
     if (scene_is_bonded(check->scene, region->body)) return;
     /* At the default h/dp a warning here would repeat the one on two particles across. */

@@ -18,13 +18,11 @@ static void find_forces_on(const struct coupling *coupling, struct particles *pa
                            enum kind kind, const struct cells *cells, bool all)
 {
     const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
+    double *const sums[] = {particles->fx,    particles->fy,     particles->wet_x,
+                            particles->wet_y, particles->drag_x, particles->drag_y};
     if (!particles->fx) return;
-    particles_clear(particles->fx, particles->n); /* those without fluid nearby get no force */
-    particles_clear(particles->fy, particles->n);
-    particles_clear(particles->wet_x, particles->n);
-    particles_clear(particles->wet_y, particles->n);
-    particles_clear(particles->drag_x, particles->n);
-    particles_clear(particles->drag_y, particles->n);
+    for (size_t k = 0; k < COUNT_OF(sums); k++) /* particles without fluid nearby get no force */
+        particles_clear(sums[k], particles->n);
     (mixed ? find_force_mixed : find_force_double)(coupling->fluid, particles, kind, cells, all);
 }
 
@@ -42,14 +40,12 @@ void coupling_show_forces(const struct coupling *coupling, struct particles kind
     find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
 
-/* T-36a: the pressure's part of the force that the fluid gets for `kick`; `last`: the step before.
- */
-static void extrapolate_forces(struct coupling *coupling, double dt, double kick, double last)
+/* T-36a: the pressure's part of the force that the fluid gets for `kick`. */
+static void extrapolate_forces(struct coupling *coupling, double dt, double kick, bool first)
 {
     struct particles *const particles = coupling->particles;
     const struct force_weights by =
         force_weights(kick / dt, coupling->lead / dt, particles->interface_pressure_next);
-    const bool first = !(last > 0);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double fx = particles->fx[i], fy = particles->fy[i];
@@ -122,15 +118,15 @@ void coupling_predict(struct coupling *coupling, double dt)
     predict_motion(coupling, coupling->stage * dt);
 }
 
-double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last)
+double coupling_advance(struct coupling *coupling, double dt, int n, double kick, bool first)
 {
     struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, kick);
     if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* no predictor */
-    const double middle = 0.5 * (coupling->centred ? dt : dt - dt / n);
+    const double middle = 0.5 * (coupling->solid->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->stage * dt;
-    if (particles->mean_fx) extrapolate_forces(coupling, dt, kick, last);
+    if (particles->mean_fx) extrapolate_forces(coupling, dt, kick, first);
     /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
@@ -140,7 +136,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
         particles->vy0[i] = particles->vy[i];
     }
     if (impedance) impulse_begin(coupling, implicit_is_next(coupling->solid) ? 0 : dt / n);
-    implicit_advance(coupling->solid, particles, dt / n, n, coupling->centred);
+    solid_advance_any(coupling->solid, particles, dt / n, n);
     if (impedance) impulse_end(coupling);
     const double moved = solid_set_positions(particles);
     move_after_substeps(coupling, dt);

@@ -20,11 +20,8 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool multirate;              /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    /* From the integrator. Stage of the rates that advance the fluid, in steps after the start of
-     * the step. `centred`: the solid kicks in the middle of its drifts. */
-    double stage;
-    bool centred;
-    double lead; /* s: from the last evaluation to the middle of the structure's kicks */
+    double stage; /* of the integrator: of the rates that advance the fluid, in steps */
+    double lead;  /* s: from the last evaluation to the middle of the structure's kicks */
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
     double *exchange_time;
 };
@@ -48,8 +45,8 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 void coupling_predict(struct coupling *coupling, double dt);
 
 /* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
- * `last` is the step before. Returns the largest displacement of a particle, m. */
-double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
+ * `first`: no step was before. Returns the largest displacement of a particle, m. */
+double coupling_advance(struct coupling *coupling, double dt, int n, double kick, bool first);
 
 /* --- velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
 

@@ -38,11 +38,11 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
 }
 
 /* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with opposite
- * sign, N/m per depth; equal and opposite to the fluid's sums. With FX_IMPEDANCE also the surface
+ * sign, N/m per depth; equal and opposite to the fluid's sums. With `wetted` also the surface
  * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
 SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbours *neighbours,
                                const struct receiver *s, const real *own, const double *volume,
-                               const struct vector_constants *k, effect_set effects,
+                               const struct vector_constants *k, effect_set effects, bool wetted,
                                double *const force[2], double *const wet[2])
 {
     const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
@@ -64,12 +64,12 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
         const vreal g = q.weight * stress;
         sum_x[part] = vfma(g, q.x, sum_x[part]);
         sum_y[part] = vfma(g, q.y, sum_y[part]);
-        if (!(effects & FX_IMPEDANCE)) continue;
+        if (!wetted) continue;
         wet_x[part] = vfma(q.weight, q.x, wet_x[part]);
         wet_y[part] = vfma(q.weight, q.y, wet_y[part]);
     }
     add_force(sum_x, sum_y, PAIR_SLOPE * fluid->k.h, volume, force[0], force[1]);
-    if (effects & FX_IMPEDANCE)
+    if (wetted)
         add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);
 }
 
@@ -79,7 +79,8 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
                                     const int32_t *index, int count, const real *own,
                                     const struct neighbours *neighbours,
                                     const struct cell_sides *sides,
-                                    const struct vector_constants *k, effect_set effects)
+                                    const struct vector_constants *k, effect_set effects,
+                                    bool wetted)
 {
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
            wet_y[CLUSTER] = {0}, drag_x[CLUSTER] = {0}, drag_y[CLUSTER] = {0};
@@ -90,7 +91,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         s.p = vspread(own + PACKED_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
-        fluid_force(fluid, neighbours, &s, own, volume, k, effects,
+        fluid_force(fluid, neighbours, &s, own, volume, k, effects, wetted,
                     (double *[]){&force_x[r], &force_y[r]}, (double *[]){&wet_x[r], &wet_y[r]});
         if (!(effects & FX_NO_SLIP)) continue;
         s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
@@ -103,7 +104,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         particles->fy[index[r]] = force_y[r] + drag_y[r];
         particles->drag_x[index[r]] = drag_x[r];
         particles->drag_y[index[r]] = drag_y[r];
-        if (!(effects & FX_IMPEDANCE)) continue;
+        if (!wetted) continue;
         particles->wet_x[index[r]] = wet_x[r];
         particles->wet_y[index[r]] = wet_y[r];
     }
@@ -111,7 +112,8 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
 
 SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *particles,
                                  enum kind kind, const struct cells *cells, int32_t cell, bool all,
-                                 const struct vector_constants *k, effect_set effects, bool thin)
+                                 const struct vector_constants *k, effect_set effects, bool wetted,
+                                 bool thin)
 {
     const struct cell_list *const list = &cells->kind[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
@@ -128,31 +130,29 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
             gather_clusters(scratch, fluid, KIND_FLUID, kind, cluster);
         force_on_cluster(fluid, particles, index, count,
                          cluster_packed(&fluid->packed[kind], (size_t)cluster), &neighbours, &sides,
-                         k, effects);
+                         k, effects, wetted);
     }
 }
 
-/* FX_IMPEDANCE if the wetted surface of the particles of a kind is needed (T-35a, T-95). */
-SPHFSI_INLINE effect_set wetted_effect(effect_set effects, enum kind kind)
+/* Whether the wetted surface of the particles of a kind is needed (T-35a, T-95). */
+SPHFSI_INLINE bool needs_wetted(effect_set effects, enum kind kind)
 {
-    const effect_set needs = kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID | FX_BEAM;
-    return effects & needs ? FX_IMPEDANCE : 0;
+    return effects & (kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID | FX_BEAM);
 }
 
 void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
                        const struct cells *cells, bool all)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
-    const effect_set effects =
-        (fluid->effects & (effect_set)SURFACE_EFFECTS) | wetted_effect(fluid->effects, kind);
+    const effect_set effects = fluid->effects & (effect_set)SURFACE_EFFECTS;
+    const bool wetted = needs_wetted(fluid->effects, kind);
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t m = 0; m < n; m++)
         if (effects & FX_THIN)
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, true);
-        else if (effects & (effect_set)SURFACE_EFFECTS)
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, false);
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, wetted, true);
+        else if (effects)
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects, wetted, false);
         else /* pressure alone */
-            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, effects & FX_IMPEDANCE,
-                          false);
+            force_on_cell(fluid, particles, kind, cells, cell[m], all, &k, 0, wetted, false);
 }

@@ -279,7 +279,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (fluid->effects & SURFACE_EFFECTS) pack_surface_fields(fluid, particles, &d, &sides);
+        if (fluid->effects & (FX_ONE_SIDED | FX_REPULSION))
+            pack_surface_fields(fluid, particles, &d, &sides);
         if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
         if (thin) pack_sliding(fluid, &d, &neighbours, &sides);
         if (neighbours.n > 0) {

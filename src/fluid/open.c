@@ -243,7 +243,7 @@ enum err open_list(struct open *o, struct diag *d)
         if (o->n_members == o->capacity)
             return diag_fail(d, ERR_GUARD,
                              "the buffers of the open boundaries contain four times as many "
-                             "particles as at the start. Fluid collects in them; a finer dp or a "
+                             "particles as at the start. Fluid collects in them; a smaller dp or a "
                              "line further from the disturbance may help");
         o->member[o->n_members++].particle = (int32_t)i;
     }

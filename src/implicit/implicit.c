@@ -303,13 +303,12 @@ static bool step(struct solid *solid, struct particles *particles, double dt, in
     return done;
 }
 
-void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n,
-                      bool centred)
+void solid_advance_any(struct solid *solid, struct particles *particles, double dt, int n)
 {
     struct loads *const loads = solid->loads;
     struct hinges *const hinges = solid->hinges;
     if (!implicit_is_next(solid)) {
-        solid_advance(solid, particles, dt, n, centred);
+        solid_advance(solid, particles, dt, n);
         return;
     }
     solid->within_step = take_mean_stress;

@@ -388,14 +388,13 @@ static void place_clamps(const struct pack_range *own, double time)
 }
 
 /* The sub-steps of solid_advance by one of its threads. */
-static void substeps(struct solid *solid, struct particles *particles, double dt, int n,
-                     bool centred)
+static void substeps(struct solid *solid, struct particles *particles, double dt, int n)
 {
     const struct pack_range packs = packs_of_thread(solid, particles), *const own = &packs;
-    const double first = centred ? 0.5 * dt : 0;
+    const double first = solid->centred ? 0.5 * dt : 0;
     double time = solid->time;
     kick_and_drift(own, solid_free_kick, 0, 0, first);
-    if (centred) place_clamps(own, time + first);
+    if (solid->centred) place_clamps(own, time + first);
     for (int k = 0; k < n; k++) {
         const bool last = k + 1 == n;
         stress_sweeps(own, true);
@@ -411,10 +410,10 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
     }
 }
 
-void solid_advance(struct solid *solid, struct particles *particles, double dt, int n, bool centred)
+void solid_advance(struct solid *solid, struct particles *particles, double dt, int n)
 {
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
-    substeps(solid, particles, dt, n, centred);
+    substeps(solid, particles, dt, n);
     for (int k = 0; k < n; k++) solid->time += dt; /* as in the steps */
 }
 

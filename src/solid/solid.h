@@ -117,6 +117,7 @@ struct solid {
     void *weight;       /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
     int64_t *offset;    /* [n_slots] */
     bool coupled;       /* meets fluid */
+    bool centred;       /* kicks in the middle of drifts (T-30, T-36), else before them (T-32) */
     bool variational;   /* some body has its hourglass force from an energy */
     bool kelvin_voigt;  /* some body has a damping_time */
     double omega_max;   /* largest frequency of the linearised operator, 1/s */
@@ -200,12 +201,11 @@ struct solid_forces_now {
 struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
                                          double time);
 
-/* n sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
+/* n explicit sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
  * drift. With `centred`: half drift, kick, half drift, second order in time. Gradients, stresses,
  * accelerations and packed fields are those of the last sub-step only after solid_write_stress and
  * solid_stress. */
-void solid_advance(struct solid *solid, struct particles *particles, double dt, int n,
-                   bool centred);
+void solid_advance(struct solid *solid, struct particles *particles, double dt, int n);
 
 /* Kick and drift where no fluid resists them. */
 solid_kick solid_free_kick;

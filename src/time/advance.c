@@ -5,8 +5,8 @@
 void advance_structure(struct simulation *sim, double dt, double kick)
 {
     const int n = timestep_substeps(sim, dt);
-    sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
-    energy_book_solid(sim, dt, n, sim->coupling.centred);
+    sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, !(sim->state.dt > 0));
+    energy_book_solid(sim, dt, n);
     sim->substeps = n;
     sim->state.solid_substeps += n;
     sim->state.solid_evaluations += n;

@@ -76,9 +76,9 @@ void find_skin_left(struct simulation *sim);
  * skin that is left; `speed2_before`: of the fluid before it. */
 void use_skin_left(struct simulation *sim, double speed2_before);
 
-/* Clears what the fluid has given to particles of walls or structures. Evaluations skip those
+/* Clears what particles of walls or structures have from the fluid. Evaluations skip those
  * without fluid nearby, so this is done before the cells change. */
-void clear_fluid_sums(struct particles *particles);
+void forget_fluid(struct particles *particles);
 
 /* T-45: removes the tension of fluid particles far below the reference density with almost no
  * neighbours. To be called after a step, while cells are valid. */

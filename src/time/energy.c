@@ -89,7 +89,7 @@ static void add_late_work(struct simulation *sim, struct energies *solid)
 {
     struct particles *const particles = &sim->kind[KIND_SOLID];
     struct solid alone = sim->solid; /* without forces whose work is booked; overwrites sx and sy */
-    if (sim->coupling.centred || alone.implicit || sim->substeps == 0) return;
+    if (alone.centred || sim->substeps == 0) return;
     const double half = 0.5 * sim->state.dt / sim->substeps;
     alone.coupled = false;
     alone.external = NULL;
@@ -215,14 +215,14 @@ void energy_book_evaluation(struct simulation *sim, double dt)
             dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
 }
 
-void energy_book_solid(struct simulation *sim, double dt, int n, bool centred)
+void energy_book_solid(struct simulation *sim, double dt, int n)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const particles = &sim->kind[KIND_SOLID];
     const struct external *const external = sim->solid.external;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
-    const double late = centred ? 0 : 0.5 * dt / n;
+    const double late = sim->solid.centred ? 0 : 0.5 * dt / n;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->free[i] == 0) continue;
         struct energy_entry *const e = entry_of(sim, KIND_SOLID, particles->body[i]);

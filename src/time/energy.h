@@ -51,8 +51,8 @@ void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 
 /* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work of the fluid, of the
- * impedance and of a program's accelerations. `centred`: kicks in the middle of drifts. */
-void energy_book_solid(struct simulation *sim, double dt, int n, bool centred);
+ * impedance and of a program's accelerations. */
+void energy_book_solid(struct simulation *sim, double dt, int n);
 
 /* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,
  * which the ledger has, too; and by other bodies. */

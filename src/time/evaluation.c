@@ -59,7 +59,6 @@ static bool keeps_slopes(const struct simulation *sim, double time)
 
 void evaluate_rates(struct simulation *sim, double time)
 {
-    sim->state.evaluations++;
     if (sim->evaluated) return;
     if (sim->effects & FX_MOTION) move_walls(sim, time);
     if (sim->gravity_varies)
@@ -85,6 +84,7 @@ void evaluate_rates(struct simulation *sim, double time)
 
 void evaluate_start(struct simulation *sim)
 {
+    sim->state.evaluations++;
     evaluate_rates(sim, sim->state.time);
     sim->evaluated = false;
     if (sim->effects & FX_DAMPER)
@@ -97,7 +97,6 @@ void simulation_refresh(struct simulation *sim)
         double seconds[PHASE_COUNT];
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
         evaluate_rates(sim, sim->state.time);
-        sim->state.evaluations--;
         /* A caller's own forces and motions may change between two steps. */
         sim->evaluated = !sim->external[KIND_FLUID].at && !sim->external[KIND_SOLID].at &&
                          !sim->scene->motion_hook;

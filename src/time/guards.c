@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Limits beyond which a state is invalid: what stopped a run, where, and what helps. */
 
+#include <float.h>
 #include <stdarg.h>
 
 #include "time/advance.h"
@@ -12,7 +13,7 @@
 struct finding {
     int64_t at; /* -1: none found */
     const char *quantity;
-    double value;
+    double value, limit;
 };
 
 /* The first particle, in order, whose speed or density exceeds its limit or is not a number. */
@@ -22,13 +23,13 @@ static struct finding find_invalid(const struct particles *particles, double spe
     for (int64_t i = 0; i < particles->n; i++) {
         const double speed =
             sqrt(particles->vx[i] * particles->vx[i] + particles->vy[i] * particles->vy[i]);
-        if (!(speed <= speed_limit)) return (struct finding){i, "speed (m/s)", speed};
+        if (!(speed <= speed_limit)) return (struct finding){i, "speed (m/s)", speed, speed_limit};
         if (!isfinite(particles->x[i] + particles->y[i]))
-            return (struct finding){i, "position (m)", particles->x[i] + particles->y[i]};
+            return (struct finding){i, "position (m)", particles->x[i] + particles->y[i], DBL_MAX};
         if (dens_limit > 0 && !(fabs(particles->dens[i]) <= dens_limit))
-            return (struct finding){i, "rho/rho0 - 1", particles->dens[i]};
+            return (struct finding){i, "rho/rho0 - 1", particles->dens[i], dens_limit};
     }
-    return (struct finding){-1, "", 0};
+    return (struct finding){.at = -1};
 }
 
 static enum err invalid(const struct simulation *sim, enum kind kind, struct finding f,
@@ -37,10 +38,10 @@ static enum err invalid(const struct simulation *sim, enum kind kind, struct fin
     const struct particles *const particles = &sim->kind[kind];
     return diag_fail(d, ERR_GUARD,
                      "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
-                     "which is not valid: %s",
+                     "beyond the limit of %.3g: %s",
                      time_text(sim).text, (long long)sim->state.steps, kind_names[kind],
                      (long long)particles->id[f.at], particles->x[f.at], particles->y[f.at],
-                     f.quantity, f.value, cause);
+                     f.quantity, f.value, f.limit, cause);
 }
 
 /* Says a sentence about the present state, if `warned` is not set yet. */
@@ -121,13 +122,12 @@ bool guards_strain_due(const struct simulation *sim)
 /* det F of every particle, from displacement gradients as of the last stress evaluation. */
 static struct finding smallest_det(const struct particles *particles)
 {
-    struct finding f = {-1, "det F", (double)INFINITY};
+    struct finding f = {-1, "det F", (double)INFINITY, 0};
     for (int64_t i = 0; i < particles->n; i++) {
         const double det = (1 + particles->Uxx[i]) * (1 + particles->Uyy[i]) -
                            particles->Uxy[i] * particles->Uyx[i];
-        if (isnan(det))
-            return (struct finding){i, "det F", det}; /* comparisons with it are false */
-        if (!(det >= f.value)) f = (struct finding){i, "det F", det};
+        if (isnan(det)) return (struct finding){i, "det F", det, 0}; /* no comparison finds it */
+        if (!(det >= f.value)) f = (struct finding){i, "det F", det, 0};
     }
     return f;
 }
@@ -139,17 +139,20 @@ static struct finding too_fast(const struct simulation *sim, const struct partic
         if (particles->body[i] != particles->body[first]) first = i;
         const double speed2 = square(particles->vx[i] - particles->vx[first]) +
                               square(particles->vy[i] - particles->vy[first]);
-        if (!(speed2 <= square(10 * sim->solid.body[particles->body[i]].sound_speed)))
-            return (struct finding){i, "speed relative to its body (m/s)", sqrt(speed2)};
+        const double limit = 10 * sim->solid.body[particles->body[i]].sound_speed;
+        if (!(speed2 <= square(limit)))
+            return (struct finding){i, "speed relative to the first particle of its body (m/s)",
+                                    sqrt(speed2), limit};
     }
-    return (struct finding){-1, "", 0};
+    return (struct finding){.at = -1};
 }
 
 static enum err check_contact(struct simulation *sim, struct diag *d)
 {
     const struct contact_depth *const at = &sim->contact.deepest;
     if (sim->contact.list_full)
-        return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
+        return diag_fail(d, ERR_MEMORY,
+                         "%s: no memory for all pairs in contact; a larger dp needs less",
                          time_text(sim).text);
     if (at->overlap < OVERLAP_WARNING) return ERR_OK;
     const struct section_title one = section_title(contact_section(&sim->contact, at->body)),
@@ -176,7 +179,7 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
         return invalid(sim, KIND_SOLID, fast,
-                       "the limit is ten times the speed of sound of the material. The solid is "
+                       "this is ten times the speed of sound of the material. The solid is "
                        "unstable (a smaller solid_safety may help) or far too soft for its load",
                        d);
     if (sim->solid.contact) TRY(check_contact(sim, d));
@@ -185,14 +188,14 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     sim->state.det_low = min2(sim->state.det_low, det.value);
     if (!(det.value > 0))
         return invalid(sim, KIND_SOLID, det,
-                       "the material is inverted; finer particles, more hourglass control or a "
+                       "the material is inverted; a smaller dp, more hourglass control or a "
                        "stiffer law may help",
                        d);
     if (det.value < DET_WARNING)
         warn_once(
             sim, &sim->guard.warned_det, d,
             "solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
-            "the material is inverted and the run stops; a finer dp or a stiffer law may help",
+            "the material is inverted and the run stops; a smaller dp or a stiffer law may help",
             (long long)particles->id[det.at], particles->x[det.at], particles->y[det.at],
             det.value);
     return ERR_OK;
@@ -208,7 +211,7 @@ static const char *step_remedy(const struct simulation *sim, enum bound bound)
         return "a smaller cfl or a higher sound_speed may help";
     if (sim->effects & FX_FLUID && sim->scene->numerics.multirate == MULTIRATE_OFF)
         return "numerics.multirate = auto gives the solid steps of its own";
-    return "a finer dp or a stiffer body may help";
+    return "a smaller dp or a stiffer body may help";
 }
 
 /* Steps that become too small, and sub-steps that become too many. */
@@ -221,7 +224,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
         return diag_fail(
             d, ERR_GUARD,
             "%s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
-            "because its material is being crushed or torn; a finer dp may help",
+            "because its material is being crushed or torn; a smaller dp may help",
             time_text(sim).text, sim->dt_solid, sim->substeps);
     if (dt > STEP_WARNING * limit) return ERR_OK;
     if (dt < limit)
@@ -364,10 +367,10 @@ static void check_beams_in_solids(struct simulation *sim, struct diag *d)
 {
     const struct particles *const solid = &sim->kind[KIND_SOLID];
     int beam;
-    if (sim->guard.warned_beams || sim->state.steps % CHECK_INTERVAL) return;
+    if (sim->guard.warned_beam_in_solid || sim->state.steps % CHECK_INTERVAL) return;
     const int64_t i = beams_find_solid(&sim->beams, solid, 0.5 * sim->solid.dp, &beam);
     if (i < 0) return;
-    warn_once(sim, &sim->guard.warned_beams, d,
+    warn_once(sim, &sim->guard.warned_beam_in_solid, d,
               "[beam %s] has met [solid %s] near (%.6g, %.6g) m and passes through, since beams "
               "and solids have no contact; make the solid a [rigid] or the beam a [solid]",
               sim->scene->beam[beam].common.name, sim->scene->solid[solid->body[i]].common.name,

@@ -141,6 +141,7 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
 {
     TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
                      sim->effects & FX_IMPLICIT, d));
+    sim->solid.centred = sim->integrator->centred || sim->effects & FX_IMPLICIT;
     if (sim->effects & FX_HINGE)
         TRY(hinges_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
     start_solid(sim);
@@ -166,7 +167,6 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
     if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION))
         TRY(loads_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
     if (sim->effects & FX_IMPLICIT) {
-        sim->coupling.centred = true;
         TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
         if (!(sim->effects & FX_FLUID))
             sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
@@ -205,7 +205,6 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .solid = &sim->solid,
         .particles = &sim->kind[KIND_SOLID],
         .stage = sim->integrator->stage,
-        .centred = sim->integrator->centred,
         .exchange_time = &sim->state.exchange_time,
     };
     if (sim->effects & FX_SOLID) TRY(create_structure(sim, d));

@@ -26,7 +26,7 @@ static void clear_solid_velocities(struct simulation *sim)
     particles_clear(particles->vy, particles->n);
     particles_clear(particles->wx, particles->n);
     particles_clear(particles->wy, particles->n);
-    if (sim->coupling.centred || sim->substeps == 0 || particles->n == 0) return;
+    if (sim->solid.centred || sim->substeps == 0 || particles->n == 0) return;
     solid_stress(&sim->solid, particles);
     solid_forces(&sim->solid, particles);
     for (int64_t i = 0; i < particles->n; i++) {

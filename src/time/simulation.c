@@ -126,8 +126,8 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
             guards_warn_of_leaving(sim, &(struct diag){.warn = NULL});
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);
-        if (sim->effects & FX_COUPLING) clear_fluid_sums(&sim->kind[KIND_SOLID]);
-        if (sim->effects & FX_WALL) clear_fluid_sums(&sim->kind[KIND_WALL]);
+        if (sim->effects & FX_COUPLING) forget_fluid(&sim->kind[KIND_SOLID]);
+        if (sim->effects & FX_WALL) forget_fluid(&sim->kind[KIND_WALL]);
         if (fluid_fullest_cell(&sim->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT,
                              "the checkpoint cannot be used, because it has more than %d particles "

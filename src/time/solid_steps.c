@@ -20,8 +20,7 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     if (by->solid_step && !solid->implicit) {
         for (int k = 0; k < n; k++) by->solid_step(sim, dt);
     } else {
-        implicit_advance(solid, &sim->kind[KIND_SOLID], dt / sim->substeps, all,
-                         sim->coupling.centred);
+        solid_advance_any(solid, &sim->kind[KIND_SOLID], dt / sim->substeps, all);
         sim->state.solid_evaluations += all;
     }
 }
@@ -64,7 +63,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
 static void external_for_step(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->kind[KIND_SOLID];
-    const double half = sim->coupling.centred ? 0.5 * dt : 0;
+    const double half = sim->solid.centred ? 0.5 * dt : 0;
     for (int64_t i = 0; half > 0 && i < particles->n; i++) {
         particles->x[i] += half * particles->vx[i];
         particles->y[i] += half * particles->vy[i];

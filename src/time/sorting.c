@@ -15,7 +15,7 @@ static void add_crossings(struct simulation *sim)
     }
 }
 
-void clear_fluid_sums(struct particles *particles)
+void forget_fluid(struct particles *particles)
 {
     double *const sums[] = {particles->p,  particles->dens,  particles->fx,
                             particles->fy, particles->wet_x, particles->wet_y};
@@ -34,8 +34,8 @@ void find_skin_left(struct simulation *sim)
 enum err sort_particles(struct simulation *sim, struct diag *d)
 {
     struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
-    if (sim->effects & FX_WALL) clear_fluid_sums(&sim->kind[KIND_WALL]);
-    if (sim->effects & FX_COUPLING) clear_fluid_sums(solid);
+    if (sim->effects & FX_WALL) forget_fluid(&sim->kind[KIND_WALL]);
+    if (sim->effects & FX_COUPLING) forget_fluid(solid);
     if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, d));
     const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
     if (lost && sim->state.lost == 0) guards_warn_of_loss(sim, fluid->n - lost, d);

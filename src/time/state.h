@@ -16,7 +16,7 @@ struct guard {
     double speed_limit; /* m/s: at the speed of sound no flow is weakly compressible */
     double step_limit;  /* s: a smaller step stops the run */
     bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy,
-        warned_contact, warned_voids, warned_rigid, warned_beams,
+        warned_contact, warned_voids, warned_rigid, warned_beams, warned_beam_in_solid,
         warned_left[ENERGY_ENTRIES]; /* of each section */
     bool case_at_fault; /* what stopped the run would stop it with shorter steps, too */
 };
@@ -80,7 +80,7 @@ struct integrator {
     double density_decay, velocity_decay;
     unsigned fluid_groups; /* fields that it needs beside those of its effect */
     double stage;    /* of the rates that advance the fluid, in steps after the start of the step */
-    bool centred;    /* the solid kicks in the middle of its drifts, else before them */
+    bool centred;    /* `centred` of the solid's explicit steps (solid.h) */
     bool alternates; /* carries on two solutions, by turns */
 };
 

@@ -100,7 +100,7 @@ static void correct_at_single_rate(struct simulation *sim, double dt)
 {
     struct particles *const solid = &sim->kind[KIND_SOLID];
     correct_solid(solid, dt);
-    energy_book_solid(sim, dt, 1, true);
+    energy_book_solid(sim, dt, 1);
     solid_finish_kick(&sim->solid, solid, solid->vx0, solid->vy0, dt);
     solid_place_clamps(&sim->solid, solid, scene_time(sim, sim->state.time + dt));
     motion_at_single_rate(&sim->coupling, motion_weight(&sim->coupling, dt));
@@ -131,6 +131,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (single_rate) predict_at_single_rate(sim, dt);
     phase_add(sim, PHASE_update, clock);
 
+    sim->state.evaluations++;
     evaluate_rates(sim, time + 0.5 * dt);
     sim->fluid.predict_by = 0;
     energy_book_evaluation(sim, dt);

@@ -206,7 +206,7 @@ static void test_lanes_follow_the_particles(void)
     RIG_OPEN_SOLID(text, precisions[1], "integrator=leapfrog");
     const struct solid *const solid = &rig.sim.solid;
     for (int step = 0; step < 5; step++) {
-        solid_advance(&rig.sim.solid, p, 1e-5, 1, true);
+        solid_advance(&rig.sim.solid, p, 1e-5, 1);
         for (int64_t i = 0; i < p->n; i++) {
             const double x = solid_get(solid, solid->packed[S_UX], i) +
                              solid_get(solid, solid->packed[S_LOW_X], i),

@@ -41,7 +41,7 @@ if grep -q 'than the kernel.s reach' "$dir/output"; then
     failures=$((failures + 1))
 fi
 says 1 'gap = 0.05 m is more than 4 particle spacings of 0.01 m' settle.cfg bed.gap=5*dp
-says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp prevents that' \
+says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a smaller dp prevents that' \
     gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
 says 0 'is above 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6

@@ -46,9 +46,10 @@ static double after_pattern(double first, double second)
     for (int64_t i = 0; i < particles->n; i++)
         particles->vy[i] = 1e-4 * particles->free[i] * noise(&seed);
     const double start = energy();
+    rig.sim.solid.centred = true;
     for (int k = 0; k < 200; k++) {
-        solid_advance(&rig.sim.solid, particles, first * rig.sim.dt_solid, 9, true);
-        solid_advance(&rig.sim.solid, particles, second * rig.sim.dt_solid, 2, true);
+        solid_advance(&rig.sim.solid, particles, first * rig.sim.dt_solid, 9);
+        solid_advance(&rig.sim.solid, particles, second * rig.sim.dt_solid, 2);
     }
     return energy() / start;
 }

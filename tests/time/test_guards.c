@@ -93,7 +93,7 @@ static void test_speed_of_sound_of_the_fluid(void)
     rig.sim.kind[KIND_FLUID].vx[12] = 19.9;
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     rig.sim.kind[KIND_FLUID].vx[12] = 20.1;
-    expect(KIND_FLUID, 12, "speed (m/s) = 20.1");
+    expect(KIND_FLUID, 12, "speed (m/s) = 20.1, beyond the limit of 20:");
 }
 
 static void test_density_of_the_fluid(void)
@@ -460,6 +460,24 @@ static void test_voids_in_a_full_channel(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "of the channel is empty: voids"), warning);
 }
 
+/* One of the two warnings does not suppress the other. */
+static void test_beams_warn_of_both(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.1, 0.1\n"
+             "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+             "[beam bar]\nshape = polyline: -0.1, 0.2; 0.2, 0.2\nthickness = 1 cm\n"
+             "density = 1000\nyoung = 1e6\npoisson = 0.3\n",
+             NULL);
+    rig_steps(&rig, 1, 1);
+    rig.diag = (struct diag){.warn = note};
+    rig.sim.state.steps = 16;
+    rig.sim.beams.crowded = true;
+    rig.sim.kind[KIND_SOLID].y[0] = 0.2;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, check(), rig.diag.text);
+    TEST_ASSERT_EQUAL_INT(2, warnings);
+}
+
 static void test_substeps_without_end(void)
 {
     rig.sim.substeps = 10001;
@@ -532,6 +550,7 @@ int main(void)
     RUN_TEST(test_what_may_help_is_said);
     RUN_TEST(test_warnings_before_the_end);
     RUN_TEST(test_voids_in_a_full_channel);
+    RUN_TEST(test_beams_warn_of_both);
     RUN_TEST(test_substeps_without_end);
     RUN_TEST(test_a_load_that_is_not_finite);
     RUN_TEST(test_a_run_stops_at_once);
