@@ -176,15 +176,16 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
     pack_four(d, sticks, PACKED_STICKS);
 }
 
-/* T-110c: the direction in which fluid slides along the line of dummies, times the root of the
- * share of their place that fluid of their own side fills: all of it where the kernel sees half. */
-SPHFSI_INLINE void pack_sliding(const struct fluid *fluid, const struct dummies *d,
-                                const struct neighbours *neighbours, const struct cell_sides *sides)
+/* T-110c: the share of the place of dummies that fluid of their own side fills: all of it where the
+ * kernel sees half; and the direction in which fluid slides along their line, times its root. */
+SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummies *d,
+                               const struct neighbours *neighbours, const struct cell_sides *sides)
 {
     double t[CLUSTER][2] = {{0}};
     real filled[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
-        const struct receiver s = receiver_at(sides, d->packed + r);
+        struct receiver s = receiver_at(sides, d->packed + r);
+        s.opaque = true;
         vreal sum[PARTS] = {{0}};
         EACH_CANDIDATE(neighbours, part, code, b)
         {
@@ -196,8 +197,10 @@ SPHFSI_INLINE void pack_sliding(const struct fluid *fluid, const struct dummies 
     }
     for (int r = 0; r < d->count; r++) {
         const int32_t line = fluid_line_of(fluid, d->kind, d->at[r]);
-        const double part = sqrt(min2(1, 2 * KERNEL_NORM * (double)filled[r]));
+        const double phi = min2(1, 2 * KERNEL_NORM * (double)filled[r]), part = sqrt(phi);
         if (line) line_slides(&fluid->lines.line[line - 1], d->at[r], t[r]);
+        if (line) fluid->lines.filled[d->at[r]] = phi;
+        d->packed[PACKED_FILLED * CLUSTER + r] = (real)phi;
         d->packed[PACKED_ALONG_X * CLUSTER + r] = (real)(part * t[r][0]);
         d->packed[PACKED_ALONG_Y * CLUSTER + r] = (real)(part * t[r][1]);
     }
@@ -281,8 +284,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fluid->effects & (FX_ONE_SIDED | FX_REPULSION))
             pack_surface_fields(fluid, particles, &d, &sides);
+        if (thin) pack_filled(fluid, &d, &neighbours, &sides);
         if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
-        if (thin) pack_sliding(fluid, &d, &neighbours, &sides);
         if (neighbours.n > 0) {
             dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);
             wet[n++] = m;

@@ -78,8 +78,10 @@ enum packed_field {
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
     /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0;
-     * and the direction in which fluid slides along it, times the root of phi (T-110c). */
+     * the share phi of its place that fluid fills, and the direction in which fluid slides along
+     * it, times the root of phi (T-110c). */
     PACKED_LINE = PACKED_REPULSION_FIELDS,
+    PACKED_FILLED,
     PACKED_ALONG_X,
     PACKED_ALONG_Y,
     PACKED_THIN_FIELDS,
@@ -255,8 +257,9 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
                                 const double from[2], enum kind kind, int64_t i, double x, double y)
 {
     if (!(fluid->effects & FX_THIN)) return 1;
+    const int32_t own = fluid_line_of(fluid, kind, i);
     return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
-                      (const double[]){x, y}, fluid_line_of(fluid, kind, i));
+                      (const double[]){x, y}, own, own ? fluid->lines.filled[i] : 0);
 }
 
 /* repulsion.c: energy that walls and structures have stored by repelling each section of fluid

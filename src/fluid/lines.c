@@ -207,6 +207,7 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
     lines->n = scene->n_line;
     TRY(arena_array(a, &lines->line, lines->n, what, d));
     TRY(arena_array(a, &lines->of_wall, walls->n, what, d));
+    TRY(arena_array(a, &lines->filled, walls->n, what, d));
     for (int k = 0; k < lines->n; k++) {
         struct thin_line *const line = &lines->line[k];
         line->scene = &scene->line[k];
@@ -253,7 +254,7 @@ static double passes_piece(const struct thin_line *line, const struct line_piece
 }
 
 double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
-                  const double from[2], const double offset[2], int32_t own)
+                  const double from[2], const double offset[2], int32_t own, double filled)
 {
     double clear = 1;
     for (int k = 0; k < lines->n; k++) {
@@ -275,7 +276,7 @@ double lines_seen(const struct lines *lines, const struct cells *cells, double r
             }
         }
         if (!odd) passes = 1;
-        if (own == k + 1) return clear * (1 - passes);
+        if (own == k + 1) return odd ? clear * (1 - filled * passes) : 0;
         clear *= passes;
     }
     return own ? 0 : clear;

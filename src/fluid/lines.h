@@ -43,6 +43,7 @@ struct lines {
     struct thin_line *line;
     int32_t *of_wall; /* [particles of walls]: 1 + number of the line that a dummy belongs to, or
                          0 */
+    double *filled;   /* [particles of walls]: phi of T-110c */
 };
 
 enum err lines_create(struct lines *lines, struct arena *a, const struct scene *scene,
@@ -71,8 +72,8 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2]);
  * begins at a wall. */
 void line_slides(const struct thin_line *line, int64_t i, double t[2]);
 
-/* T-110: how much of each other two places see, of which the second is a dummy of the line `own`,
- * from 1; 0: of none. `offset`: the second place less the first, `from`; `reach` of the kernel, m.
- */
+/* T-110, T-110e: how much of each other two places see, of which the second is a dummy of the line
+ * `own`, from 1, with the share phi, `filled`; 0: of none. `offset`: the second place less the
+ * first, `from`; `reach` of the kernel, m. */
 double lines_seen(const struct lines *lines, const struct cells *cells, double reach,
-                  const double from[2], const double offset[2], int32_t own);
+                  const double from[2], const double offset[2], int32_t own, double filled);

@@ -230,7 +230,7 @@ static void test_an_end_leaves_its_wall(void)
         beams_place(beams, 0);
         const double seen = rise > 0 ? min2(1, rise + 0.05 * dp / h) : 0;
         assert_near(1e-6, seen,
-                    lines_seen(&rig.sim.fluid.lines, &rig.sim.cells, 2 * h, from, way, 0),
+                    lines_seen(&rig.sim.fluid.lines, &rig.sim.cells, 2 * h, from, way, 0, 1),
                     "weight");
     }
 }
