@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * What each call of the library begins and ends with, and how a session reads its case. */
 #include "app/session.h"
 #include "check/check.h"
 #include "geometry/load.h"

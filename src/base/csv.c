@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Numbers as text, and the reader of tables. */
 #include "base/csv.h"
 #include "base/files.h"
 

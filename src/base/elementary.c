@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Argument reduction and series of each function, in pairs of doubles. */
 #include "base/elementary.h"
 #include "base/base.h"
 

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Reads files whole, and replaces them under a temporary name that is synced and renamed. */
 #include "base/files.h"
 
 #include <errno.h>

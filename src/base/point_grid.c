@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The hash table of cells and the list of points in each. */
 #include "base/point_grid.h"
 
 static enum err create_table(struct point_grid *g, int64_t n, struct arena *a, struct diag *d)

@@ -31,9 +31,9 @@ struct beam_start {
     double apart[2], turn[2], strain[3];
 };
 
-/* T-104: the mean force on each node over a step of dt in which the nodes move by d, such that its
- * work is the change of the elastic energy, plus what is dissipated; and its derivative by d. w:
- * the mean velocities in the step before, in fluid (T-104d); NULL: none. */
+/* T-104: the mean force on each node over a step of dt in which the nodes move by d, and its
+ * derivative by d. Its work is the change of elastic energy plus what is dissipated. w: the mean
+ * velocities in the step before, in fluid (T-104d); NULL: none. */
 void beam_force(const struct beam_element *e, const struct beam_start *start,
                 const double *const d[2], const double *const w[2], double dt, double force[2][3],
                 double matrix[6][6]);

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Looks up sections and keys, and sets, compares and suggests their values. */
 #include "case/params.h"
 
 #define WHERE_0(section) offsetof(struct scene, section), 0

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The order of all checks of a scene. */
 #include "check/check.h"
 
 enum err check_scene(struct scene *scene, struct diag *d)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The order of the exchange in a step of the fluid, the motion of structures that the fluid uses,
- * and bounds of the time step: what one side does, the other side follows a step later. */
+ * The order of the exchange in a step of the fluid. The motion of structures that the fluid uses.
+ * Bounds of the step, which are needed because each side follows the other a step later. */
 #include "coupling/coupling.h"
 #include "implicit/implicit.h"
 
@@ -169,7 +169,7 @@ double coupling_added_mass_step(const struct coupling *coupling, int *lightest)
 }
 
 /* T-35g: viscosity stops the particles at the corner of a structure at a rate that is held over a
- * step of the fluid. 8.6 is the kernel's sum there. */
+ * step of the fluid. 8.6 is the kernel's sum there; 0.9 leaves a margin. */
 double coupling_drag_step(const struct coupling *coupling)
 {
     const struct scene *const scene = coupling->scene;

@@ -68,7 +68,7 @@ SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
 
 /* Time over which the velocity is extrapolated, in half steps (T-35): from the middle of a
  * step to its end, and to the corrector half a step later. At a single rate `symplectic`
- * extrapolates nothing. */
+ * extrapolates nothing, and has the bounds of the other integrators. */
 SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
 {
     return coupling->multirate ? 1 + 2 * coupling->stage : 1;

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The damping of velocities in zones, and the energy that it takes (T-101). */
 #include "fluid/damping.h"
 
 enum { BLOCK = 1024 }; /* particles whose power is one sum */

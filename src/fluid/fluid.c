@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Sets up the fluid, runs the passes of an evaluation in order, and shifts particles. */
 #include "fluid/fluid.h"
 
 static struct fluid_constants constants_of(const struct scene *scene)

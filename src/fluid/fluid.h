@@ -222,13 +222,15 @@ SPHFSI_INLINE bool fluid_near_dummies(const struct fluid *fluid, int32_t cell)
     return fluid_near_kind(fluid, KIND_WALL, cell) || fluid_near_kind(fluid, KIND_SOLID, cell);
 }
 
-/* Chooses the kernel and allocates packed fields of a fluid that is zero but for its effects. */
+/* Chooses sweeps and variant, and allocates packed fields and scratch; `fluid` is zero but for its
+ * effects. */
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
                       struct particles kinds[KIND_COUNT], const struct cells *cells, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
- * except those at the free surface. Returns the largest shift, m. */
+/* Moves particles by A h times a speed times dt, down the gradient of their concentration at the
+ * last evaluation. The speed is their own or c0/10 (`shifting_speed`). Those at the free surface
+ * stay. Returns the largest shift, m. */
 double fluid_shift(const struct fluid *fluid, struct particles *particles, double dt);
 
 /* The density that the acoustic damper remembers moves towards the present one. */

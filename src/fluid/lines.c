@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Places the dummies and pieces of thin lines, and finds what a line separates (T-110). */
 #include "fluid/wall_motion.h"
 #include "geometry/motion.h"
 

@@ -5,9 +5,9 @@
 
 /* --- the fluid across a line --- */
 
-/* Sums of the kernel, without its norm, over the fluid around a point: of the pressure and of
- * rho/rho0 times the vector back; or of the flow, which are those of the velocity, which times the
- * vector to the particles, of that vector and of its products. */
+/* Sums over the fluid around a point, weighted by the kernel without its norm. For pressures: of
+ * the pressure, and of rho/rho0 times the vector back. For flows: of the velocity, of its products
+ * with the vector to the particle, of that vector, and of its products. */
 enum { S_W, S_P, S_GX, S_GY };
 enum { S_U = S_W + 1, S_UX, S_UY, S_V, S_VX, S_VY, S_X, S_Y, S_XX, S_XY, S_YY, S_SUMS };
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * One inline function for each law between two particles of the fluid, over a pack of pairs. The
+ * One inline function for each law between two particles of the fluid, over a vector of pairs. The
  * text is compiled once for float and once for double lanes: the including file defines `real`,
- * `vreal`, the verbs and lane(). Lengths are in units of h: with xi = x/h and t = max(0, 2 - |xi|)
+ * `vreal`, the vector functions of base/simd.h and lane(). Lengths are in units of h: with
+ * xi = x/h and t = max(0, 2 - |xi|)
  *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab.
  * So every sum is to be multiplied by -PAIR_SLOPE/h. It has the volumes of both particles, so it is
  * divided by that of its own. The clamp of t removes pairs beyond the support without a mask. Only

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Moves the particles of walls, and finds the power that this takes. */
 #include "fluid/wall_motion.h"
 #include "geometry/motion.h"
 

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Polygons from shapes; their union, moments and intervals. */
 #include "geometry/outline.h"
 #include "base/segment.h"
 #include "base/elementary.h"

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The factors L D L^T row by row, and the solution with them. */
 #include "implicit/envelope.h"
 #include "base/simd.h"
 

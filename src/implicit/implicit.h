@@ -116,10 +116,10 @@ struct equilibrium {
     int load_steps;
 };
 
-/* Seeks the displacements without velocity at which all forces at t = 0 balance. Not found:
- * the particles are as they were; there is none, it is not stable, surfaces come near each other
- * during the search (contact: of the solid, or NULL), or something acts that the matrix does not
- * have. ERR_GUARD: a body that nothing holds or could hold. */
+/* Seeks the displacements without velocity at which all forces at t = 0 balance. If none is found,
+ * the particles are as they were. It may not exist or be unstable, surfaces may come near each
+ * other, or something may act that the matrix lacks. `contact`: of the solid, or NULL. ERR_GUARD: a
+ * body that nothing holds or could hold. */
 enum err equilibrium_find(struct equilibrium *found, const struct solid *solid,
                           struct particles *particles, const struct scene *scene,
                           struct contact *contact, struct diag *d) SPHFSI_CHECKED;

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Indentation, commas and escapes. */
 #include "output/json.h"
 #include "base/csv.h"
 

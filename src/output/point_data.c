@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The value of each field of a snapshot for one particle. */
 #include "output/point_data.h"
 
 static double vector_value(double x, double y, int column)

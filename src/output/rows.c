@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * When rows are due, their interpolation, and the files that they are written to. */
 #include "output/rows.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Appends snapshots to a spare copy that then replaces the file, also after a restart. */
 #include "output/snapshot.h"
 
 #include <errno.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Calls of HDF5: creates, appends to and copies the datasets. */
 #include "output/snapshot_file.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Sorts particles into cells, and measures how far they are outside of theirs. */
 #include "particles/cells.h"
 
 /* A particle outside the grid is sorted after all cells. */

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Allocates, permutes and hashes all fields of a kind. */
 #include "particles/particles.h"
 
 const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};

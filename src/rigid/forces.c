@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * What hinges and guides leave free, the rows of the equations of motion, and springs. */
 #include "rigid/forces.h"
 #include "base/cholesky.h"
 #include "geometry/motion.h"

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The step of rigid bodies, and what they exchange with walls, fluid and solids. */
 #include "geometry/motion.h"
 #include "rigid/forces.h"
 

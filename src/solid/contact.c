@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * The force of contact, its energy, and the bounds of the step that follow from it. */
 #include "solid/contact.h"
 
 /* --- potential of a pair --- */

@@ -82,9 +82,9 @@ struct solid;
 typedef void solid_sweep(const struct solid *solid, struct particles *particles, int64_t first,
                          int64_t last);
 
-/* Kick by the accelerations, s, of the particles from first to end - 1; their drift to the end of
- * the step, and then into the next one. The sum of both would have other bits, and n steps at once
- * not those of n steps. */
+/* Kicks the particles from `first` to `end` - 1 for `kick` seconds, then drifts them by `drift`, to
+ * the end of this step, and by `next`, into the following one. The drifts are added separately:
+ * their sum rounds differently, and n steps at once would not have the bits of n steps. */
 typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
                         double drift, double next);
 

@@ -97,8 +97,9 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
 
 /* --- timestep.c: the time step and its bounds (Sec. 2.5 of the paper; time/bounds.def) --- */
 
-/* Largest possible step of the fluid, s: Eq. 28b at rest; of the simulation's next step. */
+/* Smallest bound of the fluid's step at rest, without those of solid and contact, s. */
 double timestep_fluid_limit(const struct simulation *sim);
+/* No next step is longer, with fluid or without, s. */
 double timestep_longest(const struct simulation *sim);
 
 /* The bound that limits the step now. */

@@ -1,4 +1,5 @@
-/* SPDX-License-Identifier: MIT */
+/* SPDX-License-Identifier: MIT
+ * Sums energies and work over regions, finds gains, and says what may help. */
 #include "time/simulation.h"
 
 /* Share of a section or region in the ledger, and what only the account has. Doubles only. */
@@ -469,7 +470,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     return worst;
 }
 
-/* Steps and time between two tests. A test costs about two steps of a solid. */
+/* Steps and time between two tests (docs/theory/guards.md). A test costs two steps of a solid. */
 enum { TEST_STEPS = 64, SOLID_ONLY_TEST_STEPS = 256 };
 #define TEST_TIME 2.5e-3
 
@@ -511,7 +512,8 @@ void energy_book_step(struct simulation *sim, double dt)
 /* --- what is said of a gain, and when the run stops --- */
 
 /* Fraction of its available energy that a region may gain without a warning; the time for which a
- * gain below a tenth lasts before it counts, s: while a run starts, little energy is available. */
+ * gain below a tenth lasts before it counts, s: while a run starts, little energy is available
+ * (docs/theory/guards.md). */
 #define GAIN_WARNING 0.01
 #define GAIN_COUNTS_NOW 0.1
 #define GAIN_LASTS 2.5e-3

@@ -44,9 +44,9 @@ void energy_begin(struct simulation *sim);
 /* Energy that a section gets at once. */
 void energy_supply(struct simulation *sim, enum kind kind, int section, double work);
 
-/* After an evaluation: counts the work of its forces over dt; at the state from which a step of dt
- * starts, over half of the last step and half of this one, and tests for gains in between if that
- * is due. */
+/* energy_book_evaluation adds, after an evaluation, the work of its forces over dt.
+ * energy_book_step adds, before a step of dt, that work for half of the last step and half of this
+ * one; if a test for gains is due, it is between the two. */
 void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 

@@ -75,8 +75,8 @@ static bool fluid_is_valid(struct simulation *sim)
     "or a wall or structure presses too hard on the fluid; for a soft or light structure a " \
     "longer damping_time may help"
 
-/* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
- * until the particle lies in the bed that the front runs over. */
+/* Molteni's diffusion removes the excess density of a front's first particle, which then sinks into
+ * the bed that the front runs over. */
 #define STRAY                                                                                \
     "probably because fluid particles entered a wall or solid earlier in the run; a larger " \
     "wall_repulsion or diffusion_form = antuono prevents that"
@@ -201,7 +201,7 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* What lengthens a step that a bound limits. */
+/* What may keep a bound from falling further. */
 static const char *step_remedy(const struct simulation *sim, enum bound bound)
 {
     if (bound == BOUND_spring ||

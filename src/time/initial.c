@@ -112,6 +112,7 @@ static enum err choose_rate(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+/* The limits are those of docs/theory/guards.md. */
 static void set_guards(struct simulation *sim)
 {
     sim->guard = (struct guard){

@@ -62,7 +62,7 @@ struct extremes {
 /* What the next sorting of particles into cells depends on. */
 struct sorting {
     double speed2;     /* of the fastest particle of any kind, squared, (m/s)^2 */
-    double solid_move; /* largest of a solid particle in the last step, m (not with symplectic) */
+    double solid_move; /* largest of a solid particle in the last step, m; symplectic measures */
     double shifted;    /* largest shift of a fluid particle in the last step, m; 0: no shifting */
     double skin_left;  /* distance that two particles may move until a sorting is due, m */
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Looking at a run must not change it: ledgers, hashes and checkpoints between two steps, and
+ * Observation of a run must not change it: ledgers, hashes and checkpoints between two steps, and
  * output times that nearly meet. */
 #include "rig.h"
 #include "time/energy.h"
@@ -49,7 +49,7 @@ static void test_ledgers_leave_no_trace(void)
                                     hash_after(integrators[k], schemes[m], true));
 }
 
-/* Two output times a breath apart make a tiny step, which is no collapse. */
+/* Two output times 1e-12 s apart make a tiny step, which is no collapse. */
 static void test_output_times_that_nearly_meet(void)
 {
     static const char block[] =
