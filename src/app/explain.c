@@ -103,6 +103,9 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
         session_say(o, "  %-10s %12s  %s%s", bound_table[k].name, value, bound_table[k].source,
                     known && k == (int)binding ? "  <- limits the step" : "");
     }
+    if (sim->stiffest)
+        session_say(o, "  this is the step of [spring %s]; a softer one lengthens it",
+                    scene->spring[sim->stiffest - 1].common.name);
     if (sim->kind[KIND_SOLID].n == 0) return;
     session_say(o, "  stable step of the solid: %.4g s", sim->dt_solid);
     if (sim->effects & FX_COUPLING)

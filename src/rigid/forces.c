@@ -402,19 +402,22 @@ double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)
 /* Step for oscillations without fluid and solids, s: a part of their time scale. */
 static double part_of_time(double rate2) { return 1e-3 / sqrt(rate2); }
 
-double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only)
+double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only, int *stiffest)
 {
     double rate2 = 0;
+    *stiffest = 0;
     for (int j = 0; j < rigid->n_springs; j++) {
         const struct rigid_spring *const spring = &rigid->spring[j];
-        for (int end = 0; end < 2 && (spring->given->force.e[0] || !laws_only); end++)
-            rate2 = max2(rate2, 2 * stiffness_in(rigid, spring, dt) *
-                                    end_yields(rigid, spring, end));
+        for (int end = 0; end < 2 && (spring->given->force.e[0] || !laws_only); end++) {
+            const double own = 2 * stiffness_in(rigid, spring, dt) * end_yields(rigid, spring, end);
+            if (own > rate2) *stiffest = j + 1;
+            rate2 = max2(rate2, own);
+        }
     }
     return part_of_time(rate2);
 }
 
-double rigid_longest_step(const struct rigid *rigid)
+double rigid_longest_step(const struct rigid *rigid, int *stiffest)
 {
     const double *const g = rigid->scene->top.gravity;
     double rate2 = 1; /* for bodies that nothing moves */
@@ -425,5 +428,8 @@ double rigid_longest_step(const struct rigid *rigid)
         rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
         rate2 = max2(rate2, body->given->hinge_stiffness / body->mass[2]);
     }
-    return min2(part_of_time(rate2), rigid_spring_step(rigid, 0, false));
+    const double step = part_of_time(rate2),
+                 of_springs = rigid_spring_step(rigid, 0, false, stiffest);
+    if (of_springs > step) *stiffest = 0;
+    return min2(step, of_springs);
 }

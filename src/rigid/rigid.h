@@ -70,12 +70,12 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
 int rigid_find(const struct scene *scene, const char *name);
 
 /* Without fluid and solids, s: a thousandth of the time in which gravity or its velocity moves a
- * body by its radius of gyration. */
-double rigid_longest_step(const struct rigid *rigid);
+ * body by its radius of gyration. `stiffest`: the spring that allows no more, from 1; 0: none. */
+double rigid_longest_step(const struct rigid *rigid, int *stiffest);
 
 /* The part of it that springs allow, as stiff as they are now or after a step of dt; `laws_only`:
  * those with a `force`, whose stiffness changes. */
-double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only);
+double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only, int *stiffest);
 
 /* Sums of the squared frequencies, 1/s^2, and of the damping rates, 1/s, of all springs between two
  * bodies, as stiff as they are now or after a step of dt: at least the largest of these bodies. */

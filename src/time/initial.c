@@ -180,11 +180,13 @@ static enum err create_structure(struct simulation *sim, struct diag *d)
 /* The step of rigid bodies and beams alone; beside solids the step is that of solids. */
 static void set_step_of_bodies(struct simulation *sim)
 {
-    double step = (double)INFINITY;
-    if (sim->effects & FX_RIGID) step = rigid_longest_step(&sim->rigid);
-    if (sim->effects & FX_BEAM) step = min2(step, beams_longest_step(&sim->beams));
+    const double never = (double)INFINITY;
+    const double swing =
+        sim->effects & FX_RIGID ? rigid_longest_step(&sim->rigid, &sim->stiffest) : never;
+    const double bending = sim->effects & FX_BEAM ? beams_longest_step(&sim->beams) : never;
+    if (sim->effects & FX_SOLID || bending < swing) sim->stiffest = 0;
     if (!(sim->effects & FX_SOLID))
-        sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step = step;
+        sim->dt_solid = sim->dt_lone_solid = sim->solid.stable_step = min2(swing, bending);
 }
 
 enum err initial_state(struct simulation *sim, struct diag *d)

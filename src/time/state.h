@@ -105,6 +105,7 @@ struct simulation {
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
     double dt_solid;              /* stable step of the solid times its safety, s */
     double dt_lone_solid;         /* the same as if there were no contact */
+    int stiffest;                 /* the [spring] that sets it without solids, from 1; 0: none */
     int substeps;                 /* solid steps in the last fluid step */
     struct team team;
     double phase_seconds[PHASE_COUNT];

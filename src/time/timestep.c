@@ -13,11 +13,12 @@ static double bound_decay(const struct simulation *sim, double limit, double rat
  */
 static double bound_solid(const struct simulation *sim)
 {
+    int stiffest;
     double step = sim->solid.contact ? sim->dt_lone_solid : sim->dt_solid;
     if (sim->effects & FX_FLUID) return step;
     if (sim->effects & FX_BEAM) step *= beams_stiffer_step(&sim->beams);
     if (sim->effects & FX_RIGID)
-        step = min2(step, rigid_spring_step(&sim->rigid, sim->state.dt, true));
+        step = min2(step, rigid_spring_step(&sim->rigid, sim->state.dt, true, &stiffest));
     return step;
 }
 

@@ -37,6 +37,26 @@ says 'cost with up to 2 threads'
 explain --until 1e6
 says 'disk at most [0-9.]* GB'
 
+# Of two springs, the one whose long arm limits the step.
+cat >"$dir/spring.cfg" <<'END'
+dp = 10 mm
+end_time = 0.01
+[rigid r]
+shape = box 0, 0, 0.1, 0.1
+density = 500
+[spring soft]
+body = r
+to = 0.05, 0.3
+stiffness = 1000
+[spring far]
+body = r
+from = 5, 5
+to = 0.05, 0.3
+stiffness = 1000
+END
+"$sphfsi" --explain "$dir/spring.cfg" >"$dir/said" 2>/dev/null || fail "--explain of springs"
+says 'this is the step of \[spring far\]'
+
 # Beams that touch after the trial: contact takes a sixth of the run.
 "$sphfsi" --explain cases/beam_on_beam.cfg >"$dir/said" 2>/dev/null || fail "--explain of contact"
 awk '$1 == "contact" && /% of a step/ { part = $2 } END { exit !(part > 8 && part < 25) }' \
