@@ -44,7 +44,10 @@ enum err csv_open(struct csv *c, const char *file)
     c->line = 0;
     c->lines = !*c->text;
     c->begun = false;
-    for (const char *at = c->text; *at; at++) c->lines += *at == '\n' || !at[1];
+    for (char *at = c->text; *at; at++) {
+        if (*at == '\r' && at[1] != '\n') *at = '\n'; /* a line may end with CR alone */
+        c->lines += *at == '\n' || !at[1];
+    }
     if (c->lines > CSV_MAX_LINES)
         return diag_add(c->diag, ERR_INPUT, "%s: more than %d lines; use fewer rows", c->path,
                         CSV_MAX_LINES);
@@ -97,6 +100,15 @@ static int read_numbers(struct csv *c, const char *line, double *row)
     return -1;
 }
 
+/* Names begin with a letter, a quote or a bracket, and are no number such as inf. */
+static bool is_names(const char *at)
+{
+    char *end;
+    const double number = strtod(at, &end);
+    return (isalpha((unsigned char)*at) || strchr("\"'([", *at)) &&
+           (isfinite(number) || isalnum((unsigned char)*end));
+}
+
 int csv_row(struct csv *c, double *row)
 {
     while (*c->at) {
@@ -104,7 +116,7 @@ int csv_row(struct csv *c, double *row)
         c->at = csv_next_line(c->at);
         c->line++;
         if (!*at || *at == '\n' || *at == '#') continue;
-        const bool names = !c->begun && isalpha((unsigned char)*at);
+        const bool names = !c->begun && is_names(at);
         c->begun = true;
         if (!names) return read_numbers(c, at, row);
     }

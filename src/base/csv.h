@@ -16,7 +16,7 @@ int number_text(char text[NUMBER_TEXT], double value);
 const char *csv_field(const char *line, int k, size_t *length);
 
 /* A table of numbers with a comma, a semicolon or blanks between them. What follows a # is a
- * comment. Names of the columns may come before the first row. */
+ * comment. Names of the columns may come before the first row. Lines end with LF, CR or both. */
 enum { CSV_COLUMNS = 32 };
 struct csv {
     const char *path;    /* as in messages */

@@ -137,6 +137,19 @@ static void test_a_file_of_a_spreadsheet(void)
     expect(0.15, 0.015, 0.3, 0);
 }
 
+/* Quotes as R and pandas write them; units in brackets; CR alone at the end of a line. */
+static void test_names_of_columns_and_line_ends(void)
+{
+    static const char *const first[] = {"\"t\",\"v\"\n", "(s),(m)\n", "infiltration\n", "t,d\r"};
+    for (size_t k = 0; k < COUNT_OF(first); k++) {
+        char text[100];
+        snprintf(text, sizeof text, "%s0.1,0.01%c0.2,0.04\n", first[k], k == 3 ? '\r' : '\n');
+        must_read(MOVES("way(t)"), text);
+        expect(0.15, 0.015, 0.3, 0);
+        scene_free(&scene);
+    }
+}
+
 static void refuses(const char *text, const char *numbers, const char *message)
 {
     diag = (struct diag){0};
@@ -158,6 +171,8 @@ static void test_bad_tables_are_refused(void)
          "test_tables.tmp:2: more than 2 columns; argument, value (or `column = 3`) are expected"},
         {"0, 0\n0.2\n", "test_tables.tmp:2: 2 numbers are expected: argument, value (or `column = "
                         "3`); here `0.2`"},
+        {"inf, 0\n0.2, 1\n", "test_tables.tmp:1: 2 numbers are expected: argument, value (or "
+                              "`column = 3`); here `inf, 0`"},
         {"0, 0\n0.2, nan\n", "test_tables.tmp:2: 2 numbers are expected: argument, value (or "
                              "`column = 3`); here `0.2, nan`"},
     };
@@ -221,6 +236,7 @@ int main(void)
     RUN_TEST(test_columns);
     RUN_TEST(test_the_effective_case_finds_the_file);
     RUN_TEST(test_a_file_of_a_spreadsheet);
+    RUN_TEST(test_names_of_columns_and_line_ends);
     RUN_TEST(test_bad_tables_are_refused);
     RUN_TEST(test_bad_names_are_refused);
     RUN_TEST(test_a_table_cannot_depend_on_a_table);
