@@ -179,6 +179,13 @@ static bool parse_number(struct compiler *c, struct dim *dim)
     return operate(c, OP_NUMBER, q.value);
 }
 
+static bool close_call(struct compiler *c, const char *name)
+{
+    if (take(c, ')')) return true;
+    if (peek(c) == ',') return fail(c, "%s has too many values", name);
+    return fail(c, "`(` after %s is not closed", name);
+}
+
 static bool parse_call(struct compiler *c, const struct function *f, struct dim *dim)
 {
     const bool two = operands(f->code) == 2;
@@ -186,7 +193,7 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
     if (!take(c, '(') || !parse_sum(c, dim)) return false;
     if (two && !take(c, ',')) return fail(c, "%s needs two values: %s(a, b)", f->name, f->name);
     if (two && (!parse_sum(c, &other) || !join_dims(c, dim, &other))) return false;
-    if (!take(c, ')')) return fail(c, "`(` after %s is not closed", f->name);
+    if (!close_call(c, f->name)) return false;
     if (f->code == OP_SQRT) {
         scale_dim(dim, 0.5);
     } else if (!two && f->code != OP_ABS) {
@@ -203,8 +210,7 @@ static bool parse_table(struct compiler *c, const char *name, struct dim *dim)
     const struct expr_table *const table =
         c->names->table ? c->names->table(c->names->context, name, c->why) : NULL;
     if (!table) return c->why[0] ? false : fail(c, "unknown function `%s`", name);
-    if (!take(c, '(') || !parse_sum(c, dim)) return false;
-    if (!take(c, ')')) return fail(c, "`(` after %s is not closed", name);
+    if (!take(c, '(') || !parse_sum(c, dim) || !close_call(c, name)) return false;
     if (dim->kind != DIM_ANY) *dim = (struct dim){DIM_PLAIN, {0, 0, 0}};
     return append(c, (struct op){.code = OP_TABLE, .table = table});
 }

@@ -132,6 +132,7 @@ static void test_what_makes_no_sense(void)
     wrong("a value is missing", "1 +");
     wrong("`*` where a value is expected", "*2");
     wrong("`(` after sqrt is not closed", "sqrt(2");
+    wrong("min has too many values", "min(1, 2, 3)");
     wrong("`)` without `(`", "2)");
     wrong("division by zero", "1/(n - 3)");
     wrong("the result is not a finite number", "log(0)");
