@@ -66,19 +66,25 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
                      "expressions in t, for example y = 1.5 m/s*t");
 }
 
-/* A table that ends in motion, while the run goes on: the wall stops at once. */
-static void warn_of_motion_table(struct check *check, int k, const char *key)
+/* A table in time that still changes at its last row, while the run goes on: a motion stops at
+ * once, and a load or gravity stays for ever. */
+static void warn_of_table(struct check *check, const struct param *key, int k, int component)
 {
     const struct scene *const scene = check->scene;
-    const struct scene_motion *const motion = &scene->motion[k];
-    const struct expr *const e = param_expr(param_find(SECTION_motion, key), motion, 0);
-    const double last = e ? expr_table_end(e) : (double)INFINITY, end = motion->start + last;
-    if (end >= min2(scene->top.end_time, motion->stop) * (1 - 1e-9)) return;
-    warn_at(check->diag, scene, scene_line(scene, SECTION_motion, k, key),
-            "[motion %s] %s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and "
-            "its last two rows differ: the motion stops there within a step; continue the table, "
-            "end it at rest, or use end_time = %.6g s",
-            motion->common.name, key, expr_source(e), end, scene->top.end_time, end);
+    const void *const section = section_at(scene, key->section, k);
+    const struct scene_motion *const motion = key->section == SECTION_motion ? section : NULL;
+    const struct expr *const e = param_expr(key, section, component);
+    const bool timed = e && (key->scope == EXPR_IN_TIME || key->scope == EXPR_IN_BOTH);
+    const double last = timed ? expr_table_end(e, key->scope) : (double)INFINITY,
+                 end = last + (motion ? motion->start : 0), until = scene->top.end_time;
+    if (end >= (motion ? min2(until, motion->stop) : until) * (1 - 1e-9)) return;
+    warn_at(check->diag, scene, scene_line(scene, key->section, k, key->key),
+            "%s%s%s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and its last "
+            "two rows differ: %s; continue the table, end it at rest, or use end_time = %.6g s",
+            key->section ? section_title(section).text : "", key->section ? " " : "", key->key,
+            expr_source(e), end, until,
+            motion ? "the motion stops there within a step" : "the last value stays from there on",
+            end);
 }
 
 void warn_of_speed(struct check *check, int line, double speed, const char *format, ...)
@@ -136,10 +142,10 @@ void warn_of_values(struct check *check)
     warn_of_sliding(check);
     for (int k = 0; k < scene->n_motion - scene->n_rigid; k++) {
         warn_of_motion_of_nothing(check, &scene->motion[k]);
-        warn_of_motion_table(check, k, "x");
-        warn_of_motion_table(check, k, "y");
-        warn_of_motion_table(check, k, "turn");
     }
+    for (const struct param *key = param_table; key < param_table + PARAM_COUNT; key++)
+        for (int k = 0; k < section_count(scene, key->section); k++)
+            for (int c = 0; c < key->count; c++) warn_of_table(check, key, k, c);
     for (int k = 0; k < scene_open_count(scene); k++) {
         const struct scene_open open = scene_open_at(scene, k);
         if (k == 0 && scene->fluid[0].density_diffusion == 0)

@@ -107,8 +107,8 @@ enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, st
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
 
 /* The last row of the table of t alone in it that ends first and whose value still changes there;
- * infinite: there is none. A cubic ends at rest. */
-double expr_table_end(const struct expr *e);
+ * infinite: there is none. A cubic ends at rest. `scope`: EXPR_IN_TIME or EXPR_IN_BOTH. */
+double expr_table_end(const struct expr *e, enum expr_scope scope);
 
 /* Whether it is a constant number. */
 bool expr_is_number(const struct expr *e);

@@ -135,12 +135,13 @@ bool expr_varies(const struct expr *e)
     return false;
 }
 
-double expr_table_end(const struct expr *e)
+double expr_table_end(const struct expr *e, enum expr_scope scope)
 {
+    const enum op_code time = scope == EXPR_IN_BOTH ? OP_T : OP_X;
     double end = (double)INFINITY;
     for (int k = 1; k < e->n; k++) {
         const struct expr_table *const table = e->op[k].table;
-        if (e->op[k].code != OP_TABLE || e->op[k - 1].code != OP_X) continue;
+        if (e->op[k].code != OP_TABLE || e->op[k - 1].code != time) continue;
         const int last = table->n - 1;
         if (!table->slope && table->y[last] != table->y[last - 1]) end = min2(end, table->x[last]);
     }

@@ -293,6 +293,27 @@ static void test_a_table_that_ends_in_motion_is_warned_of(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "its table ends at t = 0.5 s"), warnings);
 }
 
+/* Gravity stays at its last value; a load has x and y beside the time. */
+static void test_tables_of_other_keys_that_end_too_early_are_warned_of(void)
+{
+    static const char *const use[][3] = {
+        {"way(t)", "way(x)", "motion.cfg:3: gravity = way(t): its table ends at t = 0.5 s"},
+        {"0", "2*way(t)", "motion.cfg:13: [load l] force = 2*way(t): its table ends"},
+        {"0", "way(x)", ""}};
+    for (int k = 0; k < 3; k++) {
+        char text[600];
+        snprintf(text, sizeof text,
+                 "dp = 1 mm\nend_time = 1\ngravity = %s, 0\n[beam b]\n"
+                 "shape = polyline: 0, 0; 0.1, 0\nthickness = 1 mm\nyoung = 1e7\n"
+                 "density = 1000\nclamp = 0, 0\n[load l]\nbody = b\nshape = box 0.05, -1, 1, 1\n"
+                 "force = 0, %s\n[table way]\nfile = test_motion.tmp\n",
+                 use[k][0], use[k][1]);
+        read_warned(text, "0, 0\n0.5, 1e-3\n");
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, use[k][2]), warnings);
+        TEST_ASSERT_TRUE_MESSAGE(*use[k][2] || !*warnings, warnings);
+    }
+}
+
 static void test_a_motion_at_rest_is_warned_of(void)
 {
     static const char *const rest[] = {"", "y = 2\n", "x = 2*3 mm\nturn = 1\n"};
@@ -330,6 +351,7 @@ int main(void)
     RUN_TEST(test_bad_expressions);
     RUN_TEST(test_jumps_and_poles);
     RUN_TEST(test_a_table_that_ends_in_motion_is_warned_of);
+    RUN_TEST(test_tables_of_other_keys_that_end_too_early_are_warned_of);
     RUN_TEST(test_a_motion_at_rest_is_warned_of);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
