@@ -287,6 +287,8 @@ static int parse_arguments(struct command *c, int argc, char **argv)
         }
         k += used_next;
     }
+    if (c->mode >= INSPECT && c->options.case_path)
+        return usage_error("%s is not used%s", c->options.case_path, "");
     if (c->mode >= INSPECT || c->options.case_path) return 0;
     fputs(usage, stderr);
     return usage_error("%s%s", "no case is given", "");

@@ -416,8 +416,8 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; trying the checkpoint before it", why.text);
     }
-    return diag_fail(d, ERR_IO, "%s: contains no %scheckpoint (step-*.ckpt) to restart from",
-                     folder, damaged_ones ? "valid " : "");
+    return diag_fail(d, ERR_IO, "%s: contains no %scheckpoint (step-*.ckpt)", folder,
+                     damaged_ones ? "valid " : "");
 }
 
 enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES], struct diag *d)

@@ -52,6 +52,7 @@ sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg
 refuses 1 "unknown option --previw" --previw gate.cfg
 refuses 1 "takes no value" --keys=all
 refuses 1 "json follows --keys" --json
+refuses 1 "extra is not used" --keys extra
 
 "$sphfsi" cantilever.cfg --quiet --until 1e-3 --threads 1 >out 2>&1 || fail "a short run"
 [ ! -s out ] || fail "--quiet says: $(cat out)"
