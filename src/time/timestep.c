@@ -120,7 +120,7 @@ const char *timestep_shorter(const struct simulation *sim, double *half)
     const double fluid = min2(bound[BOUND_force], min2(bound[BOUND_acoustic], bound[BOUND_damper]));
     const double much = 1.8 * step; /* half of a bound must be below the step */
     const bool lone = !(sim->effects & FX_FLUID) && !(n->fixed_step > 0);
-    if (lone || bound[BOUND_solid] < min2(fluid, much)) {
+    if (sim->effects & FX_SOLID && (lone || bound[BOUND_solid] < min2(fluid, much))) {
         *half = 0.5 * n->solid_safety;
         return "solid_safety";
     }

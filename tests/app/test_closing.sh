@@ -50,6 +50,23 @@ grep -q '"exit_reason": "finished"' "b c-2/summary.json" || fail "the fork has n
 got=$(command 2 ./sphfsi thrown.cfg --quiet --out t)
 is "$got" "--fork $(newest t) --set numerics.solid_safety=0.45 and another --out"
 
+# Of beams alone it is the fixed step: solid_safety does not act on them.
+cat >beam.cfg <<'END'
+dp = 1 cm
+end_time = 1
+[beam b]
+shape = polyline: 0, 0; 0.2, 0
+thickness = 4 mm
+density = 1000
+young = 1e7
+[load l]
+body = b
+shape = box 0.1, -1, 0.3, 1
+force = 0, 1e20*max(t - 0.1, 0)
+END
+got=$(command 2 ./sphfsi beam.cfg --quiet --out beam)
+[[ $got == *"numerics.fixed_step="* ]] || fail "beams: $got"
+
 # Where shorter steps would stop it again: contact at its limit, a motion that is not finite at a
 # time between those that are checked before the run, and a speed that the case gives.
 others() { sed -n 's/^change the case, then //p' out; }
