@@ -300,8 +300,7 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
     share_rows(beams);
     TRY(refuse_held_twice(beams, d));
     int64_t *const first = arena_alloc(temp, (size_t)n, sizeof *first, what, d);
-    beams->unknown = arena_alloc(a, (size_t)n + ENVELOPE_ALIGN, sizeof *beams->unknown, what, d);
-    if (!first || !beams->unknown) return ERR_MEMORY;
+    if (!first) return ERR_MEMORY;
     for (int64_t k = 0; k < n; k++) first[k] = k;
     for (int m = 0; m < beams->n_elements; m++)
         for (int r = 0; r < 6; r++)
@@ -356,6 +355,7 @@ static enum err create_all(struct beams *beams, struct arena *a, struct arena *t
     TRY(number_unknowns(beams, a, temp, d));
     TRY(set_start(beams, d));
     TRY(create_springs(beams, a, d));
+    TRY(beams_bodies_create(beams, a, d));
     TRY(beams_joints_create(beams, a, d));
     return beams_contact_create(beams, a, d);
 }

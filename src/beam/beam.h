@@ -99,8 +99,30 @@ struct beam_spring {
     double stiffness; /* that the longest step takes into account, at least, N/m^2 */
 };
 
+/* A force between nodes and a rigid body: of contact or a joint. */
+struct beam_row {
+    int body;        /* -1: none */
+    double X[2];     /* place on the body at the start, m */
+    double e[3];     /* direction of the force on the nodes; 0, 0, 1: of a moment */
+    double along[3]; /* what a unit of force is to the body */
+    double force;    /* on the nodes, N/m or N */
+};
+
+/* A rigid body in a step, or in a part of one. */
+struct beam_body {
+    double from[3];             /* where the step began: displacement and angle */
+    double mean[3];             /* its mean velocity in the step without beams */
+    double x[3], v[3];          /* at the start of the part */
+    double a[3];                /* without beams */
+    double d[3];                /* displacement; twice the tangent of half the rotation */
+    double impulse[3], push[3]; /* that it has of joints and of contact in the step */
+    double force[3], turning;   /* of beams now; the part of the moment that turns with it */
+    double off[3];              /* what d needs more by the present forces (T-107b) */
+    double yields[3][3];        /* displacement by a unit of force */
+};
+
 struct beams {
-    int n, n_nodes, n_elements, n_loads;
+    int n, n_nodes, n_elements, n_loads, n_bodies;
     struct beam *beam;
     struct beam_node *node;
     struct beam_element *element;
@@ -117,7 +139,8 @@ struct beams {
     double *carries; /* [n_nodes] share of the motion that the fluid sees along a beam (T-111a) */
     double (*added)[6][6]; /* [n_elements] Z of T-105, kg/(m s), kg/s, kg m/s */
     struct envelope matrix;
-    double *unknown; /* [rows] */
+    int64_t size;    /* of a vector of displacements: unknowns of nodes, then of bodies */
+    double *unknown; /* [size] */
     int iterations;  /* of Newton's method in the last step */
     double residual; /* over the largest force of a node */
     double stage;    /* of the fluid's rates, in steps after the start of a step */
@@ -125,6 +148,8 @@ struct beams {
     struct beam_contact *contact;
     struct beam_joints *joints; /* with rigid bodies; NULL: none */
     struct rigid *rigid;        /* NULL: none */
+    struct beam_body *body;     /* [n_bodies] all rigid bodies */
+    double part_end;            /* time at the end of the part of a step, s */
     bool crowded;               /* more places touch than the memory holds */
     bool pushed;                /* a beam has pushed a rigid body; the account resets it */
     int infinite;               /* a [load], counted from 1, that was not finite; 0: none */
@@ -186,8 +211,8 @@ bool beams_keep_apart(const struct beams *beams);
  * has its factors. false: there are no such forces, as of a matrix that is not positive. */
 bool beams_correct_touches(struct beams *beams);
 
-/* After the step: the work of walls that push, and the forces on rigid bodies. */
-void beams_finish_touches(struct beams *beams, double time, double dt);
+/* After a part of the step: the work of walls that push, and the impulses on rigid bodies. */
+void beams_finish_touches(struct beams *beams, double dt);
 
 /* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. Solids and
  * beams have no contact. */
@@ -198,13 +223,13 @@ int64_t beams_find_solid(const struct beams *beams, const struct particles *soli
 
 enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* A step may follow as one part or several. Before it: the motion of the bodies in the whole step
- * from `time` on, without the beams. After it: the impulses that the bodies have had. */
-void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times);
-void beams_return_bodies(struct beams *beams, double dt);
+/* T-107d: before a step, what bodies have still to receive of the step before. */
+void beams_give_rest(struct beams *beams, double last);
+/* After it: the mean reactions. */
+void beams_return_joints(struct beams *beams, double dt);
 
-/* A part dt of the step: velocities that the joints allow, and no forces yet. */
-void beams_begin_joints(struct beams *beams, double time, double dt);
+/* A part of the step: velocities that the joints allow (T-107c), and no forces yet. */
+void beams_begin_joints(struct beams *beams);
 
 /* Adds the forces of the joints to those of the nodes (`touch` of struct beam_step). */
 void beams_add_joints(struct beams *beams);
@@ -212,16 +237,62 @@ void beams_add_joints(struct beams *beams);
 /* Whether the present displacements of nodes and bodies agree. */
 bool beams_stay_joined(const struct beams *beams);
 
-/* Changes forces and bodies, and adds to `unknown`, the correction without a change of the forces,
- * what they change. The matrix has its factors. */
+/* Changes the forces, and adds to `unknown`, the correction without a change of the forces, what
+ * they change. The matrix has its factors. */
 void beams_correct_joints(struct beams *beams);
 
-/* A displacement of the nodes by forces without the bodies, of the last correction: adds what the
- * joints change. */
-void beams_resist_joints(const struct beams *beams, double *unknown);
+/* Displacements by other forces without the joints: adds what the joints change. */
+void beams_resist_joints(const struct beams *beams, double *vector);
 
-/* After a part of the step. */
+/* After a part of the step: the impulses on bodies. */
 void beams_finish_joints(struct beams *beams, double dt);
+
+/* --- bodies.c: rigid bodies that beams touch or are joined to (T-107) --- */
+
+enum err beams_bodies_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* The unknowns of a body in a vector of displacements. */
+SPHFSI_INLINE int64_t beams_body_row(const struct beams *beams, int body)
+{
+    return beams->matrix.n + ENVELOPE_ALIGN + 3 * body;
+}
+
+/* A step may follow as one part or several. Before it: the motion of the bodies in the whole step
+ * from `time` on, without the beams. After it: the impulses that the bodies have had. */
+void beams_take_bodies(struct beams *beams, double time, double dt);
+void beams_return_bodies(struct beams *beams, double dt);
+
+/* A part of the step: the first guess. */
+void beams_begin_bodies(struct beams *beams, double time, double dt);
+
+/* Sets the forces of contact and joints to zero, before all are added. */
+void beams_clear_rows(struct beams *beams);
+/* T-107b, with all forces of the rows: what the bodies lack, which goes to `unknown`. */
+void beams_find_bodies(struct beams *beams, double dt);
+/* Moves the bodies by `unknown`. */
+void beams_move_bodies(struct beams *beams);
+/* After a part of the step. */
+void beams_finish_bodies(struct beams *beams, double dt);
+
+/* Where the displacement in the part takes a body. */
+void beam_body_place(const struct beam_body *body, double x[3]);
+
+/* Sets `along`, by the mean arm of the part. */
+void beam_row_aim(const struct beams *beams, struct beam_row *row);
+/* Adds its force to those of the body. */
+void beam_row_push(const struct beams *beams, struct beam_row *row);
+/* What the body's displacement, or that in a vector, is along a row; 0: no body. */
+double beam_row_moved(const struct beams *beams, const struct beam_row *row);
+double beam_row_moved_by(const struct beams *beams, const struct beam_row *row,
+                         const double *vector);
+/* Adds the displacement of the body by a unit of force to a vector. */
+void beam_row_move(const struct beams *beams, const struct beam_row *row, double *vector);
+/* Whether the body is where its forces bring it. */
+bool beam_row_settled(const struct beams *beams, const struct beam_row *row, double kept);
+/* The body's velocity along a row; what a unit of impulse changes in it; and an impulse. */
+double beam_row_speed(const struct beams *beams, const struct beam_row *row);
+double beam_row_yields(const struct beams *beams, const struct beam_row *row);
+void beam_row_kick(const struct beams *beams, const struct beam_row *row, double impulse);
 
 /* --- springs.c: springs and mooring lines from a beam to a place (T-108) --- */
 

@@ -16,23 +16,22 @@ struct beam_face {
 
 /* A place that may touch: parts of some nodes along the normal, from a face or a beam. */
 struct beam_touch {
-    int n, node[3], wall; /* wall: -1 with a beam */
-    double part[3], normal[2], at[2];
-    double gap;   /* if no node moves, m */
-    double moved; /* by the wall, along the normal, m */
-    double force; /* N/m */
+    int n, node[3];
+    double part[3];
+    double gap;          /* if no node and no rigid body moves, m */
+    double moved;        /* by a wall with a [motion], along the normal, m */
+    struct beam_row row; /* along the normal */
 };
 
 struct beam_contact {
-    int n_faces, n_walls, n, most;
+    int n_faces, n_walls, n_moving, n, most; /* n_moving: walls before the rigid bodies */
     struct beam_face *face;
     struct motion_state *begin, *end; /* [n_walls] of the step */
     double *layer;                    /* [n][n_wall] that stays between surfaces; NAN: no contact */
     struct beam_touch *touch;
-    double *column; /* [most][rows] displacement by a unit of force */
+    double *column; /* [most][size] displacement of nodes and bodies by a unit of force */
     double *yields; /* [most][most] along the normals of others */
     double *open;   /* [most] gap after the correction, m */
-    int64_t rows;
 };
 
 /* --- faces --- */
@@ -97,14 +96,14 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
     beams->contact = contact;
     if (!contact) return ERR_MEMORY;
     contact->n_walls = scene_beam_wall(scene, 0);
-    contact->rows = beams->matrix.n;
+    contact->n_moving = scene_rigid_wall(scene, 0);
     contact->most = (int)min2(BEAM_TOUCHES, 3.0 * beams->n_nodes);
     const size_t n = (size_t)contact->n_walls, most = (size_t)contact->most;
     TRY(arena_array(a, &contact->begin, n, what, d));
     TRY(arena_array(a, &contact->end, n, what, d));
     TRY(arena_array(a, &contact->layer, beams->n * scene->n_wall, what, d));
     TRY(arena_array(a, &contact->touch, most, what, d));
-    TRY(arena_array(a, &contact->column, most * (size_t)(contact->rows + ENVELOPE_ALIGN), what, d));
+    TRY(arena_array(a, &contact->column, most * (size_t)beams->size, what, d));
     TRY(arena_array(a, &contact->yields, most * most, what, d));
     TRY(arena_array(a, &contact->open, most, what, d));
     for (int k = 0; k < beams->n; k++)
@@ -155,26 +154,30 @@ static double least_distance(double thick, double layer, double at_start)
     return at_start < thick + layer ? min2(thick, at_start) : thick + layer;
 }
 
-/* Displacement of a touch's nodes along its normal. */
+/* What the present displacements of nodes and body add to a gap. */
 static double along_touch(const struct beams *beams, const struct beam_touch *t)
 {
-    double sum = 0;
+    double sum = -beam_row_moved(beams, &t->row);
     for (int k = 0; k < t->n; k++)
-        for (int c = 0; c < 2; c++) sum += t->part[k] * t->normal[c] * beams->step[t->node[k]].d[c];
+        for (int c = 0; c < 2; c++) sum += t->part[k] * t->row.e[c] * beams->step[t->node[k]].d[c];
     return sum;
 }
 
-/* Adds a touch if the first guess brings it nearer than a tenth of a spacing. */
-static void add_touch(struct beams *beams, const struct beam_touch *t)
+/* Adds a touch at a place of a wall, -1: of a beam, if the first guess brings it nearer than a
+ * tenth of a spacing. */
+static void add_touch(struct beams *beams, struct beam_touch *t, int wall, const double at[2])
 {
     struct beam_contact *const contact = beams->contact;
     const double reach = 0.1 * beams->scene->top.dp;
-    bool held = true;
+    bool held = wall < contact->n_moving;
+    t->row.body = held ? -1 : wall - contact->n_moving;
+    if (!held) motion_initial(&contact->begin[wall], at, t->row.X);
+    beam_row_aim(beams, &t->row);
     for (int k = 0; k < t->n; k++)
         for (int c = 0; c < 2; c++) held &= beams->node[t->node[k]].row[c] < 0;
     if (held || t->gap + min2(0, along_touch(beams, t)) > reach || t->gap > beams->scene->top.dp)
         return;
-    if (t->normal[0] == 0 && t->normal[1] == 0) return;
+    if (t->row.e[0] == 0 && t->row.e[1] == 0) return;
     beams->crowded |= contact->n == contact->most;
     if (contact->n < contact->most) contact->touch[contact->n++] = *t;
 }
@@ -205,14 +208,13 @@ static void touch_face(struct beams *beams, int k, const struct beam_face *face)
     if (now.distance > half_of(beams, beam) + layer + beams->scene->top.dp) return;
     const double at_start =
         nearest_of(beams->node[k].X, face->from, face->to, face->radius).distance;
-    struct beam_touch t = {.n = 1, .node = {k}, .part = {1}, .wall = face->wall};
+    struct beam_touch t = {.n = 1, .node = {k}, .part = {1}};
     for (int c = 0; c < 2; c++) {
-        t.at[c] = x[c];
-        t.normal[c] = now.normal[c];
-        t.moved += t.normal[c] * ((1 - now.part) * moved[0][c] + now.part * moved[1][c]);
+        t.row.e[c] = now.normal[c];
+        t.moved += t.row.e[c] * ((1 - now.part) * moved[0][c] + now.part * moved[1][c]);
     }
     t.gap = max2(0, now.distance - least_distance(half_of(beams, beam), layer, at_start)) - t.moved;
-    add_touch(beams, &t);
+    add_touch(beams, &t, face->wall, x);
 }
 
 /* Whether a node is nearer along the beam of an element than half of a circle of this diameter: a
@@ -254,12 +256,10 @@ static void touch_element(struct beams *beams, int element, int wall, const doub
     struct beam_touch t = {.n = k < 0 ? 2 : 3,
                            .node = {node[0], node[1], k < 0 ? 0 : k},
                            .part = {1 - now.part, now.part, -1},
-                           .wall = wall,
-                           .normal = {-now.normal[0], -now.normal[1]},
-                           .at = {at[0], at[1]}};
-    for (int c = 0; c < 2; c++) t.moved += t.normal[c] * moved[c];
+                           .row.e = {-now.normal[0], -now.normal[1]}};
+    for (int c = 0; c < 2; c++) t.moved += t.row.e[c] * moved[c];
     t.gap = max2(0, now.distance - least_distance(thick, layer, at_start)) - t.moved;
-    add_touch(beams, &t);
+    add_touch(beams, &t, wall, at);
 }
 
 static struct box2 box_of(const struct beams *beams, int beam)
@@ -290,10 +290,14 @@ void beams_find_touches(struct beams *beams, double time, double dt)
 {
     struct beam_contact *const contact = beams->contact;
     const struct scene *const scene = beams->scene;
-    for (int w = 0; w < contact->n_walls; w++) {
+    for (int w = 0; w < contact->n_moving; w++) {
         const int mover = scene_wall_motion(scene, w);
         contact->begin[w] = motion_at(scene, mover, time);
         contact->end[w] = motion_at(scene, mover, time + dt);
+    }
+    for (int k = 0; k < beams->n_bodies; k++) {
+        const int w = contact->n_moving + k;
+        contact->begin[w] = contact->end[w] = rigid_placed(beams->rigid, k, beams->body[k].x);
     }
     contact->n = 0;
     for (int f = 0; f < contact->n_faces; f++) {
@@ -310,14 +314,12 @@ void beams_find_touches(struct beams *beams, double time, double dt)
 
 void beams_add_touches(struct beams *beams)
 {
-    const struct beam_contact *const contact = beams->contact;
-    for (int k = 0; k < beams->n_nodes; k++)
-        memset(beams->step[k].touch, 0, sizeof beams->step[k].touch);
-    for (int j = 0; j < contact->n; j++) {
-        const struct beam_touch *const t = &contact->touch[j];
+    for (int j = 0; j < beams->contact->n; j++) {
+        struct beam_touch *const t = &beams->contact->touch[j];
+        beam_row_push(beams, &t->row);
         for (int k = 0; k < t->n; k++)
             for (int c = 0; c < 2; c++)
-                beams->step[t->node[k]].touch[c] += t->part[k] * t->normal[c] * t->force;
+                beams->step[t->node[k]].touch[c] += t->part[k] * t->row.e[c] * t->row.force;
     }
 }
 
@@ -325,27 +327,30 @@ bool beams_keep_apart(const struct beams *beams)
 {
     const struct beam_contact *const contact = beams->contact;
     const double kept = KEPT * beams->scene->top.dp;
-    for (int j = 0; j < contact->n; j++)
-        if (contact->touch[j].gap + along_touch(beams, &contact->touch[j]) < -kept) return false;
+    for (int j = 0; j < contact->n; j++) {
+        const struct beam_touch *const t = &contact->touch[j];
+        if (t->gap + along_touch(beams, t) < -kept) return false;
+        if (t->row.force > 0 && !beam_row_settled(beams, &t->row, kept)) return false;
+    }
     return true;
 }
 
-/* A touch along the unknowns: what a vector of these is to it. */
+/* What a vector of displacements adds to a gap. */
 static double along_unknowns(const struct beams *beams, const struct beam_touch *t,
                              const double *vector)
 {
-    double sum = 0;
+    double sum = -beam_row_moved_by(beams, &t->row, vector);
     for (int k = 0; k < t->n; k++)
         for (int c = 0; c < 2; c++) {
             const int64_t row = beams->node[t->node[k]].row[c];
-            if (row >= 0) sum += t->part[k] * t->normal[c] * vector[row];
+            if (row >= 0) sum += t->part[k] * t->row.e[c] * vector[row];
         }
     return sum;
 }
 
-static double *column_of(const struct beam_contact *contact, int j)
+static double *column_of(const struct beams *beams, int j)
 {
-    return contact->column + (size_t)j * (size_t)(contact->rows + ENVELOPE_ALIGN);
+    return &beams->contact->column[j * beams->size];
 }
 
 static void find_yields(struct beams *beams)
@@ -353,14 +358,15 @@ static void find_yields(struct beams *beams)
     struct beam_contact *const contact = beams->contact;
     for (int j = 0; j < contact->n; j++) {
         const struct beam_touch *const t = &contact->touch[j];
-        double *const column = column_of(contact, j);
-        memset(column, 0, (size_t)(contact->rows + ENVELOPE_ALIGN) * sizeof *column);
+        double *const column = column_of(beams, j);
+        memset(column, 0, (size_t)beams->size * sizeof *column);
         for (int k = 0; k < t->n; k++)
             for (int c = 0; c < 2; c++) {
                 const int64_t row = beams->node[t->node[k]].row[c];
-                if (row >= 0) column[row] += t->part[k] * t->normal[c];
+                if (row >= 0) column[row] += t->part[k] * t->row.e[c];
             }
         envelope_solve(&beams->matrix, column);
+        beam_row_move(beams, &t->row, column);
         beams_resist_joints(beams, column);
         for (int i = 0; i < contact->n; i++)
             contact->yields[(size_t)i * (size_t)contact->most + (size_t)j] =
@@ -384,42 +390,30 @@ bool beams_correct_touches(struct beams *beams)
         for (int j = 0; j < contact->n; j++) {
             struct beam_touch *const t = &contact->touch[j];
             const double own = contact->yields[(size_t)j * (size_t)contact->most + (size_t)j];
-            const double force = own > 0 ? max2(0, t->force - contact->open[j] / own) : 0,
-                         more = force - t->force;
-            t->force = force;
+            const double force = own > 0 ? max2(0, t->row.force - contact->open[j] / own) : 0,
+                         more = force - t->row.force;
+            t->row.force = force;
             largest = max2(largest, fabs(more) * own);
             for (int i = 0; i < contact->n && more != 0; i++)
                 contact->open[i] +=
                     more * contact->yields[(size_t)i * (size_t)contact->most + (size_t)j];
-            for (int64_t r = 0; r < contact->rows && more != 0; r++)
-                beams->unknown[r] += more * column_of(contact, j)[r];
+            for (int64_t r = 0; r < beams->size && more != 0; r++)
+                beams->unknown[r] += more * column_of(beams, j)[r];
         }
         if (turn == 0) first = largest;
     }
     return largest <= first;
 }
 
-void beams_finish_touches(struct beams *beams, double time, double dt)
+void beams_finish_touches(struct beams *beams, double dt)
 {
     const struct beam_contact *const contact = beams->contact;
-    const struct scene *const scene = beams->scene;
-    const int rigid_wall = scene_rigid_wall(scene, 0);
-    bool pushed = false;
-    if (beams->rigid) rigid_clear_push(beams->rigid);
     for (int j = 0; j < contact->n; j++) {
         const struct beam_touch *const t = &contact->touch[j];
-        struct beam *const beam = &beams->beam[beams->node[t->node[0]].beam];
-        if (!(t->force > 0) || t->wall < 0) continue;
-        if (t->wall < rigid_wall) {
-            beam->driven += t->force * t->moved;
-            continue;
-        }
-        const double force[2] = {-t->force * t->normal[0], -t->force * t->normal[1]};
-        rigid_push(beams->rigid, t->wall - rigid_wall, &contact->begin[t->wall], t->at, force);
-        pushed = true;
+        beams->beam[beams->node[t->node[0]].beam].driven += t->row.force * t->moved;
+        for (int c = 0; c < 3 && t->row.body >= 0; c++)
+            beams->body[t->row.body].push[c] -= dt * t->row.force * t->row.along[c];
     }
-    if (pushed) rigid_kick(beams->rigid, time, dt);
-    beams->pushed |= pushed;
 }
 
 int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,

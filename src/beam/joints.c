@@ -9,46 +9,22 @@
 
 /* A component of a node that a body takes along. */
 struct beam_joint {
-    int node, component, body; /* body: of struct beam_joints */
-    int64_t row;
-    double mass;     /* of all nodes with this unknown, kg/m or kg m */
-    double along[3]; /* what a unit of force is to the body */
-    double force;    /* on the node, N/m or N */
-    double impulse;  /* on the node in the step, N s/m or N s */
-};
-
-/* A rigid body that beams are joined to, in a part of the step. */
-struct beam_body {
-    int rigid;
-    double from[3];      /* where the step began: displacement and angle */
-    double mean[3];      /* its mean velocity in the step without joints */
-    double x[3], v[3];   /* at the start of the part */
-    double a[3];         /* without joints */
-    double d[3];         /* displacement; twice the tangent of half the rotation */
-    double impulse[3];   /* that it has of the joints in the step */
-    double off[3];       /* what d needs more by the present forces (T-107b) */
-    double yields[3][3]; /* displacement by a unit of force */
+    int node, component;
+    int64_t unknown;
+    double mass; /* of all nodes with this unknown, kg/m or kg m */
+    struct beam_row row;
+    double impulse; /* on the node in the step, N s/m or N s */
 };
 
 struct beam_joints {
-    int n, n_bodies;
+    int n;
     struct beam_joint *joint;
-    struct beam_body *body;
-    double *column;           /* [n][rows] displacement of nodes by a unit of force */
+    double *column;           /* [n][size] displacement of nodes and bodies by a unit of force */
     double *yields, *factors; /* [n][n] */
     double *open;             /* [n] */
-    double time, dt;          /* of the part */
 };
 
 /* --- start --- */
-
-static int number_body(struct beam_joints *joints, int rigid)
-{
-    for (int b = 0; b < joints->n_bodies; b++)
-        if (joints->body[b].rigid == rigid) return b;
-    joints->body[joints->n_bodies].rigid = rigid;
-    return joints->n_bodies++;
-}
 
 static bool is_joined(const struct beam_node *node, int c)
 {
@@ -57,13 +33,14 @@ static bool is_joined(const struct beam_node *node, int c)
 
 static void add_joint(struct beams *beams, int k, int c)
 {
-    const int64_t row = beams->node[k].row[c];
+    const struct beam_node *const node = &beams->node[k];
     struct beam_joints *const joints = beams->joints;
     struct beam_joint *const joint = &joints->joint[joints->n++];
-    *joint = (struct beam_joint){.node = k, .component = c, .row = row};
-    joint->body = number_body(joints, beams->node[k].body);
+    *joint = (struct beam_joint){.node = k, .component = c, .unknown = node->row[c]};
+    joint->row = (struct beam_row){.body = node->body, .X = {node->X[0], node->X[1]}};
+    joint->row.e[c] = 1;
     for (int j = 0; j < beams->n_nodes; j++)
-        joint->mass += beams->node[j].row[c] == row ? beams->node[j].mass[c] : 0;
+        joint->mass += beams->node[j].row[c] == node->row[c] ? beams->node[j].mass[c] : 0;
 }
 
 enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *d)
@@ -76,8 +53,7 @@ enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *
     struct beam_joints *const joints = arena_alloc(a, 1, sizeof *joints, what, d);
     if (!joints) return ERR_MEMORY;
     TRY(arena_array(a, &joints->joint, n, what, d));
-    TRY(arena_array(a, &joints->body, n, what, d));
-    TRY(arena_array(a, &joints->column, n * (size_t)(beams->matrix.n + ENVELOPE_ALIGN), what, d));
+    TRY(arena_array(a, &joints->column, n * (size_t)beams->size, what, d));
     TRY(arena_array(a, &joints->yields, n * n, what, d));
     TRY(arena_array(a, &joints->factors, n * n, what, d));
     TRY(arena_array(a, &joints->open, n, what, d));
@@ -88,138 +64,51 @@ enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *
     return ERR_OK;
 }
 
-/* --- bodies --- */
-
-static const struct rigid_equations *equations_of(const struct beams *beams, int body)
-{
-    return &beams->rigid->eq[beams->joints->body[body].rigid];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Where a displacement d takes the body. */
-static void place_body(const struct beam_body *body, double x[3])
-{
-    for (int c = 0; c < 2; c++) x[c] = body->x[c] + body->d[c];
-    x[2] = body->x[2] + body->d[2] * beam_atan_over(0.5 * body->d[2]);
-}
-
-/* A hinge in place or on a wall gives the body the place of its angle. */
-static void follow_hinge(const struct beams *beams, struct beam_body *body)
-{
-    const struct beam_joints *const joints = beams->joints;
-    double x[3];
-    if (!beams->rigid->body[body->rigid].fixed) return;
-    place_body(body, x);
-    rigid_follow_hinge(beams->rigid, body->rigid, joints->time + joints->dt, x);
-    for (int c = 0; c < 2; c++) body->d[c] = x[c] - body->x[c];
-}
-
-/* From the centre of mass to a joint's node: at the start of the part, and after it. */
-static void find_arms(const struct beams *beams, const struct beam_joint *j, double arm[2][2])
-{
-    const struct beam_body *const body = &beams->joints->body[j->body];
-    const double *const X = beams->node[j->node].X;
-    double x[3];
-    place_body(body, x);
-    rigid_arm(beams->rigid, body->rigid, X, body->x[2], arm[0]);
-    rigid_arm(beams->rigid, body->rigid, X, x[2], arm[1]);
-}
-
-static void set_along(struct beam_joint *j, const double arm[2])
-{
-    const int c = j->component;
-    j->along[0] = c == 0;
-    j->along[1] = c == 1;
-    j->along[2] = c == 2 ? 1 : c == 1 ? arm[0] : -arm[1];
-}
+/* --- a step --- */
 
 /* How far the present displacements bring a node from its place on the body. */
 static double gap_of(const struct beams *beams, const struct beam_joint *j)
 {
-    const struct beam_body *const body = &beams->joints->body[j->body];
+    const struct beam_body *const body = &beams->body[j->row.body];
     const struct beam_step *const s = &beams->step[j->node];
     const int c = j->component;
-    double x[3], arm[2][2];
-    place_body(body, x);
+    double x[3], arm[2];
+    beam_body_place(body, x);
     if (c == 2) return s->d[2] - 2 * elementary_tan(0.5 * (x[2] - s->x[2]));
-    find_arms(beams, j, arm);
-    const double centre = beams->rigid->body[body->rigid].centre[c];
-    return (beams->node[j->node].X[c] + s->x[c] + s->d[c]) - (centre + x[c] + arm[1][c]);
+    rigid_arm(beams->rigid, j->row.body, j->row.X, x[2], arm);
+    const double centre = beams->rigid->body[j->row.body].centre[c];
+    return (j->row.X[c] + s->x[c] + s->d[c]) - (centre + x[c] + arm[c]);
 }
 
-/* T-107d: what a velocity half a step behind has still to receive of the step before. */
-static void give_rest(struct beams *beams, struct beam_body *body, double last)
+void beams_give_rest(struct beams *beams, double last)
 {
-    const struct beam_joints *const joints = beams->joints;
-    double impulse[3] = {0};
-    if (beams->rigid->centred) return;
-    memcpy(body->x, beams->rigid->state[body->rigid].x, sizeof body->x);
-    memset(body->d, 0, sizeof body->d);
-    for (int n = 0; n < joints->n; n++) {
-        struct beam_joint *const j = &joints->joint[n];
-        double arm[2][2];
-        if (&joints->body[j->body] != body) continue;
-        find_arms(beams, j, arm);
-        set_along(j, arm[0]);
-        for (int c = 0; c < 3; c++)
-            impulse[c] -= 0.5 * last * beams->state[j->node].reaction[j->component] * j->along[c];
-    }
-    rigid_load(beams->rigid, body->rigid, impulse);
-}
-
-void beams_take_bodies(struct beams *beams, double time, const struct beam_times *times)
-{
-    const double dt = times->dt, last = times->last;
     struct beam_joints *const joints = beams->joints;
-    for (int n = 0; joints && n < joints->n; n++) joints->joint[n].impulse = 0;
-    for (int b = 0; joints && b < joints->n_bodies; b++) {
-        struct beam_body *const body = &joints->body[b];
-        give_rest(beams, body, last);
-        rigid_free_motion(beams->rigid, body->rigid, time, dt, body->from, body->v, body->mean);
-        memcpy(body->x, body->from, sizeof body->x);
-        memset(body->impulse, 0, sizeof body->impulse);
-        for (int c = 0; c < 3; c++) body->a[c] = 2 * (body->mean[c] - body->v[c]) / dt;
+    for (int n = 0; joints && n < joints->n; n++) {
+        struct beam_joint *const j = &joints->joint[n];
+        struct beam_body *const body = &beams->body[j->row.body];
+        double impulse[3];
+        j->impulse = 0;
+        if (beams->rigid->centred) continue;
+        memcpy(body->x, beams->rigid->state[j->row.body].x, sizeof body->x);
+        memset(body->d, 0, sizeof body->d);
+        beam_row_aim(beams, &j->row);
+        for (int c = 0; c < 3; c++)
+            impulse[c] =
+                -0.5 * last * beams->state[j->node].reaction[j->component] * j->row.along[c];
+        rigid_load(beams->rigid, j->row.body, impulse);
     }
 }
 
-void beams_return_bodies(struct beams *beams, double dt)
+void beams_return_joints(struct beams *beams, double dt)
 {
     const struct beam_joints *const joints = beams->joints;
     for (int n = 0; joints && n < joints->n; n++) {
         const struct beam_joint *const j = &joints->joint[n];
         beams->state[j->node].reaction[j->component] = j->impulse / dt;
     }
-    for (int b = 0; joints && b < joints->n_bodies; b++) {
-        const struct beam_body *const body = &joints->body[b];
-        const double(*const W)[3] = equations_of(beams, b)->yields;
-        const double late = beams->rigid->centred ? 0.5 * dt : dt;
-        for (int c = 0; c < 3; c++)
-            beams->rigid->body[body->rigid].moved[c] +=
-                body->x[c] - (body->from[c] + dt * body->mean[c] + late * dot(W[c], body->impulse));
-        rigid_load(beams->rigid, body->rigid, body->impulse);
-        beams->pushed = true;
-    }
 }
 
 /* --- a part of the step --- */
-
-/* An impulse of a joint on the node, and the opposite one on the body. */
-static void add_impulse(struct beams *beams, struct beam_joint *j, double impulse)
-{
-    struct beam_body *const body = &beams->joints->body[j->body];
-    const double(*const W)[3] = equations_of(beams, j->body)->yields;
-    for (int k = 0; k < beams->n_nodes; k++)
-        if (beams->node[k].row[j->component] == j->row)
-            beams->state[k].v[j->component] += impulse / j->mass;
-    for (int c = 0; c < 3; c++) {
-        body->impulse[c] -= impulse * j->along[c];
-        body->v[c] -= impulse * dot(W[c], j->along);
-    }
-}
 
 /* T-107c: impulses by which nodes have the velocities of their bodies. Returns the largest change
  * of one. */
@@ -227,82 +116,45 @@ static double meet(struct beams *beams)
 {
     double largest = 0;
     for (int n = 0; n < beams->joints->n; n++) {
-        struct beam_joint *const j = &beams->joints->joint[n];
-        const double(*const W)[3] = equations_of(beams, j->body)->yields;
-        double *const v = &beams->state[j->node].v[j->component], own = 0;
-        const double faster = *v - dot(j->along, beams->joints->body[j->body].v);
-        for (int c = 0; c < 3; c++) own += j->along[c] * dot(W[c], j->along);
+        const struct beam_joint *const j = &beams->joints->joint[n];
+        const int c = j->component;
+        double *const v = &beams->state[j->node].v[c];
+        const double faster = *v - beam_row_speed(beams, &j->row);
         largest = max2(largest, fabs(faster));
-        if (j->mass > 0)
-            add_impulse(beams, j, -faster / (1 / j->mass + own));
-        else
+        if (!(j->mass > 0)) {
             *v -= faster;
+            continue;
+        }
+        const double impulse = -faster / (1 / j->mass + beam_row_yields(beams, &j->row));
+        for (int k = 0; k < beams->n_nodes; k++)
+            if (beams->node[k].row[c] == j->unknown) beams->state[k].v[c] += impulse / j->mass;
+        beam_row_kick(beams, &j->row, impulse);
     }
     return largest;
 }
 
-void beams_begin_joints(struct beams *beams, double time, double dt)
+void beams_begin_joints(struct beams *beams)
 {
     enum { TURNS = 100 };
     struct beam_joints *const joints = beams->joints;
     if (!joints) return;
-    joints->time = time;
-    joints->dt = dt;
-    for (int b = 0; b < joints->n_bodies; b++) memset(joints->body[b].d, 0, sizeof(double[3]));
     for (int n = 0; n < joints->n; n++) {
-        struct beam_joint *const j = &joints->joint[n];
-        double arm[2][2];
-        j->force = 0;
-        find_arms(beams, j, arm);
-        set_along(j, arm[0]);
+        struct beam_row *const row = &joints->joint[n].row;
+        row->force = 0;
+        memset(beams->body[row->body].d, 0, sizeof beams->body[row->body].d);
+        beam_row_aim(beams, row);
     }
     double first = meet(beams), largest = first;
     for (int turn = 1; turn < TURNS && largest > 1e-12 * first; turn++) largest = meet(beams);
-    for (int b = 0; b < joints->n_bodies; b++) {
-        struct beam_body *const body = &joints->body[b];
-        for (int c = 0; c < 3; c++) body->d[c] = dt * (body->v[c] + 0.5 * dt * body->a[c]);
-        follow_hinge(beams, body);
-    }
-}
-
-/* T-107b: what a body lacks, and how it yields, with the part of its moment that turns with it. */
-static void find_body(struct beams *beams, int b)
-{
-    const struct beam_joints *const joints = beams->joints;
-    struct beam_body *const body = &joints->body[b];
-    const double(*const W)[3] = equations_of(beams, b)->yields;
-    const double dt = joints->dt, share = 0.5 * dt * dt;
-    double force[3] = {0}, turning = 0;
-    for (int n = 0; n < joints->n; n++) {
-        struct beam_joint *const j = &joints->joint[n];
-        double arm[2][2];
-        if (j->body != b) continue;
-        find_arms(beams, j, arm);
-        set_along(j,
-                  (const double[2]){0.5 * (arm[0][0] + arm[1][0]), 0.5 * (arm[0][1] + arm[1][1])});
-        for (int c = 0; c < 3; c++) force[c] -= j->force * j->along[c];
-        if (j->component < 2) turning += 0.5 * j->force * arm[1][j->component];
-    }
-    const double stiff = share * turning / (1 + 0.25 * square(body->d[2])),
-                 rest = 1 - stiff * W[2][2], by = rest > 0.1 ? stiff / rest : 0;
-    for (int c = 0; c < 3; c++) {
-        body->off[c] = dt * body->v[c] + share * (body->a[c] + dot(W[c], force)) - body->d[c];
-        for (int e = 0; e < 3; e++) body->yields[c][e] = share * (W[c][e] + by * W[c][2] * W[2][e]);
-    }
-    const double turn = body->off[2];
-    for (int c = 0; c < 2 && beams->rigid->body[body->rigid].fixed; c++)
-        body->off[c] = turn * W[c][2] / W[2][2];
-    for (int c = 0; c < 3; c++) body->off[c] += by * W[c][2] * turn;
 }
 
 void beams_add_joints(struct beams *beams)
 {
     const struct beam_joints *const joints = beams->joints;
-    if (!joints) return;
-    for (int b = 0; b < joints->n_bodies; b++) find_body(beams, b);
-    for (int n = 0; n < joints->n; n++) {
-        const struct beam_joint *const j = &joints->joint[n];
-        beams->step[j->node].touch[j->component] += j->force;
+    for (int n = 0; joints && n < joints->n; n++) {
+        struct beam_joint *const j = &joints->joint[n];
+        beam_row_push(beams, &j->row);
+        beams->step[j->node].touch[j->component] += j->row.force;
     }
 }
 
@@ -312,8 +164,7 @@ bool beams_stay_joined(const struct beams *beams)
     const double kept = JOINED * beams->scene->top.dp;
     for (int n = 0; joints && n < joints->n; n++) {
         const struct beam_joint *const j = &joints->joint[n];
-        if (!(fabs(gap_of(beams, j)) <= kept) ||
-            !(fabs(dot(j->along, joints->body[j->body].off)) <= kept))
+        if (!(fabs(gap_of(beams, j)) <= kept) || !beam_row_settled(beams, &j->row, kept))
             return false;
     }
     return true;
@@ -321,11 +172,18 @@ bool beams_stay_joined(const struct beams *beams)
 
 static double *column_at(const struct beams *beams, int n)
 {
-    return &beams->joints->column[n * (beams->matrix.n + ENVELOPE_ALIGN)];
+    return &beams->joints->column[n * beams->size];
 }
 
-/* T-107a: forces that close what is open, in `open`; what they do to the nodes. */
-static void close_open(const struct beams *beams, double *unknown)
+/* How far a vector of displacements brings a node from its place on the body. */
+static double opened_by(const struct beams *beams, const struct beam_joint *j,
+                        const double *vector)
+{
+    return vector[j->unknown] - beam_row_moved_by(beams, &j->row, vector);
+}
+
+/* T-107a: forces that close what is open, in `open`; what they do to nodes and bodies. */
+static void close_open(const struct beams *beams, double *vector)
 {
     const struct beam_joints *const joints = beams->joints;
     const int n = joints->n;
@@ -334,8 +192,8 @@ static void close_open(const struct beams *beams, double *unknown)
      * (beams_stay_joined). */
     (void)cholesky_solve(joints->factors, n, n, 0, joints->open);
     for (int k = 0; k < n; k++)
-        for (int64_t r = 0; r < beams->matrix.n; r++)
-            unknown[r] -= column_at(beams, k)[r] * joints->open[k];
+        for (int64_t r = 0; r < beams->size; r++)
+            vector[r] -= column_at(beams, k)[r] * joints->open[k];
 }
 
 static void find_flexibility(const struct beams *beams)
@@ -344,16 +202,12 @@ static void find_flexibility(const struct beams *beams)
     for (int k = 0; k < joints->n; k++) {
         const struct beam_joint *const j = &joints->joint[k];
         double *const column = column_at(beams, k);
-        memset(column, 0, (size_t)(beams->matrix.n + ENVELOPE_ALIGN) * sizeof *column);
-        column[j->row] = 1;
+        memset(column, 0, (size_t)beams->size * sizeof *column);
+        column[j->unknown] = 1;
         envelope_solve(&beams->matrix, column);
-        for (int i = 0; i < joints->n; i++) {
-            const struct beam_joint *const other = &joints->joint[i];
-            double both = column[other->row];
-            for (int c = 0; c < 3 && other->body == j->body; c++)
-                both += other->along[c] * dot(joints->body[j->body].yields[c], j->along);
-            joints->yields[i * joints->n + k] = both;
-        }
+        beam_row_move(beams, &j->row, column);
+        for (int i = 0; i < joints->n; i++)
+            joints->yields[i * joints->n + k] = opened_by(beams, &joints->joint[i], column);
     }
 }
 
@@ -364,27 +218,19 @@ void beams_correct_joints(struct beams *beams)
     find_flexibility(beams);
     for (int k = 0; k < joints->n; k++) {
         const struct beam_joint *const j = &joints->joint[k];
-        joints->open[k] =
-            gap_of(beams, j) + beams->unknown[j->row] - dot(j->along, joints->body[j->body].off);
+        joints->open[k] = gap_of(beams, j) + opened_by(beams, j, beams->unknown);
     }
     close_open(beams, beams->unknown);
-    for (int b = 0; b < joints->n_bodies; b++)
-        for (int c = 0; c < 3; c++) joints->body[b].d[c] += joints->body[b].off[c];
-    for (int k = 0; k < joints->n; k++) {
-        struct beam_joint *const j = &joints->joint[k];
-        struct beam_body *const body = &joints->body[j->body];
-        j->force -= joints->open[k];
-        for (int c = 0; c < 3; c++) body->d[c] += dot(body->yields[c], j->along) * joints->open[k];
-    }
-    for (int b = 0; b < joints->n_bodies; b++) follow_hinge(beams, &joints->body[b]);
+    for (int k = 0; k < joints->n; k++) joints->joint[k].row.force -= joints->open[k];
 }
 
-void beams_resist_joints(const struct beams *beams, double *unknown)
+void beams_resist_joints(const struct beams *beams, double *vector)
 {
     const struct beam_joints *const joints = beams->joints;
     if (!joints) return;
-    for (int k = 0; k < joints->n; k++) joints->open[k] = unknown[joints->joint[k].row];
-    close_open(beams, unknown);
+    for (int k = 0; k < joints->n; k++)
+        joints->open[k] = opened_by(beams, &joints->joint[k], vector);
+    close_open(beams, vector);
 }
 
 void beams_finish_joints(struct beams *beams, double dt)
@@ -392,14 +238,9 @@ void beams_finish_joints(struct beams *beams, double dt)
     const struct beam_joints *const joints = beams->joints;
     for (int n = 0; joints && n < joints->n; n++) {
         struct beam_joint *const j = &joints->joint[n];
-        struct beam_body *const body = &joints->body[j->body];
-        const double impulse = dt * j->force, now = beams->rigid->centred ? 1 : 0.5;
+        const double impulse = dt * j->row.force, now = beams->rigid->centred ? 1 : 0.5;
         j->impulse += impulse;
-        for (int c = 0; c < 3; c++) body->impulse[c] -= now * impulse * j->along[c];
-    }
-    for (int b = 0; joints && b < joints->n_bodies; b++) {
-        struct beam_body *const body = &joints->body[b];
-        place_body(body, body->x);
-        for (int c = 0; c < 3; c++) body->v[c] = 2 * body->d[c] / dt - body->v[c];
+        for (int c = 0; c < 3; c++)
+            beams->body[j->row.body].impulse[c] -= now * impulse * j->row.along[c];
     }
 }

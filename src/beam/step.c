@@ -147,10 +147,12 @@ static struct largest find_residual(struct beams *beams, double dt)
 {
     struct largest top = {0};
     add_elements(beams, dt, &top);
+    beams_clear_rows(beams);
     beams_add_touches(beams);
     beams_add_joints(beams);
     beams_add_springs(beams, dt, &top.rounding);
-    memset(beams->unknown, 0, (size_t)beams->matrix.n * sizeof *beams->unknown);
+    memset(beams->unknown, 0, (size_t)beams->size * sizeof *beams->unknown);
+    beams_find_bodies(beams, dt);
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
         const struct beam_step *const s = &beams->step[k];
@@ -187,6 +189,7 @@ static bool correct(struct beams *beams)
         for (int c = 0; c < 3; c++)
             if (beams->node[k].row[c] >= 0)
                 beams->step[k].d[c] += beams->unknown[beams->node[k].row[c]];
+    beams_move_bodies(beams);
     return true;
 }
 
@@ -279,12 +282,14 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
     const double dt = times->dt;
     find_loads(beams, time + 0.5 * dt);
     if (beams->line) beams_find_fluid(beams, times);
-    beams_begin_joints(beams, time, dt);
+    beams_begin_joints(beams);
+    beams_begin_bodies(beams, time, dt);
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
-        beams_finish_touches(beams, time, dt);
+        beams_finish_touches(beams, dt);
         beams_finish_joints(beams, dt);
+        beams_finish_bodies(beams, dt);
         if (beams->line) beams_return_impulse(beams, times);
         return true;
     }
@@ -298,8 +303,10 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 {
     beams->iterations = 0;
     for (int k = 0; k < beams->n; k++) beams->beam[k].driven = beams->beam[k].received = 0;
-    beams_take_bodies(beams, time, times);
+    beams_give_rest(beams, times->last);
+    beams_take_bodies(beams, time, times->dt);
     beams->failed |= !step(beams, time, times, HALVINGS);
+    beams_return_joints(beams, times->dt);
     beams_return_bodies(beams, times->dt);
 }
 

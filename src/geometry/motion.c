@@ -103,3 +103,10 @@ struct motion_state motion_at(const struct scene *scene, int motion_index, doubl
     m.turn[1] = elementary_sin(m.angle);
     return m;
 }
+
+void motion_initial(const struct motion_state *m, const double x[2], double X[2])
+{
+    const double dx = x[0] - m->d[0] - m->centre[0], dy = x[1] - m->d[1] - m->centre[1];
+    X[0] = m->centre[0] + m->turn[0] * dx + m->turn[1] * dy;
+    X[1] = m->centre[1] - m->turn[1] * dx + m->turn[0] * dy;
+}

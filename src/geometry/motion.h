@@ -17,3 +17,6 @@ struct motion_point {
     double x[2], v[2], a[2];
 };
 struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
+
+/* The initial place of a point that is now at x. */
+void motion_initial(const struct motion_state *m, const double x[2], double X[2]);

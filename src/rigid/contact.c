@@ -127,12 +127,9 @@ static void approach_piece(struct approach *a, const struct outline *o, double s
 static void approach_corner(struct rigid *rigid, const struct rigid_shape *of,
                             const struct rigid_shape *other, const double at[2], double radius)
 {
-    const struct motion_state *const m = &other->now;
     const struct motion_point p = motion_of_point(&of->now, at[0], at[1]);
-    const double x = p.x[0] - m->d[0] - m->centre[0], y = p.x[1] - m->d[1] - m->centre[1];
     struct approach a = {.rigid = rigid, .of = {of, other}, .radius = radius};
-    a.at[0] = m->centre[0] + m->turn[0] * x + m->turn[1] * y;
-    a.at[1] = m->centre[1] - m->turn[1] * x + m->turn[0] * y;
+    motion_initial(&other->now, p.x, a.at);
     a.inside = body_outlines_contain(&other->of, a.at[0], a.at[1]);
     for (int j = 0; j < other->of.add.n; j++) approach_piece(&a, &other->of.add.item[j], 1);
     for (int j = 0; j < other->of.minus.n; j++) approach_piece(&a, &other->of.minus.item[j], -1);
@@ -156,14 +153,8 @@ static void place_shapes(struct rigid *rigid, double time)
 {
     for (int w = 0; w < rigid->scene->n_wall; w++) {
         struct rigid_shape *const s = &rigid->contact->shape[w];
-        s->now = motion_at(rigid->scene, s->motion, time);
-        if (s->rigid < 0) continue;
-        const double *const x = rigid->state[s->rigid].x;
-        s->now = (struct motion_state){.d = {x[0], x[1]},
-                                       .centre = {rigid->body[s->rigid].centre[0],
-                                                  rigid->body[s->rigid].centre[1]},
-                                       .angle = x[2],
-                                       .turn = {elementary_cos(x[2]), elementary_sin(x[2])}};
+        s->now = s->rigid < 0 ? motion_at(rigid->scene, s->motion, time)
+                              : rigid_placed(rigid, s->rigid, rigid->state[s->rigid].x);
     }
 }
 

@@ -30,6 +30,15 @@ void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angl
     arm[1] = s * x + c * y;
 }
 
+struct motion_state rigid_placed(const struct rigid *rigid, int k, const double x[3])
+{
+    const double *const centre = rigid->body[k].centre;
+    return (struct motion_state){.d = {x[0], x[1]},
+                                 .centre = {centre[0], centre[1]},
+                                 .angle = x[2],
+                                 .turn = {elementary_cos(x[2]), elementary_sin(x[2])}};
+}
+
 static struct freedom freedom_of(const struct rigid *rigid, int k, double time)
 {
     const struct rigid_body *const body = &rigid->body[k];

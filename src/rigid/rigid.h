@@ -85,6 +85,9 @@ double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)
  */
 void rigid_publish(const struct rigid *rigid, double time, double dt);
 
+/* Where a body with a displacement and an angle is, without velocities. */
+struct motion_state rigid_placed(const struct rigid *rigid, int k, const double x[3]);
+
 /* Begins a step of dt from a time on: the motion of the bodies without contact, which is published.
  * The rates of the last evaluation act for `kick`, as on the fluid (T-96). */
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick);

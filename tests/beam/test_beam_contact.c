@@ -113,6 +113,37 @@ static void test_a_rigid_body_lands_on_a_beam(void)
     }
 }
 
+/* A box of 0.8 kg/m with 1 m/s hits an upright strip and falls on the bed. Each blow of the strip
+ * slows the box within its step: the gain was 0.07 J/m without that. Measured: 6e-10 J/m. */
+static void hits(const char *held)
+{
+    char text[600];
+    snprintf(text, sizeof text,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[wall bed]\nshape = box -0.2, -0.05, 0.6, 0\n"
+             "[beam b]\nshape = polyline: 0.3, 0; 0.3, 0.1\n%s = 0.3, 0, bed\n"
+             "thickness = 4 mm\ndensity = 1000\nyoung = 1e7\n"
+             "[rigid r]\nshape = box 0.31, 0.01, 0.35, 0.05\ndensity = 500\nvelocity = -1, 0\n",
+             held);
+    rig_open(&rig, text, NULL);
+    double least = INFINITY;
+    for (int n = 0; n <= 60; n++) {
+        rig_run(&rig, 0.001 * n);
+        const struct ledger row = simulation_ledger(&rig.sim);
+        const double energy = row.kinetic + row.potential + row.elastic;
+        assert_at_most(least + 2e-8, energy, held);
+        least = fmin(least, energy);
+    }
+    assert_at_most(0.9, -rig.sim.rigid.state[0].v[0], "the strip has slowed the box");
+}
+
+static void test_a_box_hits_a_strip(void)
+{
+    hits("clamp");
+    rig_close(&rig);
+    hits("hinge");
+}
+
 /* A dam break carries a loose strip against the far wall. */
 static void test_water_does_not_push_a_beam_through_a_wall(void)
 {
@@ -141,6 +172,7 @@ int main(void)
     RUN_TEST(test_a_beam_meets_itself);
     RUN_TEST(test_a_thick_beam_does_not_touch_its_neighbours);
     RUN_TEST(test_a_rigid_body_lands_on_a_beam);
+    RUN_TEST(test_a_box_hits_a_strip);
     RUN_TEST(test_water_does_not_push_a_beam_through_a_wall);
     return UNITY_END();
 }
