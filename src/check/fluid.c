@@ -197,7 +197,8 @@ static void warn_of_start_gap(struct check *check, int fluid)
 
 /* --- speeds near that of sound --- */
 
-/* The largest speed of the corners of the box around a wall or a body's clamps. */
+/* The largest speed of the corners of the box around a wall or a body's clamps, and a frequency:
+ * the largest acceleration over it. */
 static void warn_of_motion(struct check *check, const struct body *b)
 {
     enum { TIMES = 256 };
@@ -205,7 +206,7 @@ static void warn_of_motion(struct check *check, const struct body *b)
     const struct scene_points *const p = &scene->points[b->kind];
     const int motion = scene_find(scene, SECTION_motion, b->motion);
     struct box2 box = box2_empty();
-    double largest = 0;
+    double largest = 0, sharpest = 0;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == b->index && (b->kind != KIND_SOLID || p->clamped[k]))
             box2_include(&box, p->x[k], p->y[k]);
@@ -218,8 +219,15 @@ static void warn_of_motion(struct check *check, const struct body *b)
             box2_corner(&box, corner, at);
             const struct motion_point moved = motion_of_point(&m, at[0], at[1]);
             largest = max2(largest, elementary_hypot(moved.v[0], moved.v[1]));
+            sharpest = max2(sharpest, elementary_hypot(moved.a[0], moved.a[1]));
         }
     }
+    const double step = scene->numerics.cfl * scene->h / scene->c0;
+    if (scene->n_fluid > 0 && sharpest * step > largest)
+        warn_at(check->diag, scene, scene->motion[motion].common.line,
+                "[motion %s] changes its velocity of %.3g m/s within %.2g s, but a time step is "
+                "about %.2g s; use a slower change, or a smaller numerics.cfl",
+                scene->motion[motion].common.name, largest, largest / sharpest, step);
     warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves %s at",
                   scene->motion[motion].common.name, section_title(b->common).text);
 }

@@ -32,6 +32,9 @@ static void test_walls(void)
           "fast.cfg:12: [motion m] moves [wall paddle] at up to 4 m/s, above 0.3 of");
     TEST_ASSERT_EQUAL_DOUBLE(4, scene.given_speed);
     warns(BASIN "y = 2.9*t\n", NULL);
+    warns(BASIN "x = 1e-7*sin(1e6*t)\n",
+          "fast.cfg:12: [motion m] changes its velocity of 0.1 m/s within 1e-06 s, but a time");
+    warns(BASIN "x = 0.01*(1 - cos(20*t))\n", NULL);
 }
 
 static void test_fluid_at_the_start(void)
