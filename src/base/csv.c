@@ -44,10 +44,9 @@ enum err csv_open(struct csv *c, const char *file)
     c->line = 0;
     c->lines = !*c->text;
     c->begun = false;
-    for (char *at = c->text; *at; at++) {
-        if (*at == '\r' && at[1] != '\n') *at = '\n'; /* a line may end with CR alone */
-        c->lines += *at == '\n' || !at[1];
-    }
+    for (char *at = c->text; (at = strchr(at, '\r')); at++)
+        if (at[1] != '\n') *at = '\n'; /* a line may end with CR alone */
+    for (const char *at = c->text; *at; at++) c->lines += *at == '\n' || !at[1];
     if (c->lines > CSV_MAX_LINES)
         return diag_add(c->diag, ERR_INPUT, "%s: more than %d lines; use fewer rows", c->path,
                         CSV_MAX_LINES);

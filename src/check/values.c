@@ -74,8 +74,7 @@ static void warn_of_table(struct check *check, const struct param *key, int k, i
     const void *const section = section_at(scene, key->section, k);
     const struct scene_motion *const motion = key->section == SECTION_motion ? section : NULL;
     const struct expr *const e = param_expr(key, section, component);
-    const bool timed = e && (key->scope == EXPR_IN_TIME || key->scope == EXPR_IN_BOTH);
-    const double last = timed ? expr_table_end(e, key->scope) : (double)INFINITY,
+    const double last = e && key->scope & EXPR_IN_TIME ? expr_table_end(e, key->scope) : HUGE_VAL,
                  end = last + (motion ? motion->start : 0), until = scene->top.end_time;
     if (end >= (motion ? min2(until, motion->stop) : until) * (1 - 1e-9)) return;
     warn_at(check->diag, scene, scene_line(scene, key->section, k, key->key),
@@ -140,9 +139,8 @@ void warn_of_values(struct check *check)
     const struct scene *const scene = check->scene;
     for (int k = 0; k < scene->n_fluid; k++) warn_of_fluid_keys(check, &scene->fluid[k]);
     warn_of_sliding(check);
-    for (int k = 0; k < scene->n_motion - scene->n_rigid; k++) {
+    for (int k = 0; k < scene->n_motion - scene->n_rigid; k++)
         warn_of_motion_of_nothing(check, &scene->motion[k]);
-    }
     for (const struct param *key = param_table; key < param_table + PARAM_COUNT; key++)
         for (int k = 0; k < section_count(scene, key->section); k++)
             for (int c = 0; c < key->count; c++) warn_of_table(check, key, k, c);
