@@ -266,7 +266,7 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
             solid_write_stress(&sim->solid, &sim->kind[KIND_SOLID]);
         if (kind == KIND_FLUID && data == particles->p)
-            fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
+            fluid_write_pressure(&sim->fluid, &sim->kind[KIND_FLUID]);
         const enum sphfsi_type type = strcmp(f->type, "double") == 0 ? SPHFSI_DOUBLE
                                       : f->size == 8                 ? SPHFSI_INT64
                                                                      : SPHFSI_INT32;
@@ -395,8 +395,8 @@ static enum err set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kin
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     handle->force[kind] = (struct user_function){.of = handle, .force = force, .context = context};
-    return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL,
-                               &handle->force[kind], d);
+    return simulation_set_external(sim, (enum kind)kind, force ? add_user_force : NULL,
+                                   &handle->force[kind], d);
 }
 
 enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kind,

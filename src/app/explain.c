@@ -41,10 +41,10 @@ static void say_effects(const struct simulation *sim, const struct sphfsi_option
     session_say(o, "enabled effects, and the setting that enables each");
     for (int k = 0; k < EFFECT_COUNT; k++) {
         if (!(sim->effects & EFFECT_BIT(k))) continue;
-        struct effect_caller by;
-        const bool called = effect_called(sim->scene, (enum effect)k, &by);
+        struct effect_caller caller;
+        const bool called = effect_called(sim->scene, (enum effect)k, &caller);
         session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name,
-                    called ? effect_caller_text(sim->scene, &by).text : effect_table[k].key,
+                    called ? effect_caller_text(sim->scene, &caller).text : effect_table[k].key,
                     effect_table[k].meaning, effect_table[k].equation[0] ? "; " : "",
                     effect_table[k].equation);
     }

@@ -12,16 +12,17 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 /* --- conditions of effects --- */
 
 /* Stores the place of the condition if `at` is one, and returns whether it is. */
-static bool called_by(struct effect_caller *by, enum section_id section, const char *key, int at)
+static bool called_by(struct effect_caller *caller, enum section_id section, const char *key,
+                      int at)
 {
     if (at < 0) return false;
-    *by = (struct effect_caller){section, at, key};
+    *caller = (struct effect_caller){section, at, key};
     return true;
 }
 
 /* Whether a section has a value above 0, a choice other than its first, or a text; with `choice` at
  * least 0: that choice. */
-static bool has_set(const struct scene *scene, struct effect_caller *by, enum section_id id,
+static bool has_set(const struct scene *scene, struct effect_caller *caller, enum section_id id,
                     const char *key, int choice)
 {
     const struct param *const param = param_find(id, key);
@@ -29,29 +30,29 @@ static bool has_set(const struct scene *scene, struct effect_caller *by, enum se
         const char *const section = section_at(scene, id, k);
         const double set =
             param->type == PARAM_TEXT ? section[param->offset] : param_number(param, section);
-        if (choice < 0 ? set > 0 : set == choice) return called_by(by, id, param->key, k);
+        if (choice < 0 ? set > 0 : set == choice) return called_by(caller, id, param->key, k);
     }
     return false;
 }
 
 /* The first two bodies in contact, the second from `first` on, walls after solids. */
-static bool meets(const struct scene *scene, struct effect_caller *by, int first)
+static bool meets(const struct scene *scene, struct effect_caller *caller, int first)
 {
     for (int a = 0; a < scene->n_solid; a++)
         for (int b = a > first ? a : first; b < scene->n_solid + scene->n_wall; b++) {
             const struct scene_contact *const c = scene_contact_of(scene, a, b);
-            if (c == &scene->contact_default) return called_by(by, SECTION_solid, "", a);
-            if (c) return called_by(by, SECTION_contact, "", (int)(c - scene->contact));
+            if (c == &scene->contact_default) return called_by(caller, SECTION_solid, "", a);
+            if (c) return called_by(caller, SECTION_contact, "", (int)(c - scene->contact));
         }
     return false;
 }
 
-static bool has_gravity(const struct scene *scene, struct effect_caller *by)
+static bool has_gravity(const struct scene *scene, struct effect_caller *caller)
 {
     const struct scene_expr *const e = &scene->top.gravity_in_time;
     const bool acts =
         scene->top.gravity[0] != 0 || scene->top.gravity[1] != 0 || e->e[0] || e->e[1];
-    return called_by(by, SECTION_top, "gravity", acts ? 0 : -1);
+    return called_by(caller, SECTION_top, "gravity", acts ? 0 : -1);
 }
 
 /* The first probe of the force on a wall; -1: none. */
@@ -66,27 +67,27 @@ static int first_wall_force(const struct scene *scene)
     return -1;
 }
 
-static bool compressed_at_start(const struct scene *scene, struct effect_caller *by)
+static bool compressed_at_start(const struct scene *scene, struct effect_caller *caller)
 {
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].particle_mass == MASS_HYDROSTATIC &&
             (!isnan(scene->fluid[k].surface) || scene->fluid[k].pressure.e[0]))
-            return called_by(by, SECTION_fluid, "particle_mass", k);
+            return called_by(caller, SECTION_fluid, "particle_mass", k);
     return false;
 }
 
-bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *by)
+bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *caller)
 {
-#define SOME(section) called_by(by, SECTION_##section, "", scene->n_##section > 0 ? 0 : -1)
-#define SET(section, key) has_set(scene, by, SECTION_##section, #key, -1)
-#define CHOSEN(section, key, choice) has_set(scene, by, SECTION_##section, #key, choice)
-#define COMPRESSED_AT_START compressed_at_start(scene, by)
-#define MEETS meets(scene, by, 0)
-#define MEETS_WALL meets(scene, by, scene->n_solid)
-#define HAS_GRAVITY has_gravity(scene, by)
-#define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(scene))
+#define SOME(section) called_by(caller, SECTION_##section, "", scene->n_##section > 0 ? 0 : -1)
+#define SET(section, key) has_set(scene, caller, SECTION_##section, #key, -1)
+#define CHOSEN(section, key, choice) has_set(scene, caller, SECTION_##section, #key, choice)
+#define COMPRESSED_AT_START compressed_at_start(scene, caller)
+#define MEETS meets(scene, caller, 0)
+#define MEETS_WALL meets(scene, caller, scene->n_solid)
+#define HAS_GRAVITY has_gravity(scene, caller)
+#define PROBES_WALL called_by(caller, SECTION_probe, "quantity", first_wall_force(scene))
 #define THIN_LINES \
-    called_by(by, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
+    called_by(caller, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
 #define LATER false
 #define EFFECT(name, when, ...) \
     if (effect == EFFECT_##name) return when;
@@ -102,35 +103,38 @@ static const effect_set effect_bits[EFFECT_COUNT] = {
 effect_set effects_of_scene(const struct scene *scene)
 {
     effect_set effects = 0;
-    struct effect_caller by;
+    struct effect_caller caller;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_called(scene, (enum effect)k, &by)) effects |= effect_bits[k];
+        if (effect_called(scene, (enum effect)k, &caller)) effects |= effect_bits[k];
     return effects;
 }
 
 /* "[wall bed] slip", or "integrator". */
-static struct section_title caller_name(const struct scene *scene, const struct effect_caller *by)
+static struct section_title caller_name(const struct scene *scene,
+                                        const struct effect_caller *caller)
 {
     struct section_title name;
-    const bool top = by->section == SECTION_top;
+    const bool top = caller->section == SECTION_top;
     snprintf(name.text, sizeof name.text, "%.90s%s%.60s",
-             top ? "" : section_title(section_at(scene, by->section, by->index)).text,
-             !top && *by->key ? " " : "", by->key);
+             top ? "" : section_title(section_at(scene, caller->section, caller->index)).text,
+             !top && *caller->key ? " " : "", caller->key);
     return name;
 }
 
-struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *by)
+struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *caller)
 {
-    const struct scene_given *const given = scene_given(scene, by->section, by->index, by->key);
-    const struct scene_section_common *const section = section_at(scene, by->section, by->index);
+    const struct scene_given *const given =
+        scene_given(scene, caller->section, caller->index, caller->key);
+    const struct scene_section_common *const section =
+        section_at(scene, caller->section, caller->index);
     struct caller_text to;
     char line[32];
     snprintf(line, sizeof line, "line %d", given ? given->line : section->line);
     snprintf(to.text, sizeof to.text, "%s: %s",
-             given && given->line == 0                   ? "--set"
-             : given || section_table[by->section].named ? line
-                                                         : "default",
-             caller_name(scene, by).text);
+             given && given->line == 0                       ? "--set"
+             : given || section_table[caller->section].named ? line
+                                                             : "default",
+             caller_name(scene, caller).text);
     return to;
 }
 
@@ -200,25 +204,26 @@ static const struct owned {
 };
 
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
-static int line_of(const struct scene *scene, const struct effect_caller *by)
+static int line_of(const struct scene *scene, const struct effect_caller *caller)
 {
-    const int line = scene_line(scene, by->section, by->index, by->key);
+    const int line = scene_line(scene, caller->section, caller->index, caller->key);
     return line == LINE_NONE ? 1 : line;
 }
 
 static enum err check_rule(struct reader *r, const struct rule *rule)
 {
     const struct scene *const scene = r->scene;
-    struct effect_caller by, other;
-    if (!effect_called(scene, rule->effect, &by)) return ERR_OK;
+    struct effect_caller caller, other;
+    if (!effect_called(scene, rule->effect, &caller)) return ERR_OK;
     if (effect_called(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
     const struct effect_info *const effect = &effect_table[rule->effect],
                                     *const its = &effect_table[rule->other];
-    const struct section_title text = caller_name(scene, &by);
+    const struct section_title text = caller_name(scene, &caller);
     if (rule->verb == NEEDS)
-        return bad_line(r, line_of(scene, &by), "%s enables the effect %s, which needs %s (%s): %s",
-                        text.text, effect->name, its->name, its->key, rule->reason);
-    return bad_line(r, line_of(scene, &by),
+        return bad_line(r, line_of(scene, &caller),
+                        "%s enables the effect %s, which needs %s (%s): %s", text.text,
+                        effect->name, its->name, its->key, rule->reason);
+    return bad_line(r, line_of(scene, &caller),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
                     text.text, effect->name, its->name, caller_name(scene, &other).text,
                     line_of(scene, &other), rule->reason);
@@ -229,8 +234,8 @@ static enum err check_owned(struct reader *r, const struct owned *row)
     const struct scene *const scene = r->scene;
     const struct param *const param = param_find(row->section, row->key);
     const struct effect_info *const effect = &effect_table[row->effect];
-    struct effect_caller by;
-    if (effect_called(scene, row->effect, &by)) return ERR_OK;
+    struct effect_caller caller;
+    if (effect_called(scene, row->effect, &caller)) return ERR_OK;
     for (int k = 0; k < section_count(scene, row->section); k++) {
         const void *const section = section_at(scene, row->section, k);
         double value;
@@ -238,10 +243,10 @@ static enum err check_owned(struct reader *r, const struct owned *row)
             (scene_scheme_sets(scene, row->section, row->key, &value) &&
              param_number(param, section) == value))
             continue;
-        by = (struct effect_caller){row->section, k, row->key};
-        TRY(case_go_on(r, bad_line(r, line_of(scene, &by),
+        caller = (struct effect_caller){row->section, k, row->key};
+        TRY(case_go_on(r, bad_line(r, line_of(scene, &caller),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
-                                   caller_name(scene, &by).text, effect->name, effect->name,
+                                   caller_name(scene, &caller).text, effect->name, effect->name,
                                    effect->key)));
     }
     return ERR_OK;
@@ -249,9 +254,9 @@ static enum err check_owned(struct reader *r, const struct owned *row)
 
 enum err case_check_effects(struct reader *r)
 {
-    struct effect_caller by;
+    struct effect_caller caller;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_bits[k] == 0 && effect_called(r->scene, (enum effect)k, &by))
+        if (effect_bits[k] == 0 && effect_called(r->scene, (enum effect)k, &caller))
             return bad_line(r, 1,
                             "the case enables the effect %s, but this program was compiled without "
                             "it; build it without -DSPHFSI_WITHOUT",

@@ -79,13 +79,14 @@ struct effect_caller {
 };
 
 /* Whether the scene activates an effect, and where it does first. */
-bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *by);
+bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *caller);
 
 /* "line 12: [wall bed] slip", or "--set: ...". */
 struct caller_text {
     char text[300];
 };
-struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *by);
+struct caller_text effect_caller_text(const struct scene *scene,
+                                      const struct effect_caller *caller);
 
 /* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
 effect_set effects_of_scene(const struct scene *scene);

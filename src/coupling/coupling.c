@@ -9,7 +9,7 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
     const bool impedance = effects & FX_IMPEDANCE;
     coupling->multirate = effects & FX_MULTIRATE;
     coupling->impedance = impedance ? coupling->scene->rho0 * coupling->scene->c0 : 0;
-    coupling->solid->kick = impedance ? impedance_kick : solid_free_kick;
+    coupling->solid->apply_kick = impedance ? impedance_kick : solid_free_kick;
     if (!impedance) *coupling->exchange_time = 0;
     if (impedance && *coupling->exchange_time == 0) *coupling->exchange_time = longest;
 }
@@ -34,8 +34,8 @@ void coupling_find_forces(const struct coupling *coupling, struct particles kind
         find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, false);
 }
 
-void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
-                          const struct cells *cells)
+void coupling_find_wall_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                               const struct cells *cells)
 {
     find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
@@ -44,15 +44,15 @@ void coupling_show_forces(const struct coupling *coupling, struct particles kind
 static void extrapolate_forces(struct coupling *coupling, double dt, double kick, bool first)
 {
     struct particles *const particles = coupling->particles;
-    const struct force_weights by =
+    const struct force_weights weights =
         force_weights(kick / dt, coupling->lead / dt, particles->interface_pressure_next);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double fx = particles->fx[i], fy = particles->fy[i];
-        particles->fx[i] =
-            extrapolated_force(&by, fx, fx - particles->drag_x[i], first, &particles->mean_fx[i]);
-        particles->fy[i] =
-            extrapolated_force(&by, fy, fy - particles->drag_y[i], first, &particles->mean_fy[i]);
+        particles->fx[i] = extrapolated_force(&weights, fx, fx - particles->drag_x[i], first,
+                                              &particles->mean_fx[i]);
+        particles->fy[i] = extrapolated_force(&weights, fy, fy - particles->drag_y[i], first,
+                                              &particles->mean_fy[i]);
     }
 }
 

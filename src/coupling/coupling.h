@@ -30,9 +30,9 @@ struct coupling {
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 
-/* On all walls, also those at rest, which only output reads. */
-void coupling_show_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
-                          const struct cells *cells);
+/* Finds the force on all walls, including those at rest; only output needs it. */
+void coupling_find_wall_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                               const struct cells *cells);
 
 /* Sets whether there are sub-steps and an impedance; `effects` has what the bounds of the step
  * have decided. The exchange time begins with the fluid's longest step, or with that of a

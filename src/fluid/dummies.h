@@ -4,13 +4,13 @@
 
 /* Sums over the fluid within reach of wall or solid particles: of the kernel, and times it of the
  * pressure and of rho/rho0 times the vector from the fluid. */
-struct fluid_around {
+struct sums_around {
     real w[CLUSTER], p[CLUSTER], x[CLUSTER], y[CLUSTER];
 };
 
 /* For the receivers from number r on. */
 SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct receiver *s, int r,
-                              struct fluid_around *sum)
+                              struct sums_around *sum)
 {
     vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
@@ -34,7 +34,7 @@ SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct 
  * wall interacts with its own pressure only. With suction as well as pressure its bouncing grew on
  * the gate's bed (dp = 1 mm) to 20 % of density and a third of c0. */
 SPHFSI_INLINE four_double extrapolated_pressure(const struct fluid_constants *k,
-                                                const struct fluid_around *sum, four_double ax,
+                                                const struct sums_around *sum, four_double ax,
                                                 four_double ay)
 {
     const four_double w = four_widen(FOUR_REAL(sum->w));
@@ -72,7 +72,7 @@ SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const 
 }
 
 /* The particles of a cluster: their number and their indices in the arrays. */
-struct dummies {
+struct dummy_cluster {
     enum kind kind;
     int count;
     const int32_t *at; /* [count] */
@@ -81,7 +81,7 @@ struct dummies {
 };
 
 /* Copies a field of the particles of a cluster, or zeros if it is NULL. */
-SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double out[CLUSTER])
+SPHFSI_INLINE void gather(const struct dummy_cluster *d, const double *field, double out[CLUSTER])
 {
     memset(out, 0, CLUSTER * sizeof *out);
     if (!field) return;
@@ -89,7 +89,7 @@ SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double o
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
-SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummies *d,
+SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummy_cluster *d,
                                    const struct particles *particles, double u[CLUSTER],
                                    double v[CLUSTER])
 {
@@ -98,21 +98,22 @@ SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummi
     gather(d, solid ? particles->wy : moves ? particles->vy : NULL, v);
 }
 
-SPHFSI_INLINE void scatter(const struct dummies *d, const double in[CLUSTER], double *field)
+SPHFSI_INLINE void scatter(const struct dummy_cluster *d, const double in[CLUSTER], double *field)
 {
     for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
 }
 
 /* Lanes without particles get zeros, hence no volume. */
-SPHFSI_INLINE void pack_four(const struct dummies *d, const double in[CLUSTER], enum packed_field m)
+SPHFSI_INLINE void pack_four(const struct dummy_cluster *d, const double in[CLUSTER],
+                             enum packed_field m)
 {
     put_four(d->packed, m, (four_double) * (const four_double_at *)in);
 }
 
 /* Positions, and the box around them. */
 SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particles *particles,
-                                 const struct cells *cells, int32_t cell, const struct dummies *d,
-                                 const struct cell_sides *sides)
+                                 const struct cells *cells, int32_t cell,
+                                 const struct dummy_cluster *d, const struct cell_sides *sides)
 {
     const double inv_h = 1 / fluid->k.h;
     for (int r = 0; r < d->count; r++) {
@@ -132,7 +133,8 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
 
 /* What law_one_sided and law_repulsion need of the dummies. */
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
-                                       const struct dummies *d, const struct cell_sides *sides)
+                                       const struct dummy_cluster *d,
+                                       const struct cell_sides *sides)
 {
     const double lift = fluid->k.rho0 * fluid->k.h;
     double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
@@ -152,7 +154,7 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
  * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
 SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *particles,
-                           const struct dummies *d, const struct neighbours *neighbours,
+                           const struct dummy_cluster *d, const struct neighbours *neighbours,
                            const struct cell_sides *sides)
 {
     const bool own_image = fluid->effects & FX_ONE_SIDED;
@@ -178,7 +180,7 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
 
 /* T-110c: the share of the place of dummies that fluid of their own side fills: all of it where the
  * kernel sees half; and the direction in which fluid slides along their line, times its root. */
-SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummies *d,
+SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_cluster *d,
                                const struct neighbours *neighbours, const struct cell_sides *sides)
 {
     double t[CLUSTER][2] = {{0}};
@@ -207,22 +209,23 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummies *
 }
 
 /* A cluster of a cell. */
-SPHFSI_INLINE struct dummies dummies_at(const struct fluid *fluid, const struct cells *cells,
-                                        enum kind kind, int32_t cell, int32_t m)
+SPHFSI_INLINE struct dummy_cluster dummies_at(const struct fluid *fluid, const struct cells *cells,
+                                              enum kind kind, int32_t cell, int32_t m)
 {
     const struct cell_list *const list = &cells->kind[kind];
     const size_t cluster = (size_t)list->cluster[cell] + (size_t)m;
-    return (struct dummies){kind, particles_in(list, cell, m),
-                            &list->order[list->start[cell] + m * CLUSTER], cluster,
-                            cluster_packed(&fluid->packed[kind], cluster)};
+    return (struct dummy_cluster){kind, particles_in(list, cell, m),
+                                  &list->order[list->start[cell] + m * CLUSTER], cluster,
+                                  cluster_packed(&fluid->packed[kind], cluster)};
 }
 
 /* Their pressure from the fluid within reach. */
 SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct particles *particles,
-                                    const struct dummies *d, const struct neighbours *neighbours,
+                                    const struct dummy_cluster *d,
+                                    const struct neighbours *neighbours,
                                     const struct cell_sides *sides, double pressure[CLUSTER])
 {
-    struct fluid_around sum;
+    struct sums_around sum;
     double ax[CLUSTER], ay[CLUSTER];
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
@@ -236,7 +239,7 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
  * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
-                                 const struct dummies *d, const double pressure[CLUSTER],
+                                 const struct dummy_cluster *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER])
 {
     const double mean = fluid->k.mass / fluid->k.rho0 * square(1 / fluid->k.h);
@@ -277,7 +280,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
     int32_t wet[CELL_CAPACITY / CLUSTER], n = 0;
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
-        const struct dummies d = dummies_at(fluid, cells, kind, cell, m);
+        const struct dummy_cluster d = dummies_at(fluid, cells, kind, cell, m);
         const bool moves = dummies_move(fluid, kind, particles, d.at, d.count);
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
@@ -299,15 +302,15 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
     for (int32_t m = 0; m < n * CLUSTER; m += EOS_BLOCK)
         eos_dens_of_block(&pressure[m], fluid->k.rho0, fluid->k.c0, &dens[m]);
     for (int32_t m = 0; m < n; m++) {
-        const struct dummies d = dummies_at(fluid, cells, kind, cell, wet[m]);
+        const struct dummy_cluster d = dummies_at(fluid, cells, kind, cell, wet[m]);
         scatter(&d, &pressure[m * CLUSTER], particles->p);
         scatter(&d, &dens[m * CLUSTER], particles->dens);
         dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
     }
 }
 
-static void SWEEP(dummies)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                           const struct cells *cells, enum kind kind)
+static void SWEEP(update_dummies)(const struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                                  const struct cells *cells, enum kind kind)
 {
     struct particles *const particles = &kinds[kind];
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];

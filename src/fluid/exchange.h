@@ -29,10 +29,10 @@ SPHFSI_INLINE struct force_weights force_weights(double impulse, double lead, bo
 }
 
 /* The force in the middle of the structure's kicks; `part` of it is extrapolated. */
-SPHFSI_INLINE double extrapolated_force(const struct force_weights *by, double force, double part,
-                                        bool first, double *mean)
+SPHFSI_INLINE double extrapolated_force(const struct force_weights *weights, double force,
+                                        double part, bool first, double *mean)
 {
     const double before = first ? part : *mean;
-    *mean = before + by->newest * (part - before);
-    return by->force * force + by->mean * *mean - by->before * before;
+    *mean = before + weights->newest * (part - before);
+    return weights->force * force + weights->mean * *mean - weights->before * before;
 }

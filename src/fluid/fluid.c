@@ -75,7 +75,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
 {
     const int64_t largest = CHUNK_CELLS * (CELL_CAPACITY / CLUSTER);
     const size_t places = 1 + (size_t)(clusters < largest ? clusters : largest);
-    const size_t size = places * (size_t)pair_sums(fluid->effects) * CLUSTER * CLUSTER *
+    const size_t size = places * (size_t)pair_sum_count(fluid->effects) * CLUSTER * CLUSTER *
                         fluid->sweeps->packed_item_size;
     fluid->thread_bytes = size + sizeof *fluid->neighbour_scratch;
     TRY(arena_array(a, &fluid->neighbour_scratch, fluid->threads, "neighbour clusters", d));
@@ -233,19 +233,20 @@ static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUN
         const int32_t first = fluid_chunk_start(n_active, m),
                       end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
-        struct fluid_extremes top = {acceleration2, approach};
-        fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &top);
-        acceleration2 = top.acceleration2;
-        approach = top.approach;
+        struct fluid_extremes largest = {acceleration2, approach};
+        fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &largest);
+        acceleration2 = largest.acceleration2;
+        approach = largest.approach;
     }
     fluid->extremes = (struct fluid_extremes){acceleration2, approach};
 }
 
-static void dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                    const struct cells *cells)
+static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                           const struct cells *cells)
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (fluid->n_near_fluid[kind]) fluid->sweeps->dummies(fluid, kinds, cells, (enum kind)kind);
+        if (fluid->n_near_fluid[kind])
+            fluid->sweeps->update_dummies(fluid, kinds, cells, (enum kind)kind);
     fluid->walls_placed = !fluid->never_skip;
 }
 
@@ -258,7 +259,7 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
         fluid_pass *run;
     } passes[] = {{PHASE_packed, fluid->sweeps->packed},
                   {PHASE_slope, fluid->sweeps->slopes},
-                  {PHASE_wall, dummies},
+                  {PHASE_wall, update_dummies},
                   {PHASE_fluid, rates_of_fluid}};
     double since = phase_clock();
     for (size_t k = 0; k < COUNT_OF(passes); k++) {
@@ -270,7 +271,7 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
     }
 }
 
-void fluid_show(const struct fluid *fluid, struct particles *particles)
+void fluid_write_pressure(const struct fluid *fluid, struct particles *particles)
 {
     for (int64_t i = 0; i < particles->n; i++)
         particles->p[i] = eos_pressure(particles->dens[i], fluid->k.rho0, fluid->k.c0);

@@ -109,7 +109,7 @@ struct fluid;
  * extremes. */
 typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, int32_t first, int32_t end,
-                         struct fluid_extremes *top);
+                         struct fluid_extremes *largest);
 
 /* The sweeps for a set of pair effects. */
 struct fluid_variant {
@@ -130,8 +130,8 @@ struct fluid_sweeps {
     fluid_pass *slopes; /* renormalised gradient of the fluid's density, and its packed fields */
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed
      * fields. The fluid's force on them: coupling/force.h. */
-    void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
-                    const struct cells *c, enum kind kind);
+    void (*update_dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                           const struct cells *c, enum kind kind);
     const struct fluid_variant *variants; /* the generic one is the last */
 };
 extern const struct fluid_sweeps fluid_sweeps_mixed, fluid_sweeps_double;
@@ -158,7 +158,7 @@ SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m)
 
 /* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and for shifting; and their number. */
 enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_MIXING, SUM_GRAD_C_X, SUM_GRAD_C_Y, SUM_DIV_R, SUMS };
-SPHFSI_INLINE int pair_sums(effect_set effects)
+SPHFSI_INLINE int pair_sum_count(effect_set effects)
 {
     return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
 }
@@ -269,5 +269,5 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
 void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
                             const struct cells *cells, double of[SCENE_MAX_SECTIONS]);
 
-/* The fluid's own pressures to its particles; no step needs them. */
-void fluid_show(const struct fluid *fluid, struct particles *particles);
+/* Writes the pressure of each fluid particle to `p`; only output needs it. */
+void fluid_write_pressure(const struct fluid *fluid, struct particles *particles);

@@ -72,51 +72,52 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
 /* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
  * acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with
  * delay. */
-SPHFSI_INLINE four_double acting_pressure(const struct packing *by,
+SPHFSI_INLINE four_double acting_pressure(const struct packing *packing,
                                           const struct particles *particles, int32_t i,
                                           four_double dens)
 {
-    const four_double pressure = by->tait * EOS_POWER(dens);
-    if (!(by->effects & FX_DAMPER)) return pressure;
-    return pressure + by->acoustic * (dens - FOUR(particles->dens_slow, i));
+    const four_double pressure = packing->tait * EOS_POWER(dens);
+    if (!(packing->effects & FX_DAMPER)) return pressure;
+    return pressure + packing->acoustic * (dens - FOUR(particles->dens_slow, i));
 }
 
 /* The gradients of dens of the particles from i on. */
-SPHFSI_INLINE void pack_slopes(const struct packing *by, const struct particles *particles,
+SPHFSI_INLINE void pack_slopes(const struct packing *packing, const struct particles *particles,
                                int32_t i, real *out)
 {
-    put_four(out, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * by->slope);
-    put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * by->slope);
+    put_four(out, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * packing->slope);
+    put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * packing->slope);
 }
 
 /* Packed fields of the `count` particles from i on; if there are fewer than four, the rest belong
  * to the next cell. */
-SPHFSI_INLINE void pack_cluster(const struct packing *by, const struct particles *particles,
+SPHFSI_INLINE void pack_cluster(const struct packing *packing, const struct particles *particles,
                                 int32_t i, int count, const double centre[2], real *out)
 {
     four_double dens = FOUR(particles->dens, i), x = FOUR(particles->x, i),
                 y = FOUR(particles->y, i), u = FOUR(particles->vx, i), v = FOUR(particles->vy, i);
-    if (by->predict_by > 0) {
-        x = x + by->predict_by * u; /* Eq. 22a */
-        y = y + by->predict_by * v;
-        u = u + by->predict_by * FOUR(particles->ax, i); /* Eq. 22b */
-        v = v + by->predict_by * FOUR(particles->ay, i);
-        dens = dens + by->predict_by * FOUR(particles->ddens, i); /* Eq. 24a */
+    if (packing->predict_by > 0) {
+        x = x + packing->predict_by * u; /* Eq. 22a */
+        y = y + packing->predict_by * v;
+        u = u + packing->predict_by * FOUR(particles->ax, i); /* Eq. 22b */
+        v = v + packing->predict_by * FOUR(particles->ay, i);
+        dens = dens + packing->predict_by * FOUR(particles->ddens, i); /* Eq. 24a */
         store_four(particles->dens0 + i, dens, count);
     }
-    put_four(out, PACKED_X, (x - centre[0]) * by->inv_h);
-    put_four(out, PACKED_Y, (y - centre[1]) * by->inv_h);
+    put_four(out, PACKED_X, (x - centre[0]) * packing->inv_h);
+    put_four(out, PACKED_Y, (y - centre[1]) * packing->inv_h);
     put_four(out, PACKED_U, u);
     put_four(out, PACKED_V, v);
-    const four_double specific = 1 / (1 + dens), own = by->volume * specific;
-    put_four(out, PACKED_VOLUME, by->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
-    if (by->effects & FX_VISCOSITY) put_four(out, PACKED_SPECIFIC, specific * by->per_viscosity);
-    put_four(out, PACKED_P, acting_pressure(by, particles, i, dens));
+    const four_double specific = 1 / (1 + dens), own = packing->volume * specific;
+    put_four(out, PACKED_VOLUME, packing->effects & FX_MASSES ? FOUR(particles->m, i) * own : own);
+    if (packing->effects & FX_VISCOSITY)
+        put_four(out, PACKED_SPECIFIC, specific * packing->per_viscosity);
+    put_four(out, PACKED_P, acting_pressure(packing, particles, i, dens));
     put_four(out, PACKED_DENS, dens);
-    if (by->keeps_slopes) pack_slopes(by, particles, i, out);
+    if (packing->keeps_slopes) pack_slopes(packing, particles, i, out);
 }
 
-SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by,
+SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *packing,
                              const struct particles *particles, const struct cells *cells,
                              int32_t cell)
 {
@@ -128,13 +129,13 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *by
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(by, particles, list->start[cell] + first, own, centre, out);
+        pack_cluster(packing, particles, list->start[cell] + first, own, centre, out);
         if (own == CLUSTER) { /* a compile-time constant */
             cluster_box(&packed->boxes, cluster, out, CLUSTER);
             continue;
         }
         cluster_close(out, packed->n, own);
-        for (int32_t r = own; r < CLUSTER && by->effects & FX_VISCOSITY; r++)
+        for (int32_t r = own; r < CLUSTER && packing->effects & FX_VISCOSITY; r++)
             out[PACKED_SPECIFIC * CLUSTER + r] = -1; /* the sum of two is a divisor */
         cluster_box(&packed->boxes, cluster, out, own);
     }
@@ -144,10 +145,10 @@ static void SWEEP(packed)(struct fluid *fluid, struct particles kinds[KIND_COUNT
                           const struct cells *cells)
 {
     const int32_t n = cells->kind[KIND_FLUID].n_active;
-    const struct packing by = packing_of(fluid);
+    const struct packing packing = packing_of(fluid);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < n; k++)
-        pack_cell(fluid, &by, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
+        pack_cell(fluid, &packing, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
 }
 
 /* V t^3 of the candidates. */
@@ -224,13 +225,13 @@ SPHFSI_INLINE void slopes_of_cell(const struct fluid *fluid, struct particles *p
 
 /* Packs the gradients, now that no other cell reads those fields. What the places behind a cell's
  * last particle get does not matter: they have no volume. */
-SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct packing *by,
+SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct packing *packing,
                                        const struct particles *particles, const struct cells *cells,
                                        int32_t cell)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     for (int32_t m = 0; m < clusters_in(list, cell); m++)
-        pack_slopes(by, particles, list->start[cell] + m * CLUSTER,
+        pack_slopes(packing, particles, list->start[cell] + m * CLUSTER,
                     cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m)));
 }
 
@@ -239,7 +240,7 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
 {
     const struct cell_list *list = &cells->kind[KIND_FLUID];
     struct particles *const particles = &kinds[KIND_FLUID];
-    const struct packing by = packing_of(fluid);
+    const struct packing packing = packing_of(fluid);
     if (fluid->keeps_slopes) return; /* packed with the other fields */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
@@ -249,5 +250,5 @@ static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT
             slopes_of_cell(fluid, particles, cells, list->active[k], false);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
-        pack_slopes_of_cell(fluid, &by, particles, cells, list->active[k]);
+        pack_slopes_of_cell(fluid, &packing, particles, cells, list->active[k]);
 }

@@ -22,7 +22,7 @@ struct pair_terms {
     vreal radial; /* of xi in the forces, Pa */
     vreal drag;   /* of -v in the forces, kg/(m^2 s) */
     vreal rate;   /* of v.xi in the rate, 1 */
-    vreal step;   /* difference of dens that diffuses, 1 */
+    vreal dens_difference; /* that diffuses, 1 */
     vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
 };
 
@@ -161,19 +161,20 @@ SPHFSI_INLINE vreal law_limiter(const struct pair *q, vreal inv, const struct ve
  * difference that diffuses: with FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) without its
  * hydrostatic part, g . x_ba/c0^2; with ANTUONO (Antuono et al. 2010, Eq. 3) without its linear
  * part, by the mean of both particles' gradients. */
-SPHFSI_INLINE vreal law_diffused(const struct receiver *a, const struct pair *q,
-                                const struct vector_constants *k, struct pair_set effects)
+SPHFSI_INLINE vreal law_dens_difference(const struct receiver *a, const struct pair *q,
+                                        const struct vector_constants *k, struct pair_set effects)
 {
-    vreal step = a->dens - q->dens;
-    if (PAIR_HAS(effects, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    vreal difference = a->dens - q->dens;
+    if (PAIR_HAS(effects, FOURTAKAS)) difference = difference - vfma(k->gy, q->y, k->gx * q->x);
     if (PAIR_HAS(effects, ANTUONO))
-        step = vfma(a->dens_y + q->dens_y, q->y, vfma(a->dens_x + q->dens_x, q->x, step));
-    return step;
+        difference =
+            vfma(a->dens_y + q->dens_y, q->y, vfma(a->dens_x + q->dens_x, q->x, difference));
+    return difference;
 }
 
 /* The factor of the density diffusion. */
-SPHFSI_INLINE vreal law_diffusion(const struct pair *q, vreal inv, const struct vector_constants *k,
-                                 struct pair_set effects)
+SPHFSI_INLINE vreal law_diffusion_factor(const struct pair *q, vreal inv,
+                                         const struct vector_constants *k, struct pair_set effects)
 {
     const vreal mixing = q->weight * (q->r2 * inv);
     return PAIR_HAS(effects, LIMITER) ? mixing * law_limiter(q, inv, k) : mixing;

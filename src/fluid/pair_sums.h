@@ -23,7 +23,7 @@ SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
         sum[SUM_Y] = vfma(-e->drag, q->v, sum[SUM_Y]);
     }
     if (fluid && PAIR_HAS(effects, DIFFUSION))
-        sum[SUM_MIXING] = vfma(e->mixing, e->step, sum[SUM_MIXING]);
+        sum[SUM_MIXING] = vfma(e->mixing, e->dens_difference, sum[SUM_MIXING]);
     if (PAIR_HAS(effects, SHIFTING)) law_concentration(q, sum);
 }
 
@@ -61,8 +61,8 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
             q->dens_x = lane(b, PACKED_SLOPE_X);
             q->dens_y = lane(b, PACKED_SLOPE_Y);
         }
-        e.step = law_diffused(a, q, k, effects);
-        e.mixing = law_diffusion(q, inv, k, effects);
+        e.dens_difference = law_dens_difference(a, q, k, effects);
+        e.mixing = law_diffusion_factor(q, inv, k, effects);
     }
     if (PAIR_HAS(effects, TENSILE)) stress = stress + law_tensile(a, q, k);
     e.radial = q->weight * stress;
@@ -74,7 +74,7 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
 /* Numbers deferred for a cluster; and the position of one of the sums, with the first at `at`. */
 SPHFSI_INLINE size_t deferred_stride(struct pair_set effects)
 {
-    return (size_t)pair_sums(effects.bits) * CLUSTER * CLUSTER;
+    return (size_t)pair_sum_count(effects.bits) * CLUSTER * CLUSTER;
 }
 #define DEFERRED(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
@@ -88,9 +88,9 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 SPHFSI_INLINE void defer_pair_terms(real *at, const struct pair_terms *e, struct pair_set effects)
 {
     vreal sum[SUMS];
-    for (int k = 0; k < pair_sums(effects.bits); k++) sum[k] = vload(DEFERRED(at, k));
+    for (int k = 0; k < pair_sum_count(effects.bits); k++) sum[k] = vload(DEFERRED(at, k));
     add_pair_terms(sum, e, effects, true);
-    for (int k = 0; k < pair_sums(effects.bits); k++) vstore(DEFERRED(at, k), sum[k]);
+    for (int k = 0; k < pair_sum_count(effects.bits); k++) vstore(DEFERRED(at, k), sum[k]);
 }
 
 /* Sums over neighbouring fluid. Candidates that are not ahead in the chunk add to the discard

@@ -55,7 +55,7 @@ SPHFSI_INLINE four_double even_sum(const struct cluster_sums *s, real *deferred,
 SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
                                int count, const struct cluster_sums *s, real *deferred,
                                const struct vector_constants *k, struct pair_set effects,
-                               struct chunk_totals *top)
+                               struct chunk_totals *largest)
 {
     four_double full = 1 + FOUR(fluid->predict_by > 0 ? particles->dens0 : particles->dens, i);
     four_double factor = k->acceleration + 0 * full;
@@ -78,9 +78,10 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
     store_four(particles->ay + i, ay, count);
     store_four(particles->ddens + i, ddens, count);
     if (count == CLUSTER)
-        top->acceleration2 = four_max(top->acceleration2, a2);
+        largest->acceleration2 = four_max(largest->acceleration2, a2);
     else
-        for (int r = 0; r < count; r++) top->acceleration2[r] = max2(top->acceleration2[r], a2[r]);
+        for (int r = 0; r < count; r++)
+            largest->acceleration2[r] = max2(largest->acceleration2[r], a2[r]);
     if (!(PAIR_HAS(effects, SHIFTING))) return;
     store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
     store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
@@ -111,22 +112,22 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
                                     const struct vector_constants *k, struct pair_set effects,
-                                    const struct chunk *chunk, struct chunk_totals *top)
+                                    const struct chunk *chunk, struct chunk_totals *largest)
 {
     const real *const own = cluster_packed(&fluid->packed[KIND_FLUID], (size_t)cluster);
     struct receiver a[ROWS];
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, effects);
-    struct cluster_sums s = {.approach = top->approach};
+    struct cluster_sums s = {.approach = largest->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, effects, chunk, &s);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, effects, &s);
-    top->approach = s.approach;
+    largest->approach = s.approach;
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(effects);
     if (count == CLUSTER) /* a compile-time constant */
-        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, effects, top);
+        rates_store(fluid, particles, i, CLUSTER, &s, deferred, k, effects, largest);
     else
-        rates_store(fluid, particles, i, count, &s, deferred, k, effects, top);
+        rates_store(fluid, particles, i, count, &s, deferred, k, effects, largest);
 }
 
 /* Asks for the packed fields and boxes around the n-th active cell while the one before is
@@ -152,7 +153,7 @@ SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
 SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *particles,
                                  const struct cells *cells, int32_t n,
                                  const struct vector_constants *k, struct pair_set effects,
-                                 const struct chunk *chunk, struct chunk_totals *top)
+                                 const struct chunk *chunk, struct chunk_totals *largest)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const int32_t cell = list->active[n];
@@ -178,7 +179,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                             : (struct neighbours){.n = 0};
         rates_of_cluster(fluid, particles, list->start[cell] + m * CLUSTER,
                          particles_in(list, cell, m), cluster, neighbours, &sides, k, effects,
-                         chunk, top);
+                         chunk, largest);
     }
 }
 
@@ -186,7 +187,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t first, int32_t end,
                                   const struct vector_constants *k, struct pair_set effects,
-                                  struct fluid_extremes *top)
+                                  struct fluid_extremes *largest)
 {
     const struct cell_list *const list = &cells->kind[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
@@ -194,20 +195,20 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
     struct chunk_totals here = {.acceleration2 = {0}};
     for (int32_t m = first; m < end; m++)
         rates_of_cell(fluid, particles, cells, m, k, effects, &chunk, &here);
-    top->approach = max2(top->approach, (double)vtop(here.approach));
+    largest->approach = max2(largest->approach, (double)vtop(here.approach));
     for (int r = 0; r < CLUSTER; r++)
-        top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
+        largest->acceleration2 = max2(largest->acceleration2, here.acceleration2[r]);
 }
 
 /* Variants are compiled outside of any parallel region: the compiler makes the body of a region a
  * separate function before it can see that effects is a constant. */
-#define VARIANT(variant, set)                                                                  \
-    static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles, \
-                                       const struct cells *cells, int32_t first, int32_t end,  \
-                                       struct fluid_extremes *top)                             \
-    {                                                                                          \
-        const struct vector_constants k = constants_of_sweep(fluid);                           \
-        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, top);  \
+#define VARIANT(variant, set)                                                                     \
+    static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles,    \
+                                       const struct cells *cells, int32_t first, int32_t end,     \
+                                       struct fluid_extremes *largest)                            \
+    {                                                                                             \
+        const struct vector_constants k = constants_of_sweep(fluid);                              \
+        rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, largest); \
     }
 #include "fluid/variants.def"
 VARIANT(any, fluid->effects &(effect_set)PAIR_EFFECTS)
@@ -226,4 +227,4 @@ static const struct fluid_variant SWEEP(variants)[] = {
 #undef VARIANT
 
 const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(packed), SWEEP(slopes),
-                                                 SWEEP(dummies), SWEEP(variants)};
+                                                 SWEEP(update_dummies), SWEEP(variants)};

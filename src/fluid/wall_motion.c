@@ -72,15 +72,15 @@ void wall_motion_sort(struct wall_motion *m, struct cells *cells, struct particl
 
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls)
 {
-    double top = 0;
+    double largest = 0;
     for (int k = 0; k < m->n; k++) {
         const struct moving_wall *const b = &m->body[k];
         if (b->rests) continue;
-#pragma omp parallel for schedule(static) reduction(max : top)
+#pragma omp parallel for schedule(static) reduction(max : largest)
         for (int64_t i = b->first; i < b->end; i++)
-            top = max2(top, walls->vx[i] * walls->vx[i] + walls->vy[i] * walls->vy[i]);
+            largest = max2(largest, walls->vx[i] * walls->vx[i] + walls->vy[i] * walls->vy[i]);
     }
-    return top;
+    return largest;
 }
 
 double moving_wall_power(const struct moving_wall *b, const struct particles *walls)

@@ -113,15 +113,15 @@ static double at_time(const struct curve *curve, double t, int *row)
  * would decide which one is the highest. */
 static void find_peak(const struct curve *v, double from, double until, double *peak, double *when)
 {
-    double top = 0;
+    double largest = 0;
     for (int k = 0; k < v->n; k++)
-        if (v->t[k] >= from && v->t[k] <= until) top = max2(top, fabs(v->value[k]));
+        if (v->t[k] >= from && v->t[k] <= until) largest = max2(largest, fabs(v->value[k]));
     *peak = *when = (double)NAN;
     for (int k = 0; k < v->n; k++) {
         const double here = fabs(v->value[k]);
         if (v->t[k] < from || v->t[k] > until) continue;
         if (!isnan(*peak) && here < fabs(*peak)) return;
-        if (here < 0.995 * top || here == fabs(*peak)) continue;
+        if (here < 0.995 * largest || here == fabs(*peak)) continue;
         *peak = v->value[k];
         *when = v->t[k];
     }

@@ -104,11 +104,11 @@ void report_effects(struct json *j, const struct simulation *sim)
     json_close(j, ']');
     json_open(j, "effects_called_by", '{');
     for (int k = 0; k < EFFECT_COUNT; k++) {
-        struct effect_caller by;
+        struct effect_caller caller;
         if (!(sim->effects & EFFECT_BIT(k))) continue;
-        const bool called = effect_called(sim->scene, (enum effect)k, &by);
+        const bool called = effect_called(sim->scene, (enum effect)k, &caller);
         json_text(j, effect_table[k].name,
-                  called ? effect_caller_text(sim->scene, &by).text : "decided at the start");
+                  called ? effect_caller_text(sim->scene, &caller).text : "decided at the start");
     }
     json_close(j, '}');
 }

@@ -274,18 +274,18 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
     hinges->kick = dt;
 }
 
-void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time)
+void hinges_hold(struct hinges *hinges, double *const a[2], double *const force[2], double time)
 {
     for (int k = 0; k < hinges->n; k++)
         memcpy(&hinges->force[2 * k], place_of(hinges, &hinges->hinge[k], time).a,
                2 * sizeof(double));
-    hinges_subtract(hinges, by[0], by[1], hinges->force);
+    hinges_subtract(hinges, a[0], a[1], hinges->force);
     solve_hinges(hinges, NULL, false);
     for (int64_t k = 0; k < hinges->n_nodes; k++) {
         const struct hinge_node *const node = &hinges->node[k];
         for (int c = 0; c < 2 && node->inv_mass > 0; c++) {
             const double f = node->weight * hinges->force[2 * node->hinge + c];
-            by[c][node->particle] += node->inv_mass * f;
+            a[c][node->particle] += node->inv_mass * f;
             force[c][node->particle] += f;
         }
     }

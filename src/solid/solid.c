@@ -120,7 +120,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     solid->n_bodies = scene->n_solid;
     solid->dp = INFINITY;
     solid->coupled = particles->groups & G_COUPLED;
-    solid->kick = solid_free_kick;
+    solid->apply_kick = solid_free_kick;
     TRY(arena_array(a, &solid->body, solid->n_bodies, "bodies", d));
     solid->paper_step = INFINITY;
     for (int k = 0; k < solid->n_bodies; k++) {
@@ -263,7 +263,8 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
     }
     if (FX_HINGE != 0 && solid->hinges) {
 #pragma omp single
-        hinges_forces(solid->hinges, particles, time, dt, dt > 0 && solid->kick != solid_free_kick);
+        hinges_forces(solid->hinges, particles, time, dt,
+                      dt > 0 && solid->apply_kick != solid_free_kick);
     }
 }
 
@@ -405,7 +406,7 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
 #pragma omp single
             solid_finish_kick(solid, particles, particles->vx, particles->vy, dt);
         }
-        kick_and_drift(own, solid->kick, dt, dt - first, last ? 0 : first);
+        kick_and_drift(own, solid->apply_kick, dt, dt - first, last ? 0 : first);
         time += dt;
         place_clamps(own, last ? time : time + first);
     }

@@ -133,7 +133,7 @@ struct solid {
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
     const struct scene *gravity_scene; /* of a gravity that varies in time; NULL: constant */
     const struct external *external;   /* accelerations by a program */
-    solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
+    solid_kick *apply_kick;            /* of sub-steps: free, or against the impedance of a fluid */
     struct implicit *implicit;   /* data of implicit/; NULL: explicit steps only */
     solid_sweep *within_step;    /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
@@ -356,8 +356,8 @@ void hinges_start(struct hinges *hinges, struct particles *particles);
 void hinges_forces(struct hinges *hinges, struct particles *particles, double time, double dt,
                    bool resisted);
 
-/* As hinges_forces without dt, for accelerations `by`; adds the forces, N/m. */
-void hinges_hold(struct hinges *hinges, double *const by[2], double *const force[2], double time);
+/* As hinges_forces without dt, for accelerations `a`; adds the forces, N/m. */
+void hinges_hold(struct hinges *hinges, double *const a[2], double *const force[2], double time);
 
 /* Subtracts a field at the points of the hinges from two items of each. */
 void hinges_subtract(const struct hinges *hinges, const double *x, const double *y, double *from);

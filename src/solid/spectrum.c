@@ -18,9 +18,9 @@ static void fill_random(double *v, int64_t n, uint64_t seed, const double *moves
 
 static double largest(const double *x, const double *y, int64_t n)
 {
-    double top = 0;
-    for (int64_t i = 0; i < n; i++) top = max2(top, max2(fabs(x[i]), fabs(y[i])));
-    return top;
+    double largest = 0;
+    for (int64_t i = 0; i < n; i++) largest = max2(largest, max2(fabs(x[i]), fabs(y[i])));
+    return largest;
 }
 
 static double norm(const double *x, const double *y, int64_t n)
@@ -176,7 +176,7 @@ static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdoubl
 static double stiffest(const struct solid *solid, const struct particles *particles,
                        const struct solid_pack *pack)
 {
-    double top = 0;
+    double largest = 0;
     for (int from = 0; from < pack->lanes; from += LANES) {
         const int64_t i = pack->i + from;
         const int n = pack->lanes - from < LANES ? pack->lanes - from : LANES;
@@ -195,21 +195,21 @@ static double stiffest(const struct solid *solid, const struct particles *partic
         const vdouble now = axial_stiffness(&solid->body[pack->body], 0.5 * (sum + difference),
                                             0.5 * (sum - difference));
         for (int l = 0; l < n; l++)
-            if (beyond[l]) top = max2(top, now[l]);
+            if (beyond[l]) largest = max2(largest, now[l]);
     }
-    return top;
+    return largest;
 }
 
 double solid_stiffening(const struct solid *solid, const struct particles *particles)
 {
-    double top = 1;
+    double largest = 1;
     double reference[solid->n_bodies];
     for (int k = 0; k < solid->n_bodies; k++)
         reference[k] = axial_stiffness(&solid->body[k], vset_double(1), vset_double(1))[0];
-#pragma omp parallel for schedule(static) num_threads(solid->threads) reduction(max : top)
+#pragma omp parallel for schedule(static) num_threads(solid->threads) reduction(max : largest)
     for (int64_t k = 0; k < solid->n_packs; k++)
         /* cppcheck-suppress uninitvar ; all of its items are set above */
-        top =
-            max2(top, stiffest(solid, particles, &solid->pack[k]) / reference[solid->pack[k].body]);
-    return top;
+        largest = max2(largest, stiffest(solid, particles, &solid->pack[k]) /
+                                    reference[solid->pack[k].body]);
+    return largest;
 }

@@ -2,7 +2,7 @@
  * How fluid, solids, rigid bodies and beams advance in a step, for all integrators. */
 #include "time/advance.h"
 
-void advance_structure(struct simulation *sim, double dt, double kick)
+void advance_solids(struct simulation *sim, double dt, double kick)
 {
     const int n = timestep_substeps(sim, dt);
     sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, !(sim->state.dt > 0));
@@ -63,7 +63,7 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
     return e;
 }
 
-void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by)
+void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
 {
     enum { BLOCK = 256 };
     struct particles *const particles = &sim->kind[KIND_FLUID];
@@ -72,7 +72,7 @@ void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by)
     reduction(+ : nan_probe)
     for (int64_t from = 0; from < particles->n; from += BLOCK) {
         const int64_t end = from + BLOCK < particles->n ? from + BLOCK : particles->n;
-        if (rows) rows(particles, by, from, end);
+        if (range) range(particles, parameters, from, end);
         const struct extremes e = extremes_of(particles, from, end);
         low = min2(low, e.dens_low);
         high = max2(high, e.dens_high);
@@ -87,11 +87,11 @@ void update_extremes(struct simulation *sim) { advance_fluid(sim, NULL, NULL); }
 void find_speed(struct simulation *sim)
 {
     const struct particles *const solid = &sim->kind[KIND_SOLID];
-    double top = sim->extremes.speed2;
-#pragma omp parallel for schedule(static) reduction(max : top) if (solid->n > 0)
+    double largest = sim->extremes.speed2;
+#pragma omp parallel for schedule(static) reduction(max : largest) if (solid->n > 0)
     for (int64_t i = 0; i < solid->n; i++)
-        top = max2(top, solid->vx[i] * solid->vx[i] + solid->vy[i] * solid->vy[i]);
-    sim->sorting.speed2 = top;
+        largest = max2(largest, solid->vx[i] * solid->vx[i] + solid->vy[i] * solid->vy[i]);
+    sim->sorting.speed2 = largest;
     if (sim->effects & FX_MOTION)
         sim->sorting.speed2 =
             max2(sim->sorting.speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
@@ -99,20 +99,20 @@ void find_speed(struct simulation *sim)
 
 void step_of_one_stage(struct simulation *sim, double t_limit)
 {
-    const struct integrator *const by = sim->integrator;
+    const struct integrator *const integrator = sim->integrator;
     evaluate_start(sim);
     double clock = phase_clock();
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
     const double kick = 0.5 * (sim->state.dt + dt);
     energy_book_step(sim, dt);
-    by->update(sim, dt);
+    integrator->update(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_COUPLING) advance_structure(sim, dt, by->alternates ? dt : kick);
+    if (sim->effects & FX_COUPLING) advance_solids(sim, dt, integrator->alternates ? dt : kick);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
     clock = phase_add(sim, PHASE_solid, clock);
-    timestep_book(sim, dt, t_limit, hits);
+    timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }

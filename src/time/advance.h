@@ -36,14 +36,15 @@ void simulation_wall_forces(struct simulation *sim);
 
 /* --- advance.c --- */
 
-/* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end
- * - 1; `by` holds its parameters. Finds their extremes while they are in the caches. */
-typedef void advance_rows(struct particles *particles, const void *by, int64_t from, int64_t end);
-void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
+/* Advances the fluid by `range`, which updates the particles from `from` to `end` - 1 (NULL: they
+ * stay). Finds their extremes while they are in the caches. */
+typedef void advance_range(struct particles *particles, const void *parameters, int64_t from,
+                           int64_t end);
+void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters);
 
-/* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the
+/* The sub-steps of solids in a fluid step of dt; the rates of the evaluation act on the
  * fluid for `kick`. */
-void advance_structure(struct simulation *sim, double dt, double kick);
+void advance_solids(struct simulation *sim, double dt, double kick);
 
 /* The step of rigid bodies from a time on, in the same way: before that of solids, which may push
  * them, and after it. */
@@ -135,7 +136,7 @@ void timestep_recheck_solid(struct simulation *sim);
 void timestep_count(struct simulation *sim, double dt, int n);
 
 /* The end of a step with fluid: its time and what is counted. */
-void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits);
+void timestep_end_fluid_step(struct simulation *sim, double dt, double t_limit, bool hits);
 
 /* Whether contact can matter in the coming `steps` from `time` on. Stores its effect on their
  * bounds, and enables its forces if it can. */
@@ -149,11 +150,11 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps);
 enum { CHECK_INTERVAL = 16 };
 
 /* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
-int64_t penetration_count(const struct simulation *sim, int64_t *first);
+int64_t guards_count_entered(const struct simulation *sim, int64_t *first);
 
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
  * there are more than stray particles. */
-enum err guards_penetration(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+enum err guards_check_entered(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
  * cell. */

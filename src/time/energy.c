@@ -164,9 +164,9 @@ struct ledger simulation_ledger(struct simulation *sim)
     row.time = state->time;
     row.dt = state->dt;
     row.det_low = det_low;
-    const struct implicit *const by = sim->solid.implicit;
-    row.newton_steps = max2(sim->beams.iterations, by ? by->iterations : 0);
-    row.newton_residual = max2(sim->beams.residual, by ? by->residual : 0);
+    const struct implicit *const implicit = sim->solid.implicit;
+    row.newton_steps = max2(sim->beams.iterations, implicit ? implicit->iterations : 0);
+    row.newton_residual = max2(sim->beams.residual, implicit ? implicit->residual : 0);
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
                      sim->solid.work + open_energy(&sim->open) - state->lost_energy - row.kinetic -
                      row.internal - row.elastic - row.hourglass - row.contact - row.potential;
@@ -482,7 +482,7 @@ static bool test_is_due(const struct simulation *sim)
            sim->state.time - account->tested_at >= TEST_TIME;
 }
 
-void energy_test_due(struct simulation *sim)
+void energy_test_if_due(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
     if (!keeps_account(sim)) return;
@@ -504,7 +504,7 @@ void energy_book_step(struct simulation *sim, double dt)
         energy_book_evaluation(sim, *pending);
         *pending = 0;
     }
-    energy_test_due(sim);
+    energy_test_if_due(sim);
     energy_book_evaluation(sim, *pending + 0.5 * dt);
     *pending = 0.5 * dt;
 }

@@ -65,7 +65,7 @@ void energy_after_step(struct simulation *sim);
 
 /* Tests the present state for gains if that is due: for the gain of a region that is the largest
  * fraction of its available energy. Gradients and the pressure of dummies must be up to date. */
-void energy_test_due(struct simulation *sim);
+void energy_test_if_due(struct simulation *sim);
 struct energy_gain energy_find_gain(struct simulation *sim);
 
 /* Reads the last test of the account: warns once if a region has gained energy, and fails if the

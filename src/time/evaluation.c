@@ -34,13 +34,13 @@ static void add_external(struct simulation *sim, double time)
     const struct external *const external = &sim->external[KIND_FLUID];
     struct particles *const particles = &sim->kind[KIND_FLUID];
     find_external(sim, KIND_FLUID, time);
-    double top = sim->fluid.extremes.acceleration2;
+    double largest = sim->fluid.extremes.acceleration2;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ax[i] += external->ax[i];
         particles->ay[i] += external->ay[i];
-        top = max2(top, square(particles->ax[i]) + square(particles->ay[i]));
+        largest = max2(largest, square(particles->ax[i]) + square(particles->ay[i]));
     }
-    sim->fluid.extremes.acceleration2 = top;
+    sim->fluid.extremes.acceleration2 = largest;
 }
 
 /* L-5a: the gradients of the density are found once in the time in which sound crosses the
@@ -109,5 +109,5 @@ void simulation_wall_forces(struct simulation *sim)
 {
     simulation_refresh(sim);
     if (sim->effects & FX_FLUID && !sim->cells_overfull)
-        coupling_show_forces(&sim->coupling, sim->kind, &sim->cells);
+        coupling_find_wall_forces(&sim->coupling, sim->kind, &sim->cells);
 }

@@ -77,7 +77,7 @@ static bool fluid_is_valid(struct simulation *sim)
 
 /* Molteni's diffusion removes the excess density of a front's first particle, which then sinks into
  * the bed that the front runs over. */
-#define STRAY                                                                                \
+#define ENTERED                                                                              \
     "probably because fluid particles entered a wall or solid earlier in the run; a larger " \
     "wall_repulsion or diffusion_form = antuono prevents that"
 
@@ -87,7 +87,7 @@ static enum err check_fluid(struct simulation *sim, struct diag *d)
         const struct finding f =
             find_invalid(&sim->kind[KIND_FLUID], sim->guard.speed_limit, sim->guard.dens_limit);
         if (f.at >= 0)
-            return invalid(sim, KIND_FLUID, f, sim->guard.warned_crossing ? STRAY : UNSTABLE, d);
+            return invalid(sim, KIND_FLUID, f, sim->guard.warned_entered ? ENTERED : UNSTABLE, d);
     }
     if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0)
         warn_once(sim, &sim->guard.warned_speed, d,
@@ -412,15 +412,15 @@ static enum err check_loads(struct simulation *sim, struct diag *d)
 
 static enum err check_newton(const struct simulation *sim, struct diag *d)
 {
-    const struct implicit *const by = sim->solid.implicit;
-    const bool solid = by && by->failed;
+    const struct implicit *const implicit = sim->solid.implicit;
+    const bool solid = implicit && implicit->failed;
     if (!solid && !sim->beams.failed) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
                      "%s: Newton's method finds no solution for the implicit step of the %s, %.3g "
                      "s, nor for shorter steps (residual: %.2g of the largest force); a smaller "
                      "fixed_step or %s may help",
                      time_text(sim).text, solid ? "solid" : "beams", sim->state.dt,
-                     solid ? by->residual : sim->beams.residual,
+                     solid ? implicit->residual : sim->beams.residual,
                      solid ? "solid_steps = explicit" : "more damping");
 }
 
@@ -526,7 +526,7 @@ static bool inside_body(const struct simulation *sim, double x, double y)
     return false;
 }
 
-int64_t penetration_count(const struct simulation *sim, int64_t *first)
+int64_t guards_count_entered(const struct simulation *sim, int64_t *first)
 {
     const struct cell_list *const fluid = &sim->cells.kind[KIND_FLUID];
     const struct particles *const particles = &sim->kind[KIND_FLUID];
@@ -546,19 +546,19 @@ int64_t penetration_count(const struct simulation *sim, int64_t *first)
 }
 
 /* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
-#define CROSSING_SHARE 0.01
-enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * CHECK_INTERVAL };
+#define ENTERED_SHARE 0.01
+enum { ENTERED_LEAST = 3, ENTERED_INTERVAL = 2 * CHECK_INTERVAL };
 
-enum err guards_penetration(struct simulation *sim, struct diag *d)
+enum err guards_check_entered(struct simulation *sim, struct diag *d)
 {
-    if (!(sim->effects & (FX_WALL | FX_COUPLING)) || sim->state.steps % CROSSING_INTERVAL)
+    if (!(sim->effects & (FX_WALL | FX_COUPLING)) || sim->state.steps % ENTERED_INTERVAL)
         return ERR_OK;
     int64_t first;
-    const int64_t count = penetration_count(sim, &first);
+    const int64_t count = guards_count_entered(sim, &first);
     const struct particles *const particles = &sim->kind[KIND_FLUID];
     if (count == 0) return ERR_OK;
     sim->state.entered = sim->state.entered > count ? sim->state.entered : count;
-    if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)particles->n)
+    if (count > ENTERED_LEAST && (double)count > ENTERED_SHARE * (double)particles->n)
         return diag_fail(
             d, ERR_GUARD,
             "%s, step %lld: %lld fluid particles have entered a wall or solid, the first "
@@ -567,7 +567,7 @@ enum err guards_penetration(struct simulation *sim, struct diag *d)
             time_text(sim).text, (long long)sim->state.steps, (long long)count,
             (long long)particles->id[first], particles->x[first], particles->y[first],
             elementary_hypot(particles->vx[first], particles->vy[first]));
-    warn_once(sim, &sim->guard.warned_crossing, d,
+    warn_once(sim, &sim->guard.warned_entered, d,
               "fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the run stops "
               "when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
               (long long)particles->id[first], particles->x[first], particles->y[first]);

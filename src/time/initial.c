@@ -138,7 +138,7 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
     return damping_create(&sim->damping, &sim->arena, scene, sim->kind[KIND_FLUID].capacity, d);
 }
 
-static enum err create_solid(struct simulation *sim, struct diag *d)
+static enum err create_bare_solids(struct simulation *sim, struct diag *d)
 {
     TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
                      sim->effects & FX_IMPLICIT, d));
@@ -151,16 +151,16 @@ static enum err create_solid(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* The solid with what acts on it: implicit steps, contact, loads. */
-static enum err create_structure(struct simulation *sim, struct diag *d)
+/* The solids with what acts on them: implicit steps, contact, loads. */
+static enum err create_solids(struct simulation *sim, struct diag *d)
 {
-    TRY(create_solid(sim, d));
+    TRY(create_bare_solids(sim, d));
     sim->state.solid_stiffening = sim->state.solid_slowing = 1;
     timestep_set_solid(sim);
     if (implicit_pays(sim)) {
         sim->effects |= FX_IMPLICIT;
         TRY(particles_add(&sim->kind[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
-        TRY(create_solid(sim, d));
+        TRY(create_bare_solids(sim, d));
     }
     if (sim->effects & FX_CONTACT)
         TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
@@ -210,7 +210,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .stage = sim->integrator->stage,
         .exchange_time = &sim->state.exchange_time,
     };
-    if (sim->effects & FX_SOLID) TRY(create_structure(sim, d));
+    if (sim->effects & FX_SOLID) TRY(create_solids(sim, d));
     if (sim->effects & FX_MOTION) {
         TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene, &sim->kind[KIND_WALL],
                                d));

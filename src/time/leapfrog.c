@@ -18,14 +18,14 @@ static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2,
 
 /* The interval of an update, s, from half a step behind to half a step ahead; its ratio to the
  * previous one, and the previous one's ratio. */
-struct leapfrog_sizes {
+struct leapfrog_step {
     double dt, kick, r, r_old;
 };
 
-static void update_leapfrog_rows(struct particles *particles, const void *by, int64_t from,
-                                 int64_t end)
+static void update_leapfrog_range(struct particles *particles, const void *parameters, int64_t from,
+                                  int64_t end)
 {
-    const struct leapfrog_sizes *const step = by;
+    const struct leapfrog_step *const step = parameters;
     const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
                  r_old = step->r_old;
 #pragma omp simd
@@ -45,15 +45,15 @@ static void update_leapfrog(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->kind[KIND_FLUID];
     const double dt_old = sim->state.dt;
-    const struct leapfrog_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
-                                      step_ratio(dt_old, sim->state.dt_old)};
+    const struct leapfrog_step step = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
+                                       step_ratio(dt_old, sim->state.dt_old)};
     if (!(dt_old > 0)) { /* the first step has no earlier rates */
         memcpy(particles->ddens_old, particles->ddens,
                (size_t)particles->n * sizeof *particles->ddens);
         memcpy(particles->ddens_older, particles->ddens,
                (size_t)particles->n * sizeof *particles->ddens);
     }
-    advance_fluid(sim, update_leapfrog_rows, &by);
+    advance_fluid(sim, update_leapfrog_range, &step);
     /* Swaps the arrays of old rates; the next evaluation overwrites the oldest. */
     double *const oldest = particles->ddens_older;
     particles->ddens_older = particles->ddens_old;

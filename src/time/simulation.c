@@ -30,8 +30,8 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     return ERR_OK;
 }
 
-enum err simulation_external(struct simulation *sim, enum kind kind, external_function *at,
-                             void *context, struct diag *d)
+enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *at,
+                                 void *context, struct diag *d)
 {
     struct external *const external = &sim->external[kind];
     const size_t n = (size_t)sim->kind[kind].capacity;
@@ -58,7 +58,8 @@ static void add_exchanged_impulse(struct simulation *sim)
     sim->state.exchanged += sim->state.dt * sqrt(fx * fx + fy * fy);
 }
 
-static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
+/* One step, then shifting, work, guards and sorting. */
+static enum err step_and_check(struct simulation *sim, double t_limit, struct diag *d)
 {
     const double speed2_before = sim->extremes.speed2;
     double clock = phase_clock();
@@ -82,7 +83,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     energy_after_step(sim);
     if (sim->effects & FX_COUPLING) add_exchanged_impulse(sim);
     /* Before the guards, which read the result: a checkpoint does not hold it. */
-    if (!(sim->effects & FX_FLUID)) energy_test_due(sim);
+    if (!(sim->effects & FX_FLUID)) energy_test_if_due(sim);
     TRY(guards_check(sim, d));
     if (guards_strain_due(sim)) timestep_recheck_solid(sim);
     clock = phase_add(sim, PHASE_update, clock);
@@ -92,7 +93,7 @@ static enum err advance(struct simulation *sim, double t_limit, struct diag *d)
     if (sorting_due(sim)) TRY(sort_particles(sim, d));
     clock = phase_add(sim, PHASE_sort, clock);
     limit_isolated_tension(sim);
-    TRY(guards_penetration(sim, d));
+    TRY(guards_check_entered(sim, d));
     phase_add(sim, PHASE_update, clock);
     return ERR_OK;
 }
@@ -107,7 +108,7 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     enum err e = ERR_OK;
     if (sim->effects & FX_FLUID) e = observe(sim, sim->state.time + timestep_longest(sim), d);
-    if (!e) e = advance(sim, t_limit, d);
+    if (!e) e = step_and_check(sim, t_limit, d);
     if (!e) e = observe(sim, sim->state.time, d);
     team_next(&sim->team, wall_clock() - begin);
     return e;

@@ -8,8 +8,8 @@
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called once for each evaluation of the fluid; the solid's sub-steps use
  * the same values. */
-enum err simulation_external(struct simulation *sim, enum kind kind, external_function *at,
-                             void *context, struct diag *d) SPHFSI_CHECKED;
+enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *at,
+                                 void *context, struct diag *d) SPHFSI_CHECKED;
 
 /* Builds the state at time zero from a scene, or the arrays for it if a checkpoint is to be loaded.
  * After a failure there is nothing to free. */

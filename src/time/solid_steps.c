@@ -8,7 +8,7 @@ enum { SOLID_BATCH = CHECK_INTERVAL };
 /* n steps; implicit ones have explicit sub-steps while surfaces are near each other. */
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
-    const struct integrator *const by = sim->integrator;
+    const struct integrator *const integrator = sim->integrator;
     struct solid *const solid = &sim->solid;
     sim->substeps = 1;
     if (solid->implicit && solid->contact)
@@ -17,8 +17,8 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     const int all = n * sim->substeps;
     sim->state.solid_substeps += all;
     if (!(sim->effects & FX_SOLID)) return;
-    if (by->solid_step && !solid->implicit) {
-        for (int k = 0; k < n; k++) by->solid_step(sim, dt);
+    if (integrator->solid_step && !solid->implicit) {
+        for (int k = 0; k < n; k++) integrator->solid_step(sim, dt);
     } else {
         solid_advance_any(solid, &sim->kind[KIND_SOLID], dt / sim->substeps, all);
         sim->state.solid_evaluations += all;

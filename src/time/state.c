@@ -30,10 +30,10 @@ struct time_text time_text(const struct simulation *sim)
 
 enum err observe(struct simulation *sim, double until, struct diag *d)
 {
-    struct observer *const by = &sim->observer;
-    if (!by->context || sim->state.seeks_rest || until < by->next) return ERR_OK;
+    struct observer *const observer = &sim->observer;
+    if (!observer->context || sim->state.seeks_rest || until < observer->next) return ERR_OK;
     const double begin = phase_clock(), before = phases_so_far(sim);
-    const enum err e = by->look(by->context, sim, until, d);
+    const enum err e = observer->look(observer->context, sim, until, d);
     /* Evaluations, which the coming step uses, are counted in their own phases. */
     sim->phase_seconds[PHASE_output] += phase_clock() - begin - (phases_so_far(sim) - before);
     return e;

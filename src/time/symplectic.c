@@ -37,9 +37,10 @@ static void predict_fields(struct particles *particles, double half)
 }
 
 /* From the start of the step to its end; dens0 is predicted. */
-static void correct_rows(struct particles *particles, const void *by, int64_t from, int64_t end)
+static void correct_range(struct particles *particles, const void *parameters, int64_t from,
+                          int64_t end)
 {
-    const double dt = *(const double *)by;
+    const double dt = *(const double *)parameters;
 #pragma omp simd
     for (int64_t i = from; i < end; i++) {
         const double vx = particles->vx[i], vy = particles->vy[i], dens = particles->dens[i];
@@ -120,7 +121,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
 
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits);
-    energy_test_due(sim);
+    energy_test_if_due(sim);
     const bool needs_fields =
         sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].at;
     if (needs_fields)
@@ -137,16 +138,16 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     energy_book_evaluation(sim, dt);
     clock = phase_clock();
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, dt);
-    if (multirate) advance_structure(sim, dt, dt);
+    if (multirate) advance_solids(sim, dt, dt);
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
     if (needs_fields) swap_states(&sim->kind[KIND_FLUID]);
-    advance_fluid(sim, correct_rows, &dt);
+    advance_fluid(sim, correct_range, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
-    timestep_book(sim, dt, t_limit, hits);
+    timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }
 

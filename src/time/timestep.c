@@ -118,13 +118,14 @@ const char *timestep_shorter(const struct simulation *sim, double *half)
     const struct scene_numerics *const n = &sim->scene->numerics;
     const double *const bound = sim->dt_bound, step = bound[timestep_binding(sim)];
     const double fluid = min2(bound[BOUND_force], min2(bound[BOUND_acoustic], bound[BOUND_damper]));
-    const double much = 1.8 * step; /* half of a bound must be below the step */
+    const double halving_helps_below = 1.8 * step; /* half of a bound must be below the step */
     const bool lone = !(sim->effects & FX_FLUID) && !(n->fixed_step > 0);
-    if (sim->effects & FX_SOLID && (lone || bound[BOUND_solid] < min2(fluid, much))) {
+    if (sim->effects & FX_SOLID &&
+        (lone || bound[BOUND_solid] < min2(fluid, halving_helps_below))) {
         *half = 0.5 * n->solid_safety;
         return "solid_safety";
     }
-    if (fluid < much) {
+    if (fluid < halving_helps_below) {
         *half = 0.5 * n->cfl;
         return "cfl";
     }
@@ -255,7 +256,7 @@ void timestep_count(struct simulation *sim, double dt, int n)
     st->bound_steps[timestep_binding(sim)] += n;
 }
 
-void timestep_book(struct simulation *sim, double dt, double t_limit, bool hits)
+void timestep_end_fluid_step(struct simulation *sim, double dt, double t_limit, bool hits)
 {
     struct state *const st = &sim->state;
     st->time = hits ? t_limit : st->time + dt;

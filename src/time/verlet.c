@@ -5,15 +5,15 @@
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
-struct verlet_sizes {
+struct verlet_step {
     double dt, dt_old;
     bool euler;
 };
 
-static void update_verlet_rows(struct particles *particles, const void *by, int64_t from,
-                               int64_t end)
+static void update_verlet_range(struct particles *particles, const void *parameters, int64_t from,
+                                int64_t end)
 {
-    const struct verlet_sizes *const step = by;
+    const struct verlet_step *const step = parameters;
     const bool euler = step->euler;
     const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
 #pragma omp simd
@@ -34,7 +34,7 @@ static void update_verlet(struct simulation *sim, double dt)
 {
     const bool euler = sim->state.verlet_count == 0;
     sim->state.verlet_count = (sim->state.verlet_count + 1) % sim->scene->numerics.verlet_reset;
-    advance_fluid(sim, update_verlet_rows, &(struct verlet_sizes){dt, sim->state.dt, euler});
+    advance_fluid(sim, update_verlet_range, &(struct verlet_step){dt, sim->state.dt, euler});
 }
 
 const struct integrator integrator_verlet = {

@@ -227,7 +227,7 @@ static void check_midpoints(const char *scene, enum kind kind, bool upright)
         missed = false;
         evaluations = 0;
         TEST_ASSERT_EQUAL_INT(ERR_OK,
-                              simulation_external(&rig.sim, KIND_FLUID, look, NULL, &rig.diag));
+                              simulation_set_external(&rig.sim, KIND_FLUID, look, NULL, &rig.diag));
         struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
         double *const from = upright ? a->y : a->x, *const to = upright ? b->y : b->x,
                       *const moved = upright ? b->uy : b->ux;

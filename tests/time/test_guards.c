@@ -113,7 +113,7 @@ static void test_tension_and_nan_of_the_density(void)
     rig.sim.kind[KIND_FLUID].dens[50] = -0.31;
     expect(KIND_FLUID, 50, "rho/rho0 - 1 = -0.31");
     rig.diag = (struct diag){0};
-    rig.sim.guard.warned_crossing = true; /* then that is the likely cause */
+    rig.sim.guard.warned_entered = true; /* then that is the likely cause */
     expect(KIND_FLUID, 50, "fluid particles entered a wall or solid earlier");
     rig.diag = (struct diag){0};
     rig.sim.kind[KIND_FLUID].dens[50] = (double)NAN;
@@ -221,14 +221,14 @@ static void test_fluid_inside_of_bodies(void)
     for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
     rig.sim.state.steps = 64;
     rig_sort(&rig);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_check_entered(&rig.sim, &rig.diag));
     TEST_ASSERT_EQUAL_INT(0, warnings);
     particles->x[3] = solid->x[30] + 0.003;
     particles->y[3] = solid->y[30];
     const int64_t id = particles->id[3];
     rig_sort(&rig);
     for (int k = 0; k < 3; k++)
-        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_check_entered(&rig.sim, &rig.diag));
     TEST_ASSERT_EQUAL_INT(1, warnings);
     char text[64];
     snprintf(text, sizeof text, "fluid particle %lld at", (long long)id);
@@ -238,7 +238,7 @@ static void test_fluid_inside_of_bodies(void)
         particles->y[10 + k] = -0.013;
     }
     rig_sort(&rig);
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_penetration(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_check_entered(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "6 fluid particles have entered"),
                                  rig.diag.text);
 }

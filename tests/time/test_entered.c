@@ -29,7 +29,7 @@ static int64_t found(double dp, const char *periodic, double share)
     }
     rig_sort(&rig);
     int64_t first;
-    return penetration_count(&rig.sim, &first);
+    return guards_count_entered(&rig.sim, &first);
 }
 
 static void test_fluid_in_a_bed(void)
@@ -71,7 +71,8 @@ static void test_fluid_in_a_stretched_body(void)
         int64_t first;
         char what[64];
         snprintf(what, sizeof what, "(%g, %g)", row[k].x, row[k].y);
-        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, penetration_count(&rig.sim, &first), what);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, guards_count_entered(&rig.sim, &first),
+                                        what);
         for (int64_t i = 0; i < particles->n; i++) /* sorting has moved it */
             if (particles->x[i] < 0.2) particles->x[i] = 0.5, particles->y[i] = 0.5;
     }
