@@ -197,8 +197,7 @@ static void warn_of_start_gap(struct check *check, int fluid)
 
 /* --- speeds near that of sound --- */
 
-/* The largest speed of the corners of the box around a wall or a body's clamps, and a frequency:
- * the largest acceleration over it. */
+/* Largest speed and acceleration of the corners of the box around a wall or a body's clamps. */
 static void warn_of_motion(struct check *check, const struct body *b)
 {
     enum { TIMES = 256 };

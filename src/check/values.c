@@ -66,8 +66,7 @@ static void warn_of_motion_of_nothing(struct check *check, const struct scene_mo
                      "expressions in t, for example y = 1.5 m/s*t");
 }
 
-/* A table in time that still changes at its last row, while the run goes on: a motion stops at
- * once, and a load or gravity stays for ever. */
+/* A table in time that still changes at its last row, while the run goes on. */
 static void warn_of_table(struct check *check, const struct param *key, int k, int component)
 {
     const struct scene *const scene = check->scene;

@@ -437,8 +437,7 @@ double rigid_longest_step(const struct rigid *rigid, int *stiffest)
         rate2 = max2(rate2, (square(v[0]) + square(v[1])) / r2 + square(v[2]));
         rate2 = max2(rate2, body->given->hinge_stiffness / body->mass[2]);
     }
-    const double step = part_of_time(rate2),
-                 of_springs = rigid_spring_step(rigid, 0, false, stiffest);
-    if (of_springs > step) *stiffest = 0;
-    return min2(step, of_springs);
+    const double own = part_of_time(rate2), springs = rigid_spring_step(rigid, 0, false, stiffest);
+    if (springs > own) *stiffest = 0;
+    return min2(own, springs);
 }
