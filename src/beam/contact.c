@@ -8,14 +8,15 @@
 /* A distance that counts as kept, over the particle spacing. */
 #define KEPT 1e-9
 
-/* A face of a wall or rigid body at the start: a segment, or a circle if `radius` is above 0. */
-struct beam_face {
+/* A piece of the outline of a wall or rigid body at the start: a segment, or a circle if `radius`
+ * is above 0. */
+struct beam_piece {
     int wall;
     double from[2], to[2], radius;
 };
 
-/* A place that may touch: parts of some nodes along the normal, from a face or a beam. */
-struct beam_touch {
+/* A pair that may touch: nodes with their weights, and a piece or corner of a wall, or none. */
+struct beam_pair {
     int n, node[3];
     double part[3];
     double gap;          /* if no node and no rigid body moves, m */
@@ -24,39 +25,39 @@ struct beam_touch {
 };
 
 struct beam_contact {
-    int n_faces, n_walls, n_moving, n, most; /* n_moving: walls before the rigid bodies */
-    struct beam_face *face;
+    int n_pieces, n_walls, n_moving, n, most; /* n_moving: walls before the rigid bodies */
+    struct beam_piece *piece;
     struct motion_state *begin, *end; /* [n_walls] of the step */
     double *layer;                    /* [n][n_wall] that stays between surfaces; NAN: no contact */
-    struct beam_touch *touch;
+    struct beam_pair *pair;
     double *column; /* [most][size] displacement of nodes and bodies by a unit of force */
     double *yields; /* [most][most] along the normals of others */
     double *open;   /* [most] gap after the correction, m */
 };
 
-/* --- faces --- */
+/* --- pieces --- */
 
-static void add_face(struct beam_contact *contact, int wall, const double from[2],
-                     const double to[2], double radius)
+static void add_piece(struct beam_contact *contact, int wall, const double from[2],
+                      const double to[2], double radius)
 {
-    struct beam_face *const face = &contact->face[contact->n_faces++];
-    *face = (struct beam_face){.wall = wall, .radius = radius};
-    memcpy(face->from, from, sizeof face->from);
-    memcpy(face->to, to, sizeof face->to);
+    struct beam_piece *const piece = &contact->piece[contact->n_pieces++];
+    *piece = (struct beam_piece){.wall = wall, .radius = radius};
+    memcpy(piece->from, from, sizeof piece->from);
+    memcpy(piece->to, to, sizeof piece->to);
 }
 
 static void add_outlines(struct beam_contact *contact, int wall, const struct outlines *o)
 {
     for (int k = 0; k < o->n; k++) {
         const struct outline *const item = &o->item[k];
-        if (!item->n) add_face(contact, wall, item->centre, item->centre, item->radius);
+        if (!item->n) add_piece(contact, wall, item->centre, item->centre, item->radius);
         for (int j = 0; j < item->n; j++)
-            add_face(contact, wall, item->pt[j], item->pt[j + 1 < item->n ? j + 1 : 0], 0);
+            add_piece(contact, wall, item->pt[j], item->pt[j + 1 < item->n ? j + 1 : 0], 0);
     }
 }
 
-static enum err create_faces(struct beams *beams, struct arena *a, struct arena *temp,
-                             struct diag *d)
+static enum err create_pieces(struct beams *beams, struct arena *a, struct arena *temp,
+                              struct diag *d)
 {
     const struct scene *const scene = beams->scene;
     struct beam_contact *const contact = beams->contact;
@@ -69,14 +70,14 @@ static enum err create_faces(struct beams *beams, struct arena *a, struct arena 
         most += outlines_ends(&o[w].add) + outlines_ends(&o[w].minus);
         for (int k = 0; k < scene->wall[w].shape.n; k++) most += scene->wall[w].shape.item[k].n;
     }
-    TRY(arena_array(a, &contact->face, most, "beams", d));
+    TRY(arena_array(a, &contact->piece, most, "beams", d));
     for (int w = 0; w < contact->n_walls; w++) {
         add_outlines(contact, w, &o[w].add);
         add_outlines(contact, w, &o[w].minus);
         for (int k = 0; k < scene->wall[w].shape.n; k++) {
             const struct shape *const s = &scene->wall[w].shape.item[k];
             for (int j = 0; s->thin && j + 1 < s->n; j++)
-                add_face(contact, w, s->pt[j], s->pt[j + 1], 0);
+                add_piece(contact, w, s->pt[j], s->pt[j + 1], 0);
         }
     }
     return ERR_OK;
@@ -97,12 +98,12 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
     if (!contact) return ERR_MEMORY;
     contact->n_walls = scene_beam_wall(scene, 0);
     contact->n_moving = scene_rigid_wall(scene, 0);
-    contact->most = (int)min2(BEAM_TOUCHES, 3.0 * beams->n_nodes);
+    contact->most = (int)min2(BEAM_PAIRS, 3.0 * beams->n_nodes);
     const size_t n = (size_t)contact->n_walls, most = (size_t)contact->most;
     TRY(arena_array(a, &contact->begin, n, what, d));
     TRY(arena_array(a, &contact->end, n, what, d));
     TRY(arena_array(a, &contact->layer, beams->n * scene->n_wall, what, d));
-    TRY(arena_array(a, &contact->touch, most, what, d));
+    TRY(arena_array(a, &contact->pair, most, what, d));
     TRY(arena_array(a, &contact->column, most * (size_t)beams->size, what, d));
     TRY(arena_array(a, &contact->yields, most * most, what, d));
     TRY(arena_array(a, &contact->open, most, what, d));
@@ -119,12 +120,12 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
             contact->layer[beams->node[k].beam * scene->n_wall +
                            scene_rigid_wall(scene, beams->node[k].body)] = (double)NAN;
     struct arena temp = {.limit = a->limit};
-    const enum err e = create_faces(beams, a, &temp, d);
+    const enum err e = create_pieces(beams, a, &temp, d);
     arena_free(&temp);
     return e;
 }
 
-/* --- touches --- */
+/* --- pairs --- */
 
 /* The nearest place of a segment, or of a circle with a `radius`: the normal there. */
 struct beam_near {
@@ -155,7 +156,7 @@ static double least_distance(double thick, double layer, double at_start)
 }
 
 /* What the present displacements of nodes and body add to a gap. */
-static double along_touch(const struct beams *beams, const struct beam_touch *t)
+static double along_pair(const struct beams *beams, const struct beam_pair *t)
 {
     double sum = -beam_row_moved(beams, &t->row);
     for (int k = 0; k < t->n; k++)
@@ -163,9 +164,9 @@ static double along_touch(const struct beams *beams, const struct beam_touch *t)
     return sum;
 }
 
-/* Adds a touch at a place of a wall, -1: of a beam, if the first guess brings it nearer than a
+/* Adds a pair at a place of a wall, -1: of a beam, if the first guess brings it nearer than a
  * tenth of a spacing. */
-static void add_touch(struct beams *beams, struct beam_touch *t, int wall, const double at[2])
+static void add_pair(struct beams *beams, struct beam_pair *t, int wall, const double at[2])
 {
     struct beam_contact *const contact = beams->contact;
     const double reach = 0.1 * beams->scene->top.dp;
@@ -175,11 +176,11 @@ static void add_touch(struct beams *beams, struct beam_touch *t, int wall, const
     beam_row_aim(beams, &t->row);
     for (int k = 0; k < t->n; k++)
         for (int c = 0; c < 2; c++) held &= beams->node[t->node[k]].row[c] < 0;
-    if (held || t->gap + min2(0, along_touch(beams, t)) > reach || t->gap > beams->scene->top.dp)
+    if (held || t->gap + min2(0, along_pair(beams, t)) > reach || t->gap > beams->scene->top.dp)
         return;
     if (t->row.e[0] == 0 && t->row.e[1] == 0) return;
     beams->crowded |= contact->n == contact->most;
-    if (contact->n < contact->most) contact->touch[contact->n++] = *t;
+    if (contact->n < contact->most) contact->pair[contact->n++] = *t;
 }
 
 /* A point of a wall where it is at the start and the end of the step. */
@@ -194,27 +195,27 @@ static void place_wall(const struct beam_contact *contact, int wall, const doubl
     }
 }
 
-static void touch_face(struct beams *beams, int k, const struct beam_face *face)
+static void pair_piece(struct beams *beams, int k, const struct beam_piece *piece)
 {
     const struct beam_contact *const contact = beams->contact;
     const int beam = beams->node[k].beam;
-    const double layer = contact->layer[beam * beams->scene->n_wall + face->wall];
+    const double layer = contact->layer[beam * beams->scene->n_wall + piece->wall];
     double x[2], from[2], to[2], moved[2][2];
     if (isnan(layer)) return;
     node_now(beams, k, x);
-    place_wall(contact, face->wall, face->from, from, moved[0]);
-    place_wall(contact, face->wall, face->to, to, moved[1]);
-    const struct beam_near now = nearest_of(x, from, to, face->radius);
+    place_wall(contact, piece->wall, piece->from, from, moved[0]);
+    place_wall(contact, piece->wall, piece->to, to, moved[1]);
+    const struct beam_near now = nearest_of(x, from, to, piece->radius);
     if (now.distance > half_of(beams, beam) + layer + beams->scene->top.dp) return;
     const double at_start =
-        nearest_of(beams->node[k].X, face->from, face->to, face->radius).distance;
-    struct beam_touch t = {.n = 1, .node = {k}, .part = {1}};
+        nearest_of(beams->node[k].X, piece->from, piece->to, piece->radius).distance;
+    struct beam_pair t = {.n = 1, .node = {k}, .part = {1}};
     for (int c = 0; c < 2; c++) {
         t.row.e[c] = now.normal[c];
         t.moved += t.row.e[c] * ((1 - now.part) * moved[0][c] + now.part * moved[1][c]);
     }
     t.gap = max2(0, now.distance - least_distance(half_of(beams, beam), layer, at_start)) - t.moved;
-    add_touch(beams, &t, face->wall, x);
+    add_pair(beams, &t, piece->wall, x);
 }
 
 /* Whether a node is nearer along the beam of an element than half of a circle of this diameter: a
@@ -232,7 +233,7 @@ static bool in_bend(const struct beams *beams, int element, int k, double diamet
 }
 
 /* A point with an element: of a wall, or node k of a beam. */
-static void touch_element(struct beams *beams, int element, int wall, const double X[2], int k)
+static void pair_element(struct beams *beams, int element, int wall, const double X[2], int k)
 {
     const struct beam_contact *const contact = beams->contact;
     const int *const node = beams->element[element].node, beam = beams->node[node[0]].beam;
@@ -253,13 +254,13 @@ static void touch_element(struct beams *beams, int element, int wall, const doub
     if (k >= 0 && in_bend(beams, element, k, thick + layer)) return;
     const double at_start =
         nearest_of(X, beams->node[node[0]].X, beams->node[node[1]].X, 0).distance;
-    struct beam_touch t = {.n = k < 0 ? 2 : 3,
+    struct beam_pair t = {.n = k < 0 ? 2 : 3,
                            .node = {node[0], node[1], k < 0 ? 0 : k},
                            .part = {1 - now.part, now.part, -1},
                            .row.e = {-now.normal[0], -now.normal[1]}};
     for (int c = 0; c < 2; c++) t.moved += t.row.e[c] * moved[c];
     t.gap = max2(0, now.distance - least_distance(thick, layer, at_start)) - t.moved;
-    add_touch(beams, &t, wall, at);
+    add_pair(beams, &t, wall, at);
 }
 
 static struct box2 box_of(const struct beams *beams, int beam)
@@ -274,7 +275,7 @@ static struct box2 box_of(const struct beams *beams, int beam)
 }
 
 /* Nodes of beam b with elements of beam a. */
-static void touch_beams(struct beams *beams, int a, int b)
+static void pair_beams(struct beams *beams, int a, int b)
 {
     const struct scene *const scene = beams->scene;
     const double layer = beams->contact->layer[a * scene->n_wall + scene_beam_wall(scene, b)];
@@ -283,10 +284,10 @@ static void touch_beams(struct beams *beams, int a, int b)
     if (isnan(layer) || !box2_near(&of_a, &of_b, reach)) return;
     for (int k = beams->beam[b].first_node; k < beams->beam[b].end_node; k++)
         for (int m = beams->beam[a].first_element; m < beams->beam[a].end_element; m++)
-            touch_element(beams, m, -1, beams->node[k].X, k);
+            pair_element(beams, m, -1, beams->node[k].X, k);
 }
 
-void beams_find_touches(struct beams *beams, double time, double dt)
+void beams_find_pairs(struct beams *beams, double time, double dt)
 {
     struct beam_contact *const contact = beams->contact;
     const struct scene *const scene = beams->scene;
@@ -300,22 +301,22 @@ void beams_find_touches(struct beams *beams, double time, double dt)
         contact->begin[w] = contact->end[w] = rigid_placed(beams->rigid, k, beams->body[k].x);
     }
     contact->n = 0;
-    for (int f = 0; f < contact->n_faces; f++) {
-        const struct beam_face *const face = &contact->face[f];
-        for (int k = 0; k < beams->n_nodes; k++) touch_face(beams, k, face);
-        for (int m = 0; m < beams->n_elements && face->radius == 0; m++)
-            touch_element(beams, m, face->wall, face->from, -1);
+    for (int f = 0; f < contact->n_pieces; f++) {
+        const struct beam_piece *const piece = &contact->piece[f];
+        for (int k = 0; k < beams->n_nodes; k++) pair_piece(beams, k, piece);
+        for (int m = 0; m < beams->n_elements && piece->radius == 0; m++)
+            pair_element(beams, m, piece->wall, piece->from, -1);
     }
     for (int a = 0; a < beams->n; a++)
-        for (int b = 0; b < beams->n; b++) touch_beams(beams, a, b);
+        for (int b = 0; b < beams->n; b++) pair_beams(beams, a, b);
 }
 
 /* --- forces --- */
 
-void beams_add_touches(struct beams *beams)
+void beams_add_pairs(struct beams *beams)
 {
     for (int j = 0; j < beams->contact->n; j++) {
-        struct beam_touch *const t = &beams->contact->touch[j];
+        struct beam_pair *const t = &beams->contact->pair[j];
         beam_row_push(beams, &t->row);
         for (int k = 0; k < t->n; k++)
             for (int c = 0; c < 2; c++)
@@ -328,15 +329,15 @@ bool beams_keep_apart(const struct beams *beams)
     const struct beam_contact *const contact = beams->contact;
     const double kept = KEPT * beams->scene->top.dp;
     for (int j = 0; j < contact->n; j++) {
-        const struct beam_touch *const t = &contact->touch[j];
-        if (t->gap + along_touch(beams, t) < -kept) return false;
+        const struct beam_pair *const t = &contact->pair[j];
+        if (t->gap + along_pair(beams, t) < -kept) return false;
         if (t->row.force > 0 && !beam_row_settled(beams, &t->row, kept)) return false;
     }
     return true;
 }
 
 /* What a vector of displacements adds to a gap. */
-static double along_unknowns(const struct beams *beams, const struct beam_touch *t,
+static double along_unknowns(const struct beams *beams, const struct beam_pair *t,
                              const double *vector)
 {
     double sum = -beam_row_moved_by(beams, &t->row, vector);
@@ -357,7 +358,7 @@ static void find_yields(struct beams *beams)
 {
     struct beam_contact *const contact = beams->contact;
     for (int j = 0; j < contact->n; j++) {
-        const struct beam_touch *const t = &contact->touch[j];
+        const struct beam_pair *const t = &contact->pair[j];
         double *const column = column_of(beams, j);
         memset(column, 0, (size_t)beams->size * sizeof *column);
         for (int k = 0; k < t->n; k++)
@@ -370,12 +371,12 @@ static void find_yields(struct beams *beams)
         beams_resist_joints(beams, column);
         for (int i = 0; i < contact->n; i++)
             contact->yields[(size_t)i * (size_t)contact->most + (size_t)j] =
-                along_unknowns(beams, &contact->touch[i], column);
+                along_unknowns(beams, &contact->pair[i], column);
     }
 }
 
-/* Projected Gauss-Seidel, in the order of the touches: no force pulls. */
-bool beams_correct_touches(struct beams *beams)
+/* Projected Gauss-Seidel, in the order of the pairs: no force pulls. */
+bool beams_correct_pairs(struct beams *beams)
 {
     enum { TURNS = 1000 };
     struct beam_contact *const contact = beams->contact;
@@ -383,12 +384,12 @@ bool beams_correct_touches(struct beams *beams)
     if (contact->n == 0) return true;
     find_yields(beams);
     for (int j = 0; j < contact->n; j++)
-        contact->open[j] = contact->touch[j].gap + along_touch(beams, &contact->touch[j]) +
-                           along_unknowns(beams, &contact->touch[j], beams->unknown);
+        contact->open[j] = contact->pair[j].gap + along_pair(beams, &contact->pair[j]) +
+                           along_unknowns(beams, &contact->pair[j], beams->unknown);
     for (int turn = 0; turn < TURNS && largest > 0.1 * KEPT * beams->scene->top.dp; turn++) {
         largest = 0;
         for (int j = 0; j < contact->n; j++) {
-            struct beam_touch *const t = &contact->touch[j];
+            struct beam_pair *const t = &contact->pair[j];
             const double own = contact->yields[(size_t)j * (size_t)contact->most + (size_t)j];
             const double force = own > 0 ? max2(0, t->row.force - contact->open[j] / own) : 0,
                          more = force - t->row.force;
@@ -405,11 +406,11 @@ bool beams_correct_touches(struct beams *beams)
     return largest <= first;
 }
 
-void beams_finish_touches(struct beams *beams, double dt)
+void beams_finish_pairs(struct beams *beams, double dt)
 {
     const struct beam_contact *const contact = beams->contact;
     for (int j = 0; j < contact->n; j++) {
-        const struct beam_touch *const t = &contact->touch[j];
+        const struct beam_pair *const t = &contact->pair[j];
         beams->beam[beams->node[t->node[0]].beam].driven += t->row.force * t->moved;
         for (int c = 0; c < 3 && t->row.body >= 0; c++)
             beams->body[t->row.body].push[c] -= dt * t->row.force * t->row.along[c];

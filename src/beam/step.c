@@ -148,7 +148,7 @@ static struct largest find_residual(struct beams *beams, double dt)
     struct largest top = {0};
     add_elements(beams, dt, &top);
     beams_clear_rows(beams);
-    beams_add_touches(beams);
+    beams_add_pairs(beams);
     beams_add_joints(beams);
     beams_add_springs(beams, dt, &top.rounding);
     memset(beams->unknown, 0, (size_t)beams->size * sizeof *beams->unknown);
@@ -184,7 +184,7 @@ static bool correct(struct beams *beams)
 {
     envelope_solve(&beams->matrix, beams->unknown);
     beams_correct_joints(beams);
-    if (!beams_correct_touches(beams)) return false;
+    if (!beams_correct_pairs(beams)) return false;
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)
             if (beams->node[k].row[c] >= 0)
@@ -230,7 +230,7 @@ static void begin(struct beams *beams, double time, double dt)
             s->d[c] = c < 2 ? x[c] - s->x[c] : 2 * elementary_tan(0.5 * (x[c] - s->x[c]));
         }
     }
-    beams_find_touches(beams, time, dt);
+    beams_find_pairs(beams, time, dt);
 }
 
 /* What a node's clamp or hinge adds to the other forces, and the work of that and of loads. */
@@ -287,7 +287,7 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
     begin(beams, time, dt);
     if (solve(beams, dt)) {
         finish(beams, time, dt);
-        beams_finish_touches(beams, dt);
+        beams_finish_pairs(beams, dt);
         beams_finish_joints(beams, dt);
         beams_finish_bodies(beams, dt);
         if (beams->line) beams_return_impulse(beams, times);

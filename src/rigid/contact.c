@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Places where outlines of rigid bodies and walls may touch in a step (T-102). */
+ * Pairs of a corner and a piece of outline of rigid bodies and walls that may touch (T-102). */
 #include "rigid/forces.h"
 #include "geometry/motion.h"
 #include "geometry/outline.h"
@@ -12,7 +12,7 @@ struct rigid_shape {
 };
 
 /* Contact of a body with a wall, or with a body before it. */
-struct touch_law {
+struct pair_law {
     double layer; /* distance that outlines keep, m; NAN: no contact */
     double friction, restitution;
 };
@@ -20,8 +20,8 @@ struct touch_law {
 struct rigid_contact {
     double reach;                /* a spacing, m */
     struct rigid_shape *shape;   /* [n_wall] */
-    struct touch_law *law, *now; /* [rigid bodies][n_wall]; of the pair that is compared */
-    int most;                    /* places that touch */
+    struct pair_law *law, *now; /* [rigid bodies][n_wall]; of the pair that is compared */
+    int most;                    /* pairs */
 };
 
 /* --- outlines --- */
@@ -39,7 +39,7 @@ struct approach {
 static void set_rows(const struct approach *a, const double at[2], const double n[2], double gap,
                      struct rigid_row *row)
 {
-    const struct touch_law *const law = a->rigid->contact->now;
+    const struct pair_law *const law = a->rigid->contact->now;
     const struct motion_state *const m = &a->of[1]->now;
     const double c = m->turn[0], s = m->turn[1];
     const double normal[2] = {c * n[0] - s * n[1], s * n[0] + c * n[1]};
@@ -64,7 +64,7 @@ static void set_rows(const struct approach *a, const double at[2], const double 
 }
 
 /* Adds a place `at` of the outline with the normal n, from which the corner is at a distance. */
-static void add_touch(struct approach *a, const double at[2], const double n[2], double distance)
+static void add_pair(struct approach *a, const double at[2], const double n[2], double distance)
 {
     struct rigid_contact *const contact = a->rigid->contact;
     const double near = 1e-6 * contact->reach, gap = distance - a->radius - contact->now->layer;
@@ -103,7 +103,7 @@ static void approach_piece(struct approach *a, const struct outline *o, double s
         if (r == 0) return;
         const double n[2] = {sign * x / r, sign * y / r};
         const double at[2] = {o->centre[0] + o->radius * x / r, o->centre[1] + o->radius * y / r};
-        add_touch(a, at, n, sign * (r - o->radius));
+        add_pair(a, at, n, sign * (r - o->radius));
         return;
     }
     const double turn = polygon_area(o->n, o->pt) > 0 ? sign : -sign;
@@ -116,10 +116,10 @@ static void approach_piece(struct approach *a, const struct outline *o, double s
         if (part >= 0 && part <= 1) {
             const double n[2] = {turn * ey / length, -turn * ex / length};
             const double at[2] = {from[0] + part * ex, from[1] + part * ey};
-            add_touch(a, at, n, n[0] * x + n[1] * y);
+            add_pair(a, at, n, n[0] * x + n[1] * y);
         }
         const double r = elementary_hypot(x, y); /* from a corner of the outline */
-        if (r > 0 && !a->inside) add_touch(a, from, (const double[2]){x / r, y / r}, r);
+        if (r > 0 && !a->inside) add_pair(a, from, (const double[2]){x / r, y / r}, r);
     }
 }
 
@@ -147,7 +147,7 @@ static void approach_shape(struct rigid *rigid, const struct rigid_shape *of,
     }
 }
 
-/* --- all touches --- */
+/* --- all pairs --- */
 
 static void place_shapes(struct rigid *rigid, double time)
 {
@@ -158,7 +158,7 @@ static void place_shapes(struct rigid *rigid, double time)
     }
 }
 
-/* The touches of a body with a wall, or with a body before it. */
+/* The pairs of a body with a wall, or with a body before it. */
 static void approach_pair(struct rigid *rigid, int k, int w)
 {
     const struct rigid_shape *const shape = rigid->contact->shape,
@@ -189,10 +189,10 @@ static void set_law(struct rigid *rigid, int k, int w)
     const bool hinged = scene->rigid[k].hinge.n || (other >= 0 && scene->rigid[other].hinge.n);
     const struct scene_contact *const from =
         scene_contact_of(scene, scene->n_solid + scene_rigid_wall(scene, k), scene->n_solid + w);
-    struct touch_law *const law = contact->now = &contact->law[k * scene->n_wall + w];
-    *law = (struct touch_law){.layer = (double)NAN};
+    struct pair_law *const law = contact->now = &contact->law[k * scene->n_wall + w];
+    *law = (struct pair_law){.layer = (double)NAN};
     if (!from) return;
-    *law = (struct touch_law){0, from->friction, from->restitution};
+    *law = (struct pair_law){0, from->friction, from->restitution};
     rigid->n_rows = 0;
     approach_pair(rigid, k, w);
     law->layer = scene_contact_gap(scene, from);
@@ -222,7 +222,7 @@ enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag 
     return ERR_OK;
 }
 
-void rigid_add_touches(struct rigid *rigid, double time)
+void rigid_add_pairs(struct rigid *rigid, double time)
 {
     struct rigid_contact *const contact = rigid->contact;
     place_shapes(rigid, time);

@@ -113,8 +113,8 @@ double rigid_hinge_energy(const struct rigid *rigid, int k);
 /* --- contact (rigid/contact.c) --- */
 
 enum err rigid_contact_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
-/* Two rows for each place that may touch, with walls where they are at a time. */
-void rigid_add_touches(struct rigid *rigid, double time);
+/* Two rows for each pair that may touch, with walls where they are at a time. */
+void rigid_add_pairs(struct rigid *rigid, double time);
 
 /* --- the solution for all rows (rigid/impulses.c) --- */
 

@@ -121,7 +121,7 @@ void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_st
 {
     for (int k = 0; k < rigid->n; k++) memset(rigid->eq[k].touch, 0, sizeof rigid->eq[k].touch);
     rigid->n_rows = 0;
-    rigid_add_touches(rigid, time);
+    rigid_add_pairs(rigid, time);
     rigid_add_hinges(rigid, time);
     rigid_add_springs(rigid, step->dt);
     find_start(rigid, step->dt);

@@ -433,7 +433,7 @@ enum err guards_check(struct simulation *sim, struct diag *d)
         warn_once(sim, &sim->guard.warned_beams, d,
                   "beams touch at more than %d places, and at further ones they pass through; use "
                   "a larger `element`",
-                  BEAM_TOUCHES);
+                  BEAM_PAIRS);
     if (sim->effects & FX_BEAM && sim->effects & FX_SOLID) check_beams_in_solids(sim, d);
     if (sim->effects & FX_MOTION) TRY(check_motion(sim, d));
     if (sim->effects & FX_RIGID) TRY(check_touches(sim, d));
