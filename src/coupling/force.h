@@ -29,7 +29,8 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->dummy);
+        const struct pair q =
+            pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
         const vreal weight = law_laminar(&q, k);
         sum_x[part] = vfma(weight, q.u, sum_x[part]);
         sum_y[part] = vfma(weight, q.v, sum_y[part]);
@@ -51,7 +52,8 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->dummy);
+        struct pair q =
+            pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
         q.p = lane(b, PACKED_P);
         vreal stress = law_pressure(s, &q);
         if (effects & FX_ONE_SIDED)

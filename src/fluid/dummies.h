@@ -15,7 +15,7 @@ SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct 
     vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        const struct separation d = separation_from(s, code, b);
+        const struct separation d = separation_from(s, code, b, false);
         const vreal w = weight_seen(s, &d, kernel_of(d.length));
         const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
         sum_w[part] = sum_w[part] + w;
@@ -54,7 +54,7 @@ SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const 
     vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        const struct separation d = separation_from(s, code, b);
+        const struct separation d = separation_from(s, code, b, false);
         const vreal w = weight_seen(s, &d, kernel_of(d.length));
         sum_w[part] = sum_w[part] + w;
         sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
@@ -186,12 +186,11 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
     double t[CLUSTER][2] = {{0}};
     real filled[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
-        struct receiver s = receiver_at(sides, d->packed + r);
-        s.opaque = true;
+        const struct receiver s = receiver_at(sides, d->packed + r);
         vreal sum[PARTS] = {{0}};
         EACH_CANDIDATE(neighbours, part, code, b)
         {
-            const struct separation at = separation_from(&s, code, b);
+            const struct separation at = separation_from(&s, code, b, true);
             const vreal volume = lane(b, PACKED_VOLUME);
             sum[part] = vfma(volume, weight_seen(&s, &at, kernel_of(at.length)), sum[part]);
         }

@@ -157,20 +157,14 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *fluid, const s
                                thin ? near_pieces(fluid, cells, cell, piece) : 0, piece};
 }
 
-/* Of dummies: the line that has to lie between, or 0; and the share phi of their place that fluid
- * of their own side fills (T-110c). */
-struct stand_in {
-    vreal line, filled;
-};
-
 /* Particles a, one in each group of four lanes; with their positions relative to the centres of the
  * three columns and rows of cells around. */
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
     vreal dens_x, dens_y; /* -h/2 times the gradient of dens, if it is used */
     vreal specific;       /* of PACKED_SPECIFIC, with artificial viscosity */
-    struct stand_in dummy;
-    bool opaque;  /* whether lines are so beside their tips, too */
+    vreal line, filled;   /* of a dummy: the line that has to lie between, or 0; and the share phi
+                             of its place that fluid of its own side fills (T-110c) */
     int n_pieces; /* of thin lines near its cell */
     const struct near_piece *piece; /* NULL: the scene has no thin lines */
 };
@@ -192,8 +186,8 @@ SPHFSI_INLINE struct receiver receiver_at(const struct cell_sides *sides, const 
     struct receiver a;
     a.n_pieces = sides->n_pieces;
     a.piece = sides->piece;
-    a.dummy = (struct stand_in){vset(0), vset(0)};
-    a.opaque = false;
+    a.line = vset(0);
+    a.filled = vset(0);
     const vreal x = vspread(own + PACKED_X * CLUSTER), y = vspread(own + PACKED_Y * CLUSTER);
     const vreal side_x = vset(sides->x), side_y = vset(sides->y);
     a.x[0] = x + side_x;
@@ -217,9 +211,8 @@ SPHFSI_INLINE int particles_in(const struct cell_list *list, int32_t cell, int32
 SPHFSI_INLINE struct receiver dummy_at(const struct cell_sides *sides, const real *own)
 {
     struct receiver a = receiver_at(sides, own);
-    if (a.piece)
-        a.dummy = (struct stand_in){vspread(own + PACKED_LINE * CLUSTER),
-                                    vspread(own + PACKED_FILLED * CLUSTER)};
+    if (a.piece) a.line = vspread(own + PACKED_LINE * CLUSTER);
+    if (a.piece) a.filled = vspread(own + PACKED_FILLED * CLUSTER);
     return a;
 }
 
@@ -228,8 +221,10 @@ SPHFSI_INLINE vreal vpick(vmask mask, vreal yes, vreal no)
     return (vreal)(((vmask)yes & mask) | ((vmask)no & ~mask));
 }
 
-/* T-110, T-110e: how much of a pair with the separation (x, y) is seen; `dummy`: one of it. */
-SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, struct stand_in dummy)
+/* T-110, T-110e: how much of a pair with the separation (x, y) is seen. `line`, `filled`: of the
+ * dummy that is one of it. `opaque`: lines are so beside their tips, too. */
+SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal line, vreal filled,
+                            bool opaque)
 {
     vreal clear = vset(1), seen = vset(0), passes = vset(1);
     vmask odd = {0};
@@ -242,7 +237,7 @@ SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, struct s
         const vmask crosses = CROSSES(here, there, from, to);
         vreal open = vset(0);
         /* T-110b, over the kernel's reach */
-        if (!a->opaque && (p->tip[0] < 2 || p->tip[1] - p->length < 2)) {
+        if (!opaque && (p->tip[0] < 2 || p->tip[1] - p->length < 2)) {
             const vreal along = vset(p->length) * from / (from - to);
             const vreal from_tip = vmin(vset(p->tip[0]) + along, vset(p->tip[1]) - along);
             open = vmax(vset(0), vset(1) - vset((real)0.5) * from_tip);
@@ -251,24 +246,24 @@ SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, struct s
         passes = vpick(crosses, vmin(passes, open), passes);
         if (p->line == 0) continue;
         passes = vpick(odd, passes, vset(1));
-        const vreal behind = vpick(odd, vset(1) - dummy.filled * passes, vset(0));
-        seen = vpick(dummy.line == p->line, clear * behind, seen);
+        const vreal behind = vpick(odd, vset(1) - filled * passes, vset(0));
+        seen = vpick(line == p->line, clear * behind, seen);
         clear = clear * passes;
         passes = vset(1);
         odd ^= odd;
     }
-    return vpick(dummy.line == 0, clear, seen);
+    return vpick(line == 0, clear, seen);
 }
 
 /* Vector from candidates to receivers, in units of h; and how much of these is seen, if there are
  * lines. What is hidden is out of reach for all laws. */
 SPHFSI_INLINE void separate(const struct receiver *a, uint32_t code, const real *b,
-                            struct stand_in dummy, vreal *x, vreal *y, vreal *seen)
+                            vreal line, vreal filled, bool opaque, vreal *x, vreal *y, vreal *seen)
 {
     *x = a->x[neighbour_column(code)] - lane(b, PACKED_X);
     *y = a->y[neighbour_row(code)] - lane(b, PACKED_Y);
     if (!a->piece) return;
-    *seen = visible(a, *x, *y, dummy);
+    *seen = visible(a, *x, *y, line, filled, opaque);
     *x = vpick(*seen == 0, vset((real)FAR), *x);
 }
 
@@ -277,10 +272,10 @@ struct separation {
 };
 
 SPHFSI_INLINE struct separation separation_from(const struct receiver *a, uint32_t code,
-                                                const real *b)
+                                                const real *b, bool opaque)
 {
     struct separation d;
-    separate(a, code, b, a->dummy, &d.x, &d.y, &d.seen);
+    separate(a, code, b, a->line, a->filled, opaque, &d.x, &d.y, &d.seen);
     d.length = vsqrt(vfma(d.y, d.y, d.x * d.x));
     return d;
 }
@@ -294,11 +289,11 @@ SPHFSI_INLINE vreal weight_seen(const struct receiver *a, const struct separatio
 /* Geometry of the pairs, Eq. 5, with the volume in their weight; and with the dummy that is one of
  * them, or none (T-110). */
 SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b,
-                                    vreal volume, struct stand_in dummy)
+                                    vreal volume, vreal line, vreal filled)
 {
     struct pair q;
     vreal seen = vset(1);
-    separate(a, code, b, dummy, &q.x, &q.y, &seen);
+    separate(a, code, b, line, filled, false, &q.x, &q.y, &seen);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
     q.weight = (volume * t) * (t * t);

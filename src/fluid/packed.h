@@ -169,7 +169,7 @@ SPHFSI_INLINE void sum_slopes(const struct neighbours *neighbours, const struct 
     vreal sum[SLOPE_SUMS][PARTS] = {{{0}}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        const struct separation d = separation_from(a, code, b);
+        const struct separation d = separation_from(a, code, b, false);
         const vreal w = weight_seen(a, &d, gradient_weight(&d, b));
         const vreal step = w * (a->dens - lane(b, PACKED_DENS));
         sum[SLOPE_XX][part] = vfma(w * d.x, d.x, sum[SLOPE_XX][part]);

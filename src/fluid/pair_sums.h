@@ -30,9 +30,9 @@ SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
 /* Pairs with the volumes of both sides, as struct pair_terms has them, and the pressure of the
  * candidates. */
 SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b,
-                                       struct stand_in dummy)
+                                       vreal line, vreal filled)
 {
-    struct pair q = pair_load(a, code, b, a->volume * lane(b, PACKED_VOLUME), dummy);
+    struct pair q = pair_load(a, code, b, a->volume * lane(b, PACKED_VOLUME), line, filled);
     q.p = lane(b, PACKED_P);
     return q;
 }
@@ -43,7 +43,7 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
                                               const real *b, const struct vector_constants *k,
                                               struct pair_set effects, vreal *approach)
 {
-    struct pair_terms e = {.pair = pair_between(a, code, b, a->dummy)};
+    struct pair_terms e = {.pair = pair_between(a, code, b, vset(0), vset(0))};
     struct pair *const q = &e.pair;
     e.rate = law_continuity(q);
     vreal stress = law_pressure(a, q), inv;
@@ -118,10 +118,9 @@ SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t
                                               const real *b, const struct vector_constants *k,
                                               struct pair_set effects, vreal *approach)
 {
-    struct stand_in dummy = a->dummy;
-    if (PAIR_HAS(effects, THIN))
-        dummy = (struct stand_in){lane(b, PACKED_LINE), lane(b, PACKED_FILLED)};
-    struct pair_terms e = {.pair = pair_between(a, code, b, dummy)};
+    const vreal line = PAIR_HAS(effects, THIN) ? lane(b, PACKED_LINE) : vset(0);
+    const vreal filled = PAIR_HAS(effects, THIN) ? lane(b, PACKED_FILLED) : vset(0);
+    struct pair_terms e = {.pair = pair_between(a, code, b, line, filled)};
     struct pair *const q = &e.pair;
     e.rate = PAIR_HAS(effects, ONE_SIDED) ? law_one_sided_rate(q) : law_continuity(q);
     const vreal inv = vset(1) / (q->r2 + k->eta2);
