@@ -104,7 +104,7 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     known && k == (int)binding ? "  <- limits the step" : "");
     }
     if (sim->stiffest)
-        session_say(o, "  this is the step of [spring %s]; a softer one lengthens it",
+        session_say(o, "  the step `solid` is that of [spring %s]; a softer one lengthens it",
                     scene->spring[sim->stiffest - 1].common.name);
     if (sim->kind[KIND_SOLID].n == 0) return;
     session_say(o, "  stable step of the solid: %.4g s", sim->dt_solid);

@@ -221,11 +221,12 @@ static void warn_of_motion(struct check *check, const struct body *b)
             sharpest = max2(sharpest, elementary_hypot(moved.a[0], moved.a[1]));
         }
     }
-    const double step = scene->numerics.cfl * scene->h / scene->c0;
+    const double step = scene->numerics.fixed_step > 0 ? scene->numerics.fixed_step
+                                                       : scene->numerics.cfl * scene->h / scene->c0;
     if (scene->n_fluid > 0 && sharpest * step > largest)
         warn_at(check->diag, scene, scene->motion[motion].common.line,
                 "[motion %s] changes its velocity of %.3g m/s within %.2g s, but a time step is "
-                "about %.2g s; use a slower change, or a smaller numerics.cfl",
+                "about %.2g s; use a slower change, or a smaller step (numerics.cfl, fixed_step)",
                 scene->motion[motion].common.name, largest, largest / sharpest, step);
     warn_of_speed(check, scene->motion[motion].common.line, largest, "[motion %s] moves %s at",
                   scene->motion[motion].common.name, section_title(b->common).text);

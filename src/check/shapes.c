@@ -202,8 +202,8 @@ static void warn_of_thick_beam(struct check *check, const struct scene_beam *bea
     const double across = beam->thickness / check->scene->top.dp;
     if (check->scene->n_fluid && across >= 4 * (1 - 1e-9))
         warn_section(check, &beam->common,
-                     "is %g m thick, %.0f particles, but the fluid sees a line without thickness, "
-                     "so its drag may be too small and its swings too large; use a [solid]",
+                     "is %g m thick, %.0f particles, but fluid sees a line without thickness, so "
+                     "drag may be too small and swings in a flow too large; use a [solid] there",
                      beam->thickness, across);
 }
 

@@ -42,8 +42,14 @@ struct slice {
 
 enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 
-/* Coordinates that can be used: none; x and y; t; these three; e. */
-enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH, EXPR_IN_ELONGATION };
+/* Coordinates that can be used, as bits: none; x and y; t; these three; e. */
+enum expr_scope {
+    EXPR_FIXED,
+    EXPR_IN_SPACE = 1,
+    EXPR_IN_TIME = 2,
+    EXPR_IN_BOTH = EXPR_IN_SPACE | EXPR_IN_TIME,
+    EXPR_IN_ELONGATION = 4
+};
 
 /* A function by n rows of an argument x, which increases, and a value y. */
 struct expr_table {

@@ -105,7 +105,7 @@ void rigid_push(struct rigid *rigid, int k, const struct motion_state *m, const 
 /* The force of this time acts for dt: the published motion changes. */
 void rigid_kick(struct rigid *rigid, double time, double dt);
 
-/* --- beams on bodies, also between these two (beam/joints.c) --- */
+/* --- beams on bodies, also between these two (beam/bodies.c, joints.c) --- */
 
 /* Where a body is at the start of a step of dt, its velocity there, and its mean velocity in the
  * step without more forces. */

@@ -36,12 +36,14 @@ static enum err invalid(const struct simulation *sim, enum kind kind, struct fin
                         const char *cause, struct diag *d)
 {
     const struct particles *const particles = &sim->kind[kind];
+    char limit[48];
+    snprintf(limit, sizeof limit, isfinite(f.value) ? "beyond the limit of %.3g" : "not finite",
+             f.limit);
     return diag_fail(d, ERR_GUARD,
-                     "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
-                     "beyond the limit of %.3g: %s",
+                     "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, %s: %s",
                      time_text(sim).text, (long long)sim->state.steps, kind_names[kind],
                      (long long)particles->id[f.at], particles->x[f.at], particles->y[f.at],
-                     f.quantity, f.value, f.limit, cause);
+                     f.quantity, f.value, limit, cause);
 }
 
 /* Says a sentence about the present state, if `warned` is not set yet. */

@@ -55,7 +55,7 @@ to = 0.05, 0.3
 stiffness = 1000
 END
 "$sphfsi" --explain "$dir/spring.cfg" >"$dir/said" 2>/dev/null || fail "--explain of springs"
-says 'this is the step of \[spring far\]'
+says 'the step .solid. is that of \[spring far\]'
 
 # Beams that touch after the trial: contact takes a sixth of the run.
 "$sphfsi" --explain cases/beam_on_beam.cfg >"$dir/said" 2>/dev/null || fail "--explain of contact"
