@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws what a probe recorded against time, for several runs, with the references of their case.
+M1 is the monitored point of the article, a probe of its cases.
 Each column has a panel, and below it its difference from the references; tools/plot_probes.py draws
 all."""
 

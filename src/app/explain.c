@@ -3,6 +3,7 @@
 #include "app/session.h"
 #include "check/check.h"
 #include "output/report.h"
+#include "time/timestep.h"
 
 static void say_scene(const struct session *session, const struct sphfsi_options *o)
 {

@@ -7,6 +7,8 @@
 #include "output/report.h"
 #include "output/rows.h"
 #include "output/snapshot.h"
+#include "time/guards.h"
+#include "time/timestep.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
 #include "check/check.h"
 #include "geometry/load.h"
 #include "output/rows.h"
+#include "time/timestep.h"
 
 #include <stdarg.h>
 #include <stdlib.h>

@@ -99,13 +99,14 @@ static int read_numbers(struct csv *c, const char *line, double *row)
     return -1;
 }
 
-/* Names begin with a letter, a quote or a bracket, and are no number such as inf. */
+/* Names begin with a letter, a quote or a bracket, and are no number, as inf or "0.1" is. */
 static bool is_names(const char *at)
 {
+    const char *const name = at + strspn(at, "\"'([");
     char *end;
-    const double number = strtod(at, &end);
-    return (isalpha((unsigned char)*at) || strchr("\"'([", *at)) &&
-           (isfinite(number) || isalnum((unsigned char)*end));
+    strtod(name, &end);
+    return (name > at || isalpha((unsigned char)*at)) &&
+           (end == name || isalnum((unsigned char)*end) || *end == '_');
 }
 
 int csv_row(struct csv *c, double *row)

@@ -133,15 +133,15 @@ static enum err refuse_other_motion(const struct beams *beams, const struct beam
 {
     const struct scene *const scene = beams->scene;
     const int movers[] = {other->mover, held->mover};
-    struct section_title by[2] = {{"no motion"}, {"no motion"}};
+    struct section_title motion[2] = {{"no motion"}, {"no motion"}};
     if (held->row[0] >= 0 || movers[0] == movers[1]) return ERR_OK;
     for (int k = 0; k < 2; k++)
-        if (movers[k] >= 0) by[k] = section_title(&scene->motion[movers[k]].common);
+        if (movers[k] >= 0) motion[k] = section_title(&scene->motion[movers[k]].common);
     return fail_at(d, scene, other->line,
                    "[beam %s] is held at %g, %g with %s, but %s holds this point with %s; leave "
                    "one `clamp` or `hinge` out, or give both the same motion",
                    beams->beam[other->beam].given->common.name, other->X[0], other->X[1],
-                   by[0].text, scene_place(scene, held->line).text, by[1].text);
+                   motion[0].text, scene_place(scene, held->line).text, motion[1].text);
 }
 
 /* Holds the node nearest to each point: its displacements, with clamps its rotation, too. */

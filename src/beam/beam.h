@@ -99,7 +99,7 @@ struct beam_spring {
     double stiffness; /* that the longest step takes into account, at least, N/m^2 */
 };
 
-/* A force between nodes and a rigid body: of contact or a joint. */
+/* A force of contact or of a joint: on nodes and, with the opposite sign, on a rigid body. */
 struct beam_row {
     int body;        /* -1: none */
     double X[2];     /* place on the body at the start, m */
@@ -265,7 +265,7 @@ void beams_return_bodies(struct beams *beams, double dt);
 /* A part of the step: the first guess. */
 void beams_begin_bodies(struct beams *beams, double time, double dt);
 
-/* Sets the forces of contact and joints to zero, before all are added. */
+/* Sets the forces on all bodies to zero, before those of contact and joints are added. */
 void beams_clear_rows(struct beams *beams);
 /* T-107b, with all forces of the rows: what the bodies lack, which goes to `unknown`. */
 void beams_find_bodies(struct beams *beams, double dt);

@@ -147,7 +147,7 @@ void beams_return_bodies(struct beams *beams, double dt)
                                           late * dot3(W[c], body->impulse));
             to->pushed[c] += body->push[c];
         }
-        rigid_load(beams->rigid, k, body->impulse);
+        rigid_add_impulse(beams->rigid, k, body->impulse);
         beams->pushed = true;
     }
 }
@@ -181,17 +181,17 @@ void beams_find_bodies(struct beams *beams, double dt)
         struct beam_body *const body = &beams->body[k];
         const double(*const W)[3] = equations_of(beams, body)->yields;
         const double stiff = share * body->turning / (1 + 0.25 * square(body->d[2])),
-                     rest = 1 - stiff * W[2][2], by = rest > 0.1 ? stiff / rest : 0;
+                     rest = 1 - stiff * W[2][2], beta = rest > 0.1 ? stiff / rest : 0;
         for (int c = 0; c < 3; c++) {
             body->off[c] =
                 dt * body->v[c] + share * (body->a[c] + dot3(W[c], body->force)) - body->d[c];
             for (int e = 0; e < 3; e++)
-                body->yields[c][e] = share * (W[c][e] + by * W[c][2] * W[2][e]);
+                body->yields[c][e] = share * (W[c][e] + beta * W[c][2] * W[2][e]);
         }
         const double turn = body->off[2];
         for (int c = 0; c < 2 && beams->rigid->body[k].fixed; c++)
             body->off[c] = turn * W[c][2] / W[2][2];
-        for (int c = 0; c < 3; c++) body->off[c] += by * W[c][2] * turn;
+        for (int c = 0; c < 3; c++) body->off[c] += beta * W[c][2] * turn;
         memcpy(&beams->unknown[beams_body_row(beams, k)], body->off, sizeof body->off);
     }
 }

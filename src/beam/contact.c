@@ -331,7 +331,7 @@ bool beams_keep_apart(const struct beams *beams)
     for (int j = 0; j < contact->n; j++) {
         const struct beam_pair *const t = &contact->pair[j];
         if (t->gap + along_pair(beams, t) < -kept) return false;
-        if (t->row.force > 0 && !beam_row_settled(beams, &t->row, kept)) return false;
+        if (!beam_row_settled(beams, &t->row, kept)) return false;
     }
     return true;
 }

@@ -84,9 +84,9 @@ static void find_matrix(const struct beam_element *e, const struct middle *m, co
         for (int l = 0; l < 2; l++) {
             matrix[3 * k + 2][3 * l + 2] -= 0.5 * along(a, m->mean) * m->share[k] * m->share[l];
             for (int x = 0; x < 2; x++) {
-                const double by = (k ? 0.5 : -0.5) * turned[x] * m->share[l];
-                matrix[3 * k + x][3 * l + 2] += by;
-                matrix[3 * l + 2][3 * k + x] += by;
+                const double change = (k ? 0.5 : -0.5) * turned[x] * m->share[l];
+                matrix[3 * k + x][3 * l + 2] += change;
+                matrix[3 * l + 2][3 * k + x] += change;
             }
         }
 }

@@ -95,7 +95,7 @@ void beams_give_rest(struct beams *beams, double last)
         for (int c = 0; c < 3; c++)
             impulse[c] =
                 -0.5 * last * beams->state[j->node].reaction[j->component] * j->row.along[c];
-        rigid_load(beams->rigid, j->row.body, impulse);
+        rigid_add_impulse(beams->rigid, j->row.body, impulse);
     }
 }
 

@@ -108,7 +108,7 @@ static void add_resistance(struct beams *beams, int m, double dt)
 }
 
 /* Forces and matrix of all elements for the present displacements. */
-static void add_elements(struct beams *beams, double dt, struct largest *top)
+static void add_elements(struct beams *beams, double dt, struct largest *most)
 {
     envelope_clear(&beams->matrix);
     for (int k = 0; k < beams->n_nodes; k++) {
@@ -123,9 +123,9 @@ static void add_elements(struct beams *beams, double dt, struct largest *top)
         beam_force(e, &beams->start[m], (const double *[2]){at[0]->d, at[1]->d},
                    beams->line ? w : NULL, dt, force, matrix);
         for (int r = 0; r < 6; r++) at[r / 3]->force[r % 3] += force[r / 3][r % 3];
-        for (int c = 0; c < 2; c++) top->force = max2(top->force, fabs(force[1][c]));
-        top->force = max2(top->force, fabs(force[1][2]) / e->length);
-        top->rounding = max2(top->rounding, e->stiffness[0] * (1 + fabs(at[1]->x[0] / e->length) +
+        for (int c = 0; c < 2; c++) most->force = max2(most->force, fabs(force[1][c]));
+        most->force = max2(most->force, fabs(force[1][2]) / e->length);
+        most->rounding = max2(most->rounding, e->stiffness[0] * (1 + fabs(at[1]->x[0] / e->length) +
                                                                fabs(at[1]->x[1] / e->length)));
         add_matrix(beams, e, matrix);
         if (beams->line) add_resistance(beams, m, dt);
@@ -145,12 +145,12 @@ static double inertia(const struct beams *beams, int k, int c, double dt)
 /* The residual of T-104 to `unknown`, and its matrix. */
 static struct largest find_residual(struct beams *beams, double dt)
 {
-    struct largest top = {0};
-    add_elements(beams, dt, &top);
+    struct largest most = {0};
+    add_elements(beams, dt, &most);
     beams_clear_rows(beams);
     beams_add_pairs(beams);
     beams_add_joints(beams);
-    beams_add_springs(beams, dt, &top.rounding);
+    beams_add_springs(beams, dt, &most.rounding);
     memset(beams->unknown, 0, (size_t)beams->size * sizeof *beams->unknown);
     beams_find_bodies(beams, dt);
     for (int k = 0; k < beams->n_nodes; k++) {
@@ -165,9 +165,10 @@ static struct largest find_residual(struct beams *beams, double dt)
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
             beams->unknown[node->row[c]] += off;
             envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
-            top.force = max2(top.force, scale * max2(fabs(s->load[c] + s->touch[c]), fabs(push)));
-            top.force = max2(top.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
-            top.rounding = max2(top.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
+            most.force = max2(most.force, scale * max2(fabs(s->load[c] + s->touch[c]), fabs(push)));
+            most.force = max2(most.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
+            most.rounding =
+                max2(most.rounding, scale * stiff * (fabs(s->d[c]) + dt * fabs(s->v[c])));
         }
     }
     for (int k = 0; k < beams->n_nodes; k++)
@@ -175,9 +176,9 @@ static struct largest find_residual(struct beams *beams, double dt)
             const int64_t row = beams->node[k].row[c];
             const double scale = c < 2 ? 1 : 1 / beams->node[k].length;
             const double off = row >= 0 ? scale * fabs(beams->unknown[row]) : 0;
-            top.off = isfinite(off) ? max2(off, top.off) : (double)NAN;
+            most.off = isfinite(off) ? max2(off, most.off) : (double)NAN;
         }
-    return top;
+    return most;
 }
 
 static bool correct(struct beams *beams)
@@ -197,12 +198,12 @@ static bool correct(struct beams *beams)
 static bool solve(struct beams *beams, double dt)
 {
     for (int n = 0; n <= ITERATIONS; n++) {
-        const struct largest top = find_residual(beams, dt);
-        beams->residual = top.force > 0 ? top.off / top.force : 0;
-        if (top.off <= TOLERANCE * top.force + ROUNDING * top.rounding && beams_keep_apart(beams) &&
-            beams_stay_joined(beams))
+        const struct largest most = find_residual(beams, dt);
+        beams->residual = most.force > 0 ? most.off / most.force : 0;
+        if (most.off <= TOLERANCE * most.force + ROUNDING * most.rounding &&
+            beams_keep_apart(beams) && beams_stay_joined(beams))
             return true;
-        if (n == ITERATIONS || !isfinite(top.off) || envelope_factor(&beams->matrix) < 0)
+        if (n == ITERATIONS || !isfinite(most.off) || envelope_factor(&beams->matrix) < 0)
             return false;
         if (!correct(beams)) return false;
         beams->iterations++;
@@ -331,9 +332,9 @@ static int64_t count_free(const struct beams *beams)
  */
 static int64_t count_below(struct beams *beams, double omega2, bool springs)
 {
-    struct largest top = {0};
+    struct largest most = {0};
     for (int k = 0; k < beams->n_nodes; k++) memset(beams->step[k].d, 0, sizeof *beams->step[k].d);
-    add_elements(beams, (double)INFINITY, &top);
+    add_elements(beams, (double)INFINITY, &most);
     if (springs) beams_stiffen(beams);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {

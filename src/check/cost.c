@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Steps that are unstable, and settings that make a run slow. */
 #include "check/check.h"
+#include "time/timestep.h"
 
 /* The largest cfl of an integrator is that up to which a falling column of water was found stable
  * (tests/stability/column.cfg); the analysis in docs/theory.md gives the same for leapfrog.

@@ -3,6 +3,7 @@
  * it later. As a constant force over the sub-steps this pressure acts a step late. Oscillations
  * with periods between 4/3 and 4 steps then gain energy. */
 #include "coupling/coupling.h"
+#include "solid/loads.h"
 
 /* T-35f: fluid beside a body that is thinner than two of its spacings receives impulses of both
  * sides. */

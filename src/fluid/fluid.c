@@ -210,16 +210,6 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
     fluid->walls_placed = false;
 }
 
-int32_t fluid_fullest_cell(const struct cells *cells)
-{
-    int32_t fullest = 0;
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int32_t k = 0; k < cells->kind[kind].n_active; k++)
-            if (cells->kind[kind].count[cells->kind[kind].active[k]] > fullest)
-                fullest = cells->kind[kind].count[cells->kind[kind].active[k]];
-    return fullest;
-}
-
 /* The fluid's rates, chunk by chunk. */
 static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                            const struct cells *cells)

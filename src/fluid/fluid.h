@@ -240,9 +240,6 @@ void fluid_follow_density(const struct fluid *fluid, struct particles *particles
  * fluid within reach, and the reverse. */
 void fluid_find_near(struct fluid *fluid, const struct cells *cells);
 
-/* Most particles of any kind in one cell. */
-int32_t fluid_fullest_cell(const struct cells *cells);
-
 /* One evaluation: pressures, dummies, rates. The cells must have skin left (cells_skin_left). The
  * time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],

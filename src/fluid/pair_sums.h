@@ -172,8 +172,8 @@ SPHFSI_INLINE four_double own_sum(const struct cluster_sums *s, enum pair_sum wh
 /* The sum of the contributions deferred for receivers; resets it to zero for the next chunk. */
 SPHFSI_INLINE four_double take_deferred(real *at)
 {
-    four_real *const by = (four_real *)(void *)at; /* [receiver] */
-    const four_real sum = (by[0] + by[2]) + (by[1] + by[3]);
+    four_real *const sums = (four_real *)(void *)at; /* [receiver] */
+    const four_real sum = (sums[0] + sums[2]) + (sums[1] + sums[3]);
     memset(at, 0, CLUSTER * CLUSTER * sizeof *at);
     return four_widen(sum);
 }

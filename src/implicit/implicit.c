@@ -6,6 +6,7 @@
 #include <float.h>
 
 #include "implicit/stress.h"
+#include "solid/loads.h"
 
 /* A matrix is replaced when a correction with it reduces the residual less than by this factor, or
  * when dt^2 differs from its own by this fraction. It decides on the cost, not on the solution. */

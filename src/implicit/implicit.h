@@ -4,7 +4,7 @@
 #pragma once
 
 #include "implicit/envelope.h"
-#include "solid/solid.h"
+#include "solid/hinges.h"
 
 /* Particles on which the gradient at a particle depends, itself included, and its derivatives. */
 struct implicit_links {
@@ -37,9 +37,11 @@ struct implicit {
 /* Fields of the solid's scratch that hold the forces which a load step leaves out in part, N/m. */
 enum { IMPLICIT_LEFT_OUT = 4 };
 
-/* T-94: particles across a slender body, the area of all bodies over their largest extent and the
- * spacing. */
-double implicit_across(const struct solid *solid, const struct particles *particles);
+/* T-94: particles across a slender body. */
+SPHFSI_INLINE double implicit_across(const struct solid *solid, const struct particles *particles)
+{
+    return solid_thickness(solid, particles, SOLID_ALL) / solid->dp;
+}
 
 /* T-94: an implicit step costs as much as so many sub-steps. */
 SPHFSI_INLINE double implicit_pays_from(const struct solid *solid,

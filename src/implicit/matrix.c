@@ -4,6 +4,7 @@
 
 #include "base/box2.h"
 #include "implicit/implicit.h"
+#include "solid/loads.h"
 
 static const char what[] = "matrix of the solid";
 
@@ -183,17 +184,6 @@ static enum err create_matrices(const struct solid *solid, struct implicit *impl
     TRY(envelope_create(&implicit->matrix, a, 2 * implicit->n, first, d));
     add_springs(solid, implicit, particles->body, &spring);
     return ERR_OK;
-}
-
-double implicit_across(const struct solid *solid, const struct particles *particles)
-{
-    struct box2 box = box2_empty();
-    double area = 0;
-    for (int64_t i = 0; i < particles->n; i++) {
-        box2_include(&box, particles->X[i], particles->Y[i]);
-        area += square(solid->body[particles->body[i]].dp);
-    }
-    return area / (solid->dp * max2(box.high[0] - box.low[0], box.high[1] - box.low[1]));
 }
 
 enum err implicit_create(struct solid *solid, struct arena *a, const struct particles *particles,

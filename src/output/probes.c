@@ -461,9 +461,9 @@ void probes_sample(const struct probes *probes, struct simulation *sim, int file
 {
     enum need need = NEED_NOTHING;
     for (int k = 0; k < probes->n; k++) {
-        const enum need by = need_of(&probes->probe[k]);
+        const enum need wanted = need_of(&probes->probe[k]);
         const bool read = probes->probe[k].file == file && (!means || probes->probe[k].mean);
-        if (read && by > need) need = by;
+        if (read && wanted > need) need = wanted;
     }
     refresh(sim, need);
     row[0] = sim->state.time;

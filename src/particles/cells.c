@@ -300,3 +300,14 @@ void cells_rebuild(struct cells *cells, enum kind kind, struct particles *partic
     list_fill(list, particles->cell, particles->n);
     cells_measure_overhang(cells, kind, particles);
 }
+
+int32_t cells_fullest(const struct cells *cells)
+{
+    int32_t fullest = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct cell_list *const list = &cells->kind[kind];
+        for (int32_t k = 0; k < list->n_active; k++)
+            if (list->count[list->active[k]] > fullest) fullest = list->count[list->active[k]];
+    }
+    return fullest;
+}

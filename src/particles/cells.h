@@ -90,6 +90,9 @@ void cells_rebuild(struct cells *cells, enum kind kind, struct particles *partic
  * by key. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *particles, int threads);
 
+/* Most particles of any kind in one cell. */
+int32_t cells_fullest(const struct cells *cells);
+
 /* Measures the present overhang of a kind. */
 void cells_measure_overhang(struct cells *cells, enum kind kind, const struct particles *particles);
 

@@ -368,11 +368,11 @@ void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energ
 double rigid_hinge_power(const struct rigid *rigid, int k, double dt)
 {
     const struct rigid_body *const body = &rigid->body[k];
-    const double *const by = rigid->state[k].reaction;
+    const double *const reaction = rigid->state[k].reaction;
     if (body->hinge_motion < 0) return 0;
     const struct motion_point from = hinge_at(rigid, body, rigid->end - dt),
                               to = hinge_at(rigid, body, rigid->end);
-    return 0.5 * (by[0] * (from.v[0] + to.v[0]) + by[1] * (from.v[1] + to.v[1]));
+    return 0.5 * (reaction[0] * (from.v[0] + to.v[0]) + reaction[1] * (from.v[1] + to.v[1]));
 }
 
 /* What a unit of a force on an end of a spring does to it at most, 1/kg. */

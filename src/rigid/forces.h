@@ -32,7 +32,7 @@ struct rigid_equations {
     double at_start[3];               /* velocity at the time of the start */
     double change[3], faster[3];      /* of the velocity before, and delta */
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
-    double pushed[3];                 /* change by contact with solids */
+    double pushed[3];                 /* change by contact with solids and beams */
     double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */

@@ -149,7 +149,7 @@ static void velocity_by(const struct rigid_equations *eq, const double impulse[3
     }
 }
 
-void rigid_load(struct rigid *rigid, int k, const double impulse[3])
+void rigid_add_impulse(struct rigid *rigid, int k, const double impulse[3])
 {
     struct rigid_equations *const eq = &rigid->eq[k];
     double change[3];
@@ -241,7 +241,7 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
     const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) {
         velocity_by(&rigid->eq[k], rigid->body[k].pushed, rigid->eq[k].pushed);
-        rigid_load(rigid, k, rigid->body[k].pushed);
+        rigid_add_impulse(rigid, k, rigid->body[k].pushed);
     }
     rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, &step);

@@ -27,7 +27,8 @@ struct rigid_body {
     const struct hinge_point *fixed; /* a hinge in place or on a wall; NULL: none */
     int hinge_motion;                /* of this wall; -1: in place */
     double mean[3];                  /* velocity over the last step, m/s and 1/s */
-    /* Contact with solids: the force now, its impulse, and what it moves in the coming step. */
+    /* Contact with solids and beams: the force now, its impulse, and what it moves in the coming
+     * step. */
     double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
     double received, driven, passed;
@@ -113,7 +114,7 @@ void rigid_free_motion(const struct rigid *rigid, int k, double time, double dt,
                        double v[3], double mean[3]);
 
 /* Adds an impulse to those of the step. */
-void rigid_load(struct rigid *rigid, int k, const double impulse[3]);
+void rigid_add_impulse(struct rigid *rigid, int k, const double impulse[3]);
 
 /* The force of a spring at its end `to`, and where that is. */
 void rigid_spring_force(const struct rigid *rigid, int spring, double force[2], double at[2]);

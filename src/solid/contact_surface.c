@@ -4,6 +4,7 @@
 #include "solid/contact.h"
 #include "base/segment.h"
 #include "geometry/outline.h"
+#include "solid/hinges.h"
 
 /* Radius of the circle that rolls over the surface, in spacings. Four particles of a lattice cell
  * lie on a circle of 0.71, and a circle below 1 enters a slit of one missing row. Between these

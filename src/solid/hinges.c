@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Hinges of solids: forces that hold a point of a body in place or on another body (T-81). */
-#include "solid/solid.h"
+#include "solid/hinges.h"
 #include "case/params.h"
 #include "base/cholesky.h"
 #include "particles/kernel.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Loads on solids and the motion of their clamps, with their work. */
-#include "solid/solid.h"
+#include "solid/loads.h"
 #include "geometry/sampling.h"
 
 /* --- start --- */

@@ -2,6 +2,8 @@
  * Accelerations and the forces of clamps and hinges, for output. */
 
 #include "solid/contact.h"
+#include "solid/hinges.h"
+#include "solid/loads.h"
 
 /* All forces but those of clamps and hinges, as accelerations into sx, sy, with every particle
  * free. */

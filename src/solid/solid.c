@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Sets up a solid, finds its stress and forces, and takes its explicit sub-steps. */
 #include "solid/contact.h"
+#include "solid/hinges.h"
+#include "solid/loads.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {
@@ -42,19 +44,17 @@ static void join_bodies(struct solid *solid, const struct scene *scene)
                                         solid->body[k].density * solid->body[k].viscosity;
 }
 
-static void find_thickness(struct solid *solid, const struct particles *particles)
+double solid_thickness(const struct solid *solid, const struct particles *particles, int bond)
 {
-    for (int k = 0; k < solid->n_bodies; k++) {
-        struct box2 box = box2_empty();
-        double area = 0;
-        for (int64_t i = 0; i < particles->n; i++) {
-            const struct solid_body *const body = &solid->body[particles->body[i]];
-            if (body->bond != solid->body[k].bond) continue;
-            box2_include(&box, particles->X[i], particles->Y[i]);
-            area += square(body->dp);
-        }
-        solid->body[k].thickness = area / max2(box.high[0] - box.low[0], box.high[1] - box.low[1]);
+    struct box2 box = box2_empty();
+    double area = 0;
+    for (int64_t i = 0; i < particles->n; i++) {
+        const struct solid_body *const body = &solid->body[particles->body[i]];
+        if (bond != SOLID_ALL && body->bond != bond) continue;
+        box2_include(&box, particles->X[i], particles->Y[i]);
+        area += square(body->dp);
     }
+    return area / max2(box.high[0] - box.low[0], box.high[1] - box.low[1]);
 }
 
 /* Whether a body can turn freely, or has hardly any artificial viscosity, so that float is not
@@ -132,7 +132,8 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
-    find_thickness(solid, particles);
+    for (int k = 0; k < solid->n_bodies; k++)
+        solid->body[k].thickness = solid_thickness(solid, particles, solid->body[k].bond);
     const int choice = scene->numerics.solid_precision;
     const bool in_double =
         scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE || implicit ||

@@ -105,6 +105,9 @@ struct solid_sweeps {
 };
 extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
 
+/* Stands for all bodies. */
+enum { SOLID_ALL = -1 };
+
 struct solid {
     int n_bodies;
     struct solid_body *body;
@@ -161,6 +164,9 @@ SPHFSI_INLINE double solid_get(const struct solid *solid, const void *array, int
  * are set. implicit: for implicit steps, in double precision. */
 enum err solid_create(struct solid *solid, struct arena *a, const struct scene *scene,
                       struct particles *particles, bool implicit, struct diag *d) SPHFSI_CHECKED;
+
+/* Area of the bodies of a bond, or of all (SOLID_ALL), over their largest extent, m. */
+double solid_thickness(const struct solid *solid, const struct particles *particles, int bond);
 
 /* Lets n threads step a solid that is large enough; a small one keeps what it has. */
 void solid_use_threads(struct solid *solid, const struct particles *particles, int n);
@@ -247,128 +253,5 @@ double solid_von_mises(const double sigma[4]);
 
 /* Strain energy and hourglass energy of a body, or of all (SOLID_ALL), J/m; smallest det F. From
  * the results of solid_stress. */
-enum { SOLID_ALL = -1 };
 void solid_energy(const struct solid *solid, const struct particles *particles, int body,
                   double *elastic, double *hourglass, double *det_low);
-
-/* --- loads.c: loads on a part of a body, and clamps that move --- */
-
-/* One [load] section: its particles are `first` to `end` of the list. */
-struct load_region {
-    int section;
-    int64_t first, end;
-    double share;  /* of a particle in the force; or the length of surface that it represents, m */
-    double factor; /* of time, now */
-    bool varies;   /* with time, beyond `history` */
-};
-
-struct loaded {
-    int32_t particle;
-    double f[2]; /* before the factor of time, N/m */
-};
-
-struct loads {
-    const struct scene *scene;
-    int n_loads;
-    struct load_region *load;
-    int64_t n_loaded;
-    struct loaded *loaded;
-    /* Particles of clamps that move; their `free` is 1, so that they record the force on them. */
-    int64_t n_held;
-    int32_t *held;
-    double *held_power;          /* [n_held] of the clamp, W/m, */
-    double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
-    struct motion_state *motion; /* [n_solid] now */
-    int infinite;  /* a [load], counted from 1, whose force was not finite; 0: none */
-    bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
-};
-
-/* Gives a solid its loads and moving clamps: finds their particles. */
-enum err loads_create(struct solid *solid, struct arena *a, const struct scene *scene,
-                      struct particles *particles, struct diag *d) SPHFSI_CHECKED;
-
-/* Finds what the clamps do at a time. */
-void loads_move(struct loads *v, double time);
-
-/* The motion of particle i of a clamp. */
-SPHFSI_INLINE struct motion_point loads_motion(const struct loads *v,
-                                               const struct particles *particles, int64_t i)
-{
-    return motion_of_point(&v->motion[particles->body[i]], particles->X[i], particles->Y[i]);
-}
-
-/* Sets position and velocity of the particles of moving clamps at a time. By one thread. */
-void loads_place_clamps(struct loads *v, struct particles *particles, double time);
-
-/* Adds the loads to sx, sy; sets the acceleration of the particles of moving clamps to that of
- * their motion. By one thread, after all other forces. */
-void loads_forces(struct loads *v, const struct solid *solid, struct particles *particles,
-                  double time);
-
-/* Work of loads and moving clamps over a kick of dt with the last forces, J/m, from the
- * velocities before it: exactly the change of kinetic energy that they cause. Adds each body's
- * part to `on`. */
-double loads_work(const struct loads *v, const struct particles *particles, const double *vx,
-                  const double *vy, double dt, double *on);
-
-/* --- hinges.c: points that stay in place, on another body or on a wall (T-81) --- */
-
-/* A point of a body that stays in place, on another body or on a moving wall. */
-struct hinge {
-    double at[2];     /* at t = 0, m */
-    int body[2];      /* the section, and the other one; -1: not a solid */
-    int bond[2];      /* of these bodies */
-    int motion;       /* of the wall; -1: none */
-    double target[2]; /* of the last forces: velocity after their kick, or acceleration */
-    int line;
-};
-
-/* A particle around a hinge. */
-struct hinge_node {
-    int32_t particle;
-    int hinge, end;          /* end: 1 of its body, 2 of the other one */
-    double weight, inv_mass; /* negative for the other body; 0 where a clamp holds the particle */
-};
-
-struct hinges {
-    const struct scene *scene;
-    int n;
-    struct hinge *hinge;
-    int64_t n_nodes;
-    struct hinge_node *node; /* in the order of their particles */
-    double *matrix;          /* [2 n][2 n] */
-    double *force;           /* [2 n] of the last call, on the body, N/m */
-    double kick;             /* its dt */
-    bool released;           /* hinges_forces does nothing */
-};
-
-/* Gives a solid its hinges: finds the particles around each, and their weights. solid->body is set;
- * the particles of all clamps have free = 0. */
-enum err hinges_create(struct solid *solid, struct arena *a, const struct scene *scene,
-                       const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
-
-/* Removes the part of the initial velocities that hinges do not allow. */
-void hinges_start(struct hinges *hinges, struct particles *particles);
-
-/* Adds the accelerations by hinges to sx, sy, which have all others. With dt: those that lead
- * each point to its place after a kick of dt, which fluid resists or not, and a drift as long;
- * without: those by which it stays there. By one thread. */
-void hinges_forces(struct hinges *hinges, struct particles *particles, double time, double dt,
-                   bool resisted);
-
-/* As hinges_forces without dt, for accelerations `a`; adds the forces, N/m. */
-void hinges_hold(struct hinges *hinges, double *const a[2], double *const force[2], double time);
-
-/* Subtracts a field at the points of the hinges from two items of each. */
-void hinges_subtract(const struct hinges *hinges, const double *x, const double *y, double *from);
-
-/* Adds what forces at the points change in a field of velocities or accelerations. */
-void hinges_push(const struct hinges *hinges, const double *force, double *x, double *y);
-
-/* Displacement that a hinge gives its point at a time, m. */
-void hinges_place(const struct hinges *hinges, int hinge, double time, double to[2]);
-
-/* Work of hinges on moving walls over a kick of dt with the last forces, J/m, from the velocities
- * before it. Adds each body's part to `on`. */
-double hinges_work(const struct hinges *hinges, const double *vx, const double *vy, double dt,
-                   double *on);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * How fluid, solids, rigid bodies and beams advance in a step, for all integrators. */
 #include "time/advance.h"
+#include "time/timestep.h"
 
 void advance_solids(struct simulation *sim, double dt, double kick)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sums energies and work over regions, finds gains, and says what may help. */
 #include "time/simulation.h"
+#include "time/timestep.h"
 
 /* Share of a section or region in the ledger, and what only the account has. Doubles only. */
 struct energies {

@@ -4,7 +4,10 @@
 #include <float.h>
 #include <stdarg.h>
 
+#include "time/guards.h"
+#include "solid/loads.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 
 /* Values at which a warning is given; those of the fluid are in case/scene.h. */
 #define DET_WARNING 0.2  /* det F */

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The state at time zero: particles and models of a scene, and the rate of its solids. */
 #include "time/advance.h"
+#include "solid/hinges.h"
+#include "solid/loads.h"
+#include "time/timestep.h"
 
 static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_id, struct diag *d)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: its creation, the order of a step, and its continuation from a checkpoint. */
 #include "time/simulation.h"
+#include "time/guards.h"
+#include "time/timestep.h"
 
 static const struct integrator *const integrators[] = {
     [INTEGRATOR_SYMPLECTIC] = &integrator_symplectic,
@@ -129,7 +131,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         find_skin_left(sim);
         if (sim->effects & FX_COUPLING) forget_fluid(&sim->kind[KIND_SOLID]);
         if (sim->effects & FX_WALL) forget_fluid(&sim->kind[KIND_WALL]);
-        if (fluid_fullest_cell(&sim->cells) > CELL_CAPACITY)
+        if (cells_fullest(&sim->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT,
                              "the checkpoint cannot be used, because it has more than %d particles "
                              "in one cell; try an older one",

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Steps of solids and rigid bodies without fluid. */
 #include "time/advance.h"
+#include "time/guards.h"
+#include "time/timestep.h"
 
 /* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = CHECK_INTERVAL };

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * When particles are sorted into cells again, and what leaves the domain then. */
 #include "time/advance.h"
+#include "time/guards.h"
+#include "time/timestep.h"
 
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
  * one. */
@@ -57,7 +59,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) guards_warn_of_leaving(sim, d);
     fluid_find_near(&sim->fluid, &sim->cells);
     sim->state.sorts++;
-    const int32_t fullest = fluid_fullest_cell(&sim->cells);
+    const int32_t fullest = cells_fullest(&sim->cells);
     sim->cells_overfull = fullest > CELL_CAPACITY;
     find_skin_left(sim);
     if (sim->cells_overfull && sim->state.steps == 0)

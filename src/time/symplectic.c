@@ -3,6 +3,7 @@
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
 #include "time/advance.h"
+#include "time/timestep.h"
 
 static void swap_fields(double **a, double **b)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The time step: the smallest of its bounds (bounds.def), and sub-steps of the solid. */
+#include "time/timestep.h"
 #include "time/advance.h"
 
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven

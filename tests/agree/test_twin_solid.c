@@ -10,6 +10,7 @@
 
 #include "rig.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>

@@ -140,10 +140,11 @@ static void test_a_file_of_a_spreadsheet(void)
 /* Quotes as R and pandas write them; units in brackets; CR alone at the end of a line. */
 static void test_names_of_columns_and_line_ends(void)
 {
-    static const char *const first[] = {"\"t\",\"v\"\n", "(s),(m)\n", "infiltration\n", "t,d\r"};
+    static const char *const first[] = {"\"t\",\"v\"\n", "(s),(m)\n", "infiltration\n",
+                                       "inf_1\n",          "t,d\r"};
     for (size_t k = 0; k < COUNT_OF(first); k++) {
         char text[100];
-        snprintf(text, sizeof text, "%s0.1,0.01%c0.2,0.04\n", first[k], k == 3 ? '\r' : '\n');
+        snprintf(text, sizeof text, "%s0.1,0.01%c0.2,0.04\n", first[k], k == 4 ? '\r' : '\n');
         must_read(MOVES("way(t)"), text);
         expect(0.15, 0.015, 0.3, 0);
         scene_free(&scene);
@@ -171,6 +172,9 @@ static void test_bad_tables_are_refused(void)
          "test_tables.tmp:2: more than 2 columns; argument, value (or `column = 3`) are expected"},
         {"0, 0\n0.2\n", "test_tables.tmp:2: 2 numbers are expected: argument, value (or `column = "
                         "3`); here `0.2`"},
+        {"\"0\",\"0\"\n0.1, 1\n0.2, 2\n",
+         "test_tables.tmp:1: 2 numbers are expected: argument, value (or `column = 3`); here "
+         "`\"0\",\"0\"`"},
         {"inf, 0\n0.2, 1\n", "test_tables.tmp:1: 2 numbers are expected: argument, value (or "
                               "`column = 3`); here `inf, 0`"},
         {"0, 0\n0.2, nan\n", "test_tables.tmp:2: 2 numbers are expected: argument, value (or "

@@ -2,6 +2,7 @@
  * Implicit steps of solids (T-90 to T-93): the factors and the tangent, what a step conserves, the
  * period, and the work of loads and clamps. */
 #include "solid/solid.h"
+#include "solid/hinges.h"
 #include "rig.h"
 #include "implicit/implicit.h"
 #include "implicit/stress.h"

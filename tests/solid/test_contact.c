@@ -3,6 +3,7 @@
 #include "output/checkpoint.h"
 #include "rig.h"
 #include "time/energy.h"
+#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>

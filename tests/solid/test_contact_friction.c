@@ -2,6 +2,7 @@
  * Friction in contact makes no energy and turns nothing by itself (T-62c, T-62d). */
 #include "contact_rig.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 #include "time/energy.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  * clamp holds together. */
 #include "contact_rig.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 
 #include <math.h>
 

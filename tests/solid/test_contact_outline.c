@@ -3,6 +3,7 @@
  * forces on points and edges are those of a potential where both are not parallel. */
 #include "contact_rig.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 #include "time/energy.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Hinges: the point stays in place to round-off, exact periods, momentum and energy, restart. */
 #include "output/checkpoint.h"
-#include "solid/solid.h"
+#include "solid/hinges.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

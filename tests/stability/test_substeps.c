@@ -3,6 +3,7 @@
  */
 #include "rig.h"
 #include "time/advance.h"
+#include "time/timestep.h"
 #include "time/energy.h"
 #include "unity.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Fluid inside of walls: at any size, on any side of their particles, and across joined sides. */
 #include "time/advance.h"
+#include "time/guards.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -4,6 +4,7 @@
 #include "time/energy.h"
 
 #include "time/advance.h"
+#include "time/guards.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -5,6 +5,7 @@
 #include "rig.h"
 #include "coupling/coupling.h"
 #include "time/energy.h"
+#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>
