@@ -221,7 +221,7 @@ static bool time_steps(struct bench *b, struct sim *x, int rep)
     }
     if (rep < 0) return true;
     const double each =
-        1 / (double)(x->s.state.evaluations - evaluations) / (double)x->s.kind[KIND_FLUID].n;
+        1 / (double)(x->s.state.evaluations - evaluations) / (double)x->s.particles[KIND_FLUID].n;
     b->instructions[rep] = each * (counter_read(b->counter) - instructions);
     b->sample[PHASE_COUNT][rep] = 0;
     for (int p = 0; p < PHASE_COUNT; p++) {
@@ -234,7 +234,7 @@ static bool time_steps(struct bench *b, struct sim *x, int rep)
 static void print_per_particle(const struct bench *b, const struct sim *x, int threads,
                                const char *part, const char *unit, double *seconds)
 {
-    const int64_t n = x->s.kind[KIND_FLUID].n;
+    const int64_t n = x->s.particles[KIND_FLUID].n;
     for (int r = 0; r < b->reps; r++) seconds[r] *= 1e9 / (double)n;
     print_row(b, "fluid", x->s.fluid.variant->name, n, threads, part, unit, seconds);
 }
@@ -280,7 +280,7 @@ static double pairs_of(const struct simulation *sim)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct cell_list *const list = &sim->cells.kind[KIND_FLUID];
+    const struct cell_list *const list = &sim->cells.list[KIND_FLUID];
     const struct cluster_boxes *const boxes = &sim->fluid.packed[KIND_FLUID].boxes;
     const int32_t n = list->n_active;
     int64_t clusters = 0;
@@ -295,7 +295,7 @@ static double pairs_of(const struct simulation *sim)
             }
         }
     }
-    return (double)(clusters * CLUSTER * CLUSTER) / (double)sim->kind[KIND_FLUID].n;
+    return (double)(clusters * CLUSTER * CLUSTER) / (double)sim->particles[KIND_FLUID].n;
 }
 
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
@@ -308,7 +308,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     if (!sim_open(&x, text)) return;
     bool sound = true;
     for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r);
-    const int64_t count = x.s.kind[KIND_FLUID].n;
+    const int64_t count = x.s.particles[KIND_FLUID].n;
     const char *const variant = x.s.fluid.variant->name;
     for (size_t k = 0; sound && k < COUNT_OF(parts); k++)
         print_row(b, "fluid", variant, count, threads, phase_table[parts[k]].name,
@@ -343,7 +343,7 @@ static void bench_solid(struct bench *b, const char *form, const char *precision
              precision,
              strcmp(form, "paper") == 0 ? "gradient = linear\nhourglass_form = printed\n" : "");
     if (!sim_open(&x, text)) return;
-    struct particles *const particles = &x.s.kind[KIND_SOLID];
+    struct particles *const particles = &x.s.particles[KIND_SOLID];
     x.s.solid.centred = false;
     for (int r = -1; r < b->reps; r++) {
         const double start = wall_clock();

@@ -205,7 +205,7 @@ static void sort_clusters(void) { cells_sort(&grid, KIND_FLUID, &kinds[KIND_FLUI
 
 static void fill_clusters(void)
 {
-    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const struct cell_list *const listed = &grid.list[KIND_FLUID];
     const struct particles *const particles = &kinds[KIND_FLUID];
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
@@ -265,7 +265,7 @@ static void sweep_clusters(void)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const struct cell_list *const listed = &grid.list[KIND_FLUID];
     full_pairs = 0;
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
@@ -311,7 +311,7 @@ static void chunk_receivers(const struct cluster_list *near, size_t before, int3
 /* Adds the deferred sums of the m-th cluster of a cell to its own sums. */
 static void chunk_cluster(const struct cluster_list *near, size_t before, int32_t cell, int32_t m)
 {
-    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const struct cell_list *const listed = &grid.list[KIND_FLUID];
     const int32_t cluster = listed->cluster[cell] + m, i = listed->start[cell] + m * CLUSTER;
     float own[3][CLUSTER];
     for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT) {
@@ -334,7 +334,7 @@ static void sweep_chunks(void)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
-    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const struct cell_list *const listed = &grid.list[KIND_FLUID];
     const int32_t n = listed->n_active;
     half_pairs = 0;
     for (int32_t chunk = 0; chunk < fluid_chunk_count(n); chunk++) {

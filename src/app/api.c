@@ -189,7 +189,7 @@ int64_t sphfsi_steps(const struct sphfsi_simulation *handle)
 
 int64_t sphfsi_count(const struct sphfsi_simulation *handle, enum sphfsi_kind kind)
 {
-    return handle && (unsigned)kind < KIND_COUNT ? handle->session.simulation.kind[kind].n : 0;
+    return handle && (unsigned)kind < KIND_COUNT ? handle->session.simulation.particles[kind].n : 0;
 }
 
 uint64_t sphfsi_hash(struct sphfsi_simulation *handle)
@@ -216,7 +216,7 @@ static const struct {
 
 static bool has_file_field(const struct simulation *sim, enum kind kind, enum data what)
 {
-    const struct particles *const particles = &sim->kind[kind];
+    const struct particles *const particles = &sim->particles[kind];
     const bool solid = kind == KIND_SOLID;
     switch (what) {
     case D_VELOCITY: return true;
@@ -238,9 +238,10 @@ static bool has_file_field(const struct simulation *sim, enum kind kind, enum da
 /* The name of the k-th field of a kind, first the arrays of particles; NULL behind the last. */
 static const char *field_name(const struct simulation *sim, enum kind kind, int k)
 {
-    if (sim->kind[kind].capacity == 0) return NULL;
+    if (sim->particles[kind].capacity == 0) return NULL;
     for (int f = 0; f < field_count; f++)
-        if (field_array(&sim->kind[kind], &field_table[f]) && k-- == 0) return field_table[f].name;
+        if (field_array(&sim->particles[kind], &field_table[f]) && k-- == 0)
+            return field_table[f].name;
     for (size_t f = 0; f < COUNT_OF(file_field); f++)
         if (has_file_field(sim, kind, file_field[f].what) && k-- == 0) return file_field[f].name;
     return NULL;
@@ -255,7 +256,7 @@ const char *sphfsi_field_name(const struct sphfsi_simulation *handle, enum sphfs
 static bool view_array(struct simulation *sim, enum kind kind, const char *name,
                        struct sphfsi_view *view)
 {
-    const struct particles *const particles = &sim->kind[kind];
+    const struct particles *const particles = &sim->particles[kind];
     for (int k = 0; k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         if (strcmp(f->name, name) != 0 || !field_array(particles, f)) continue;
@@ -264,9 +265,9 @@ static bool view_array(struct simulation *sim, enum kind kind, const char *name,
             (kind == KIND_WALL ? simulation_wall_forces : simulation_refresh)(sim);
         const void *const data = field_array(particles, f); /* integrators exchange arrays */
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
-            solid_write_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+            solid_write_stress(&sim->solid, &sim->particles[KIND_SOLID]);
         if (kind == KIND_FLUID && data == particles->p)
-            fluid_write_pressure(&sim->fluid, &sim->kind[KIND_FLUID]);
+            fluid_write_pressure(&sim->fluid, &sim->particles[KIND_FLUID]);
         const enum sphfsi_type type = strcmp(f->type, "double") == 0 ? SPHFSI_DOUBLE
                                       : f->size == 8                 ? SPHFSI_INT64
                                                                      : SPHFSI_INT32;
@@ -281,10 +282,10 @@ static enum err compute(struct sphfsi_simulation *handle, enum kind kind, const 
 {
     struct simulation *const sim = &handle->session.simulation;
     double **const to = &handle->computed[kind][what];
-    const size_t capacity = (size_t)sim->kind[kind].capacity * (size_t)width;
+    const size_t capacity = (size_t)sim->particles[kind].capacity * (size_t)width;
     if (!*to) TRY(arena_array(&sim->arena, to, capacity, name, d));
     simulation_refresh(sim);
-    for (int64_t i = 0; i < sim->kind[kind].n; i++)
+    for (int64_t i = 0; i < sim->particles[kind].n; i++)
         for (int c = 0; c < width; c++)
             (*to)[i * width + c] = snapshot_value(what, sim, kind, i, c);
     return ERR_OK;
@@ -300,7 +301,7 @@ static enum err view_computed(struct sphfsi_simulation *handle, enum kind kind, 
         const int width = file_field[k].width;
         TRY(compute(handle, kind, name, what, width, d));
         *view = (struct sphfsi_view){
-            handle->computed[kind][what], sim->kind[kind].n,    SPHFSI_DOUBLE, width,
+            handle->computed[kind][what], sim->particles[kind].n, SPHFSI_DOUBLE, width,
             file_field[k].unit,           "as in fields.vtkhdf"};
         return ERR_OK;
     }
@@ -391,7 +392,7 @@ static enum err set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kin
                           sphfsi_force *force, void *context, struct diag *d)
 {
     struct simulation *const sim = &handle->session.simulation;
-    if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
+    if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->particles[kind].capacity == 0)
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     handle->force[kind] = (struct user_function){.of = handle, .force = force, .context = context};

@@ -15,7 +15,7 @@ static void say_scene(const struct session *session, const struct sphfsi_options
         session_say(o, "  speed of sound %g m/s, density %g kg/m^3", scene->c0, scene->rho0);
     for (int k = 0; k < KIND_COUNT; k++)
         session_say(o, "  %-6s %10lld particles", kind_names[k],
-                    (long long)session->simulation.kind[k].n);
+                    (long long)session->simulation.particles[k].n);
 }
 
 /* How bodies are sampled where the lattice is not simply the common one. */
@@ -60,7 +60,7 @@ static void say_fields(const struct simulation *sim, const struct sphfsi_options
 {
     session_say(o, "memory");
     for (int k = 0; k < KIND_COUNT; k++) {
-        const struct particles *particles = &sim->kind[k];
+        const struct particles *particles = &sim->particles[k];
         if (particles->capacity == 0) continue;
         const size_t bytes = particles_bytes(particles);
         session_say(o, "  %-6s %.3g MB, %zu bytes per particle", kind_names[k],
@@ -107,7 +107,7 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
     if (sim->stiffest)
         session_say(o, "  the step `solid` is that of [spring %s]; a softer one lengthens it",
                     scene->spring[sim->stiffest - 1].common.name);
-    if (sim->kind[KIND_SOLID].n == 0) return;
+    if (sim->particles[KIND_SOLID].n == 0) return;
     session_say(o, "  stable step of the solid: %.4g s", sim->dt_solid);
     if (sim->effects & FX_COUPLING)
         session_say(o, "  %d solid sub-step%s in each fluid step", sim->substeps,
@@ -117,8 +117,8 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
                     "  sub-steps alone: %.0f in each fluid step; an implicit step costs as much as "
                     "%.0f sub-steps for bodies %.3g particles across (T-94)",
                     ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
-                    implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]),
-                    implicit_across(&sim->solid, &sim->kind[KIND_SOLID]));
+                    implicit_pays_from(&sim->solid, &sim->particles[KIND_SOLID]),
+                    implicit_across(&sim->solid, &sim->particles[KIND_SOLID]));
     if (sim->solid.implicit && sim->effects & FX_CONTACT)
         session_say(o, "  while surfaces are near each other: sub-steps, because the springs of "
                        "contact are not in the matrix");
@@ -200,7 +200,7 @@ static enum err explain_text(struct session *session, const struct sphfsi_option
                 param_choice(param_find(SECTION_top, "scheme"), top->scheme).text,
                 param_choice(param_find(SECTION_top, "integrator"), top->integrator).text,
                 param_choice(param_find(SECTION_top, "precision"), top->precision).text,
-                sim->kind[KIND_FLUID].n > 0 ? sim->fluid.variant->name : "none",
+                sim->particles[KIND_FLUID].n > 0 ? sim->fluid.variant->name : "none",
                 sim->solid.sweeps ? sim->solid.sweeps->name : "none");
     return say_trial(session, o, d);
 }
@@ -216,7 +216,7 @@ static void write_scene(struct json *j, const struct session *session)
     json_number(j, "end_time", scene->top.end_time);
     json_open(j, "particles", '{');
     for (int k = 0; k < KIND_COUNT; k++)
-        json_integer(j, kind_names[k], session->simulation.kind[k].n);
+        json_integer(j, kind_names[k], session->simulation.particles[k].n);
     json_close(j, '}');
 }
 
@@ -228,7 +228,7 @@ static void write_bounds(struct json *j, const struct simulation *sim)
         if (is_known(sim, (enum bound)k)) json_number(j, bound_table[k].name, sim->dt_bound[k]);
     json_close(j, '}');
     json_text(j, "time_step_bound", is_known(sim, binding) ? bound_table[binding].name : "none");
-    if (sim->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);
+    if (sim->particles[KIND_SOLID].n > 0) json_number(j, "solid_time_step", sim->dt_solid);
 }
 
 static void write_cost(struct json *j, const struct simulation *sim, const struct forecast *f)

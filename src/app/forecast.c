@@ -63,7 +63,7 @@ static bool goes_on(const struct simulation *sim, double until)
 {
     const int64_t n_start = sim->scene->points[KIND_FLUID].n;
     return sim->state.time < min2(until, sim->scene->top.end_time) &&
-           2 * sim->kind[KIND_FLUID].n >= n_start;
+           2 * sim->particles[KIND_FLUID].n >= n_start;
 }
 
 /* A guard that stops the run after its first steps is not reported: the run will do it. */
@@ -269,8 +269,8 @@ static double disk_bytes(const struct simulation *sim)
     const struct scene_output *const out = &sim->scene->output;
     double particles = 0, state = 0;
     for (int k = 0; k < KIND_COUNT; k++) {
-        particles += (double)sim->kind[k].n;
-        state += (double)particles_bytes(&sim->kind[k]);
+        particles += (double)sim->particles[k].n;
+        state += (double)particles_bytes(&sim->particles[k]);
     }
     const double end = sim->scene->top.end_time;
     double rows = end / out->ledger_interval * 12;
@@ -289,8 +289,8 @@ enum err forecast_run(struct forecast *f, struct session *session, const struct 
     TRY(follow_rows(sim, d));
     TRY(take_first_steps(sim, d));
     TRY(measure(&trial, sim, end, trial_seconds, d));
-    const double n_fluid = (double)sim->kind[KIND_FLUID].n,
-                 n_solid = (double)sim->kind[KIND_SOLID].n;
+    const double n_fluid = (double)sim->particles[KIND_FLUID].n,
+                 n_solid = (double)sim->particles[KIND_SOLID].n;
     if (trial.amount[TIME] == 0) trial = so_far(sim); /* the first steps were the run */
     const int threads = thread_count();
     extend(f, &run, &trial, session, o);

@@ -41,12 +41,12 @@ void beam_force(const struct beam_element *e, const struct beam_start *start,
 /* What a run carries from step to step, for each node: x, y and angle each. Doubles only: saved as
  * such. */
 struct beam_state {
-    double x[3]; /* displacement, m, and counter-clockwise rotation, rad */
-    double v[3]; /* velocity, m/s and 1/s */
-    double w[3]; /* its mean over the last step, which the fluid uses */
-    double a[3]; /* change of v over the last step; in fluid the mean of T-35c of that of w */
-    double impulse[3];    /* that the fluid has still to receive, N s/m and N s (T-105b) */
-    double pushed[3];     /* mean of the fluid's force (T-36a), N/m and N */
+    double x[3];       /* displacement, m, and counter-clockwise rotation, rad */
+    double v[3];       /* velocity, m/s and 1/s */
+    double w[3];       /* its mean over the last step, which the fluid uses */
+    double a[3];       /* change of v over the last step; in fluid the mean of T-35c of that of w */
+    double impulse[3]; /* that the fluid has still to receive, N s/m and N s (T-105b) */
+    double pushed[3];  /* mean of the fluid's force (T-36a), N/m and N */
     double exchange_time; /* time T_e in which the fluid receives the impulse (T-35e), s */
     double reaction[3];   /* of a clamp or hinge in the last step, N/m and N */
 };

@@ -143,8 +143,8 @@ void beams_return_bodies(struct beams *beams, double dt)
         for (int c = 0; c < 3; c++) acts |= body->impulse[c] != 0 || body->push[c] != 0;
         if (!acts) continue;
         for (int c = 0; c < 3; c++) {
-            to->moved[c] += body->x[c] - (body->from[c] + dt * body->mean[c] +
-                                          late * dot3(W[c], body->impulse));
+            to->moved[c] += body->x[c] -
+                            (body->from[c] + dt * body->mean[c] + late * dot3(W[c], body->impulse));
             to->pushed[c] += body->push[c];
         }
         rigid_add_impulse(beams->rigid, k, body->impulse);

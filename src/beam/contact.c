@@ -255,9 +255,9 @@ static void pair_element(struct beams *beams, int element, int wall, const doubl
     const double at_start =
         nearest_of(X, beams->node[node[0]].X, beams->node[node[1]].X, 0).distance;
     struct beam_pair t = {.n = k < 0 ? 2 : 3,
-                           .node = {node[0], node[1], k < 0 ? 0 : k},
-                           .part = {1 - now.part, now.part, -1},
-                           .row.e = {-now.normal[0], -now.normal[1]}};
+                          .node = {node[0], node[1], k < 0 ? 0 : k},
+                          .part = {1 - now.part, now.part, -1},
+                          .row.e = {-now.normal[0], -now.normal[1]}};
     for (int c = 0; c < 2; c++) t.moved += t.row.e[c] * moved[c];
     t.gap = max2(0, now.distance - least_distance(thick, layer, at_start)) - t.moved;
     add_pair(beams, &t, wall, at);

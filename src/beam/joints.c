@@ -176,8 +176,7 @@ static double *column_at(const struct beams *beams, int n)
 }
 
 /* How far a vector of displacements brings a node from its place on the body. */
-static double opened_by(const struct beams *beams, const struct beam_joint *j,
-                        const double *vector)
+static double opened_by(const struct beams *beams, const struct beam_joint *j, const double *vector)
 {
     return vector[j->unknown] - beam_row_moved_by(beams, &j->row, vector);
 }

@@ -126,7 +126,7 @@ static void add_elements(struct beams *beams, double dt, struct largest *most)
         for (int c = 0; c < 2; c++) most->force = max2(most->force, fabs(force[1][c]));
         most->force = max2(most->force, fabs(force[1][2]) / e->length);
         most->rounding = max2(most->rounding, e->stiffness[0] * (1 + fabs(at[1]->x[0] / e->length) +
-                                                               fabs(at[1]->x[1] / e->length)));
+                                                                 fabs(at[1]->x[1] / e->length)));
         add_matrix(beams, e, matrix);
         if (beams->line) add_resistance(beams, m, dt);
     }
@@ -367,9 +367,8 @@ double beams_longest_step(struct beams *beams)
                             count_below(beams, low, true)};
     while (high > 1.01 * low) {
         const double middle = sqrt(low * high);
-        const bool above =
-            count_below(beams, middle, false) > free[0] &&
-            (beams->n_springs == 0 || count_below(beams, middle, true) > free[1]);
+        const bool above = count_below(beams, middle, false) > free[0] &&
+                           (beams->n_springs == 0 || count_below(beams, middle, true) > free[1]);
         *(above ? &high : &low) = middle;
     }
     for (int k = 0; k < beams->n_springs; k++) beams_set_stiffness(beams, k, high);

@@ -44,7 +44,7 @@ static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
 static void warn_of_damping(const struct simulation *sim, struct diag *d)
 {
     const double free = solid_step_of(square(sim->solid.omega_max), 0);
-    if (sim->kind[KIND_SOLID].n == 0 || sim->solid.implicit ||
+    if (sim->particles[KIND_SOLID].n == 0 || sim->solid.implicit ||
         !(sim->solid.stable_step < 0.5 * free))
         return;
     for (int k = 0; k < sim->scene->n_solid; k++) {

@@ -40,12 +40,12 @@ void coupling_find_wall_forces(const struct coupling *coupling, struct particles
     find_forces_on(coupling, &kinds[KIND_WALL], KIND_WALL, cells, true);
 }
 
-/* T-36a: the pressure's part of the force that the fluid gets for `kick`. */
-static void extrapolate_forces(struct coupling *coupling, double dt, double kick, bool first)
+/* T-36a: the pressure's part of the force that the fluid gets for `rates_time`. */
+static void extrapolate_forces(struct coupling *coupling, double dt, double rates_time, bool first)
 {
     struct particles *const particles = coupling->particles;
     const struct force_weights weights =
-        force_weights(kick / dt, coupling->lead / dt, particles->interface_pressure_next);
+        force_weights(rates_time / dt, coupling->lead / dt, particles->interface_pressure_next);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double fx = particles->fx[i], fy = particles->fy[i];
@@ -118,16 +118,16 @@ void coupling_predict(struct coupling *coupling, double dt)
     predict_motion(coupling, coupling->stage * dt);
 }
 
-double coupling_advance(struct coupling *coupling, double dt, int n, double kick, bool first)
+double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time, bool first)
 {
     struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
-    if (impedance) impulse_return(coupling, kick);
+    if (impedance) impulse_return(coupling, rates_time);
     if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* no predictor */
     const double middle = 0.5 * (coupling->solid->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->stage * dt;
-    if (particles->mean_fx) extrapolate_forces(coupling, dt, kick, first);
-    /* The state at the start gives the mean velocity and acceleration of the step. */
+    if (particles->mean_fx) extrapolate_forces(coupling, dt, rates_time, first);
+        /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x0[i] = particles->ux[i];

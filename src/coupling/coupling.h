@@ -44,9 +44,9 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 /* With a predictor and sub-steps, before its evaluation: moves the structure ahead. */
 void coupling_predict(struct coupling *coupling, double dt);
 
-/* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
+/* After the evaluation, whose rates act for `rates_time`: n sub-steps of the structure.
  * `first`: no step was before. Returns the largest displacement of a particle, m. */
-double coupling_advance(struct coupling *coupling, double dt, int n, double kick, bool first);
+double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time, bool first);
 
 /* --- velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
 
@@ -94,8 +94,8 @@ void impulse_end(struct coupling *coupling);
 /* A kick and drift of sub-steps with T-35a. */
 solid_kick impedance_kick;
 
-/* T-35b: after an evaluation whose rates act for `kick`. */
-void impulse_return(struct coupling *coupling, double kick);
+/* T-35b: after an evaluation whose rates act for `rates_time`. */
+void impulse_return(struct coupling *coupling, double rates_time);
 
 /* T-35e: the exchange time follows the steps, here one of dt. */
 void impulse_set_time(struct coupling *coupling, double dt);

@@ -29,8 +29,7 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        const struct pair q =
-            pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
+        const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
         const vreal weight = law_laminar(&q, k);
         sum_x[part] = vfma(weight, q.u, sum_x[part]);
         sum_y[part] = vfma(weight, q.v, sum_y[part]);
@@ -52,8 +51,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        struct pair q =
-            pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
+        struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
         q.p = lane(b, PACKED_P);
         vreal stress = law_pressure(s, &q);
         if (effects & FX_ONE_SIDED)
@@ -71,8 +69,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
         wet_y[part] = vfma(q.weight, q.y, wet_y[part]);
     }
     add_force(sum_x, sum_y, PAIR_SLOPE * fluid->k.h, volume, force[0], force[1]);
-    if (wetted)
-        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);
+    if (wetted) add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);
 }
 
 /* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed
@@ -117,7 +114,7 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
                                  const struct vector_constants *k, effect_set effects, bool wetted,
                                  bool thin)
 {
-    const struct cell_list *const list = &cells->kind[kind];
+    const struct cell_list *const list = &cells->list[kind];
     struct neighbour_scratch *const scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
     bool gathered = false;

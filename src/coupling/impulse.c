@@ -101,10 +101,10 @@ void impulse_end(struct coupling *coupling)
 
 /* The force on the body contains the pressure that gave the fluid a part of the impulse. The
  * body has had that part in its sub-steps: it is taken off the force, and off the impulse. */
-void impulse_return(struct coupling *coupling, double kick)
+void impulse_return(struct coupling *coupling, double rates_time)
 {
     struct particles *const particles = coupling->particles;
-    const double per_time = 1 / *coupling->exchange_time, left = 1 - kick * per_time;
+    const double per_time = 1 / *coupling->exchange_time, left = 1 - rates_time * per_time;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double later =
@@ -115,8 +115,8 @@ void impulse_return(struct coupling *coupling, double kick)
             per_time * particles->interface_impulse_y[i] - later * particles->wet_y[i];
         particles->fx[i] -= fx;
         particles->fy[i] -= fy;
-        particles->interface_impulse_x[i] -= kick * fx;
-        particles->interface_impulse_y[i] -= kick * fy;
+        particles->interface_impulse_x[i] -= rates_time * fx;
+        particles->interface_impulse_y[i] -= rates_time * fy;
         particles->interface_pressure[i] *= left;
     }
 }

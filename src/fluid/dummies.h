@@ -211,7 +211,7 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
 SPHFSI_INLINE struct dummy_cluster dummies_at(const struct fluid *fluid, const struct cells *cells,
                                               enum kind kind, int32_t cell, int32_t m)
 {
-    const struct cell_list *const list = &cells->kind[kind];
+    const struct cell_list *const list = &cells->list[kind];
     const size_t cluster = (size_t)list->cluster[cell] + (size_t)m;
     return (struct dummy_cluster){kind, particles_in(list, cell, m),
                                   &list->order[list->start[cell] + m * CLUSTER], cluster,
@@ -273,7 +273,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
 {
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
-    const int32_t clusters = clusters_in(&cells->kind[kind], cell);
+    const int32_t clusters = clusters_in(&cells->list[kind], cell);
     static const double none[CLUSTER] = {0};
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY]; /* of the clusters near fluid */
     int32_t wet[CELL_CAPACITY / CLUSTER], n = 0;

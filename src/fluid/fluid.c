@@ -171,7 +171,7 @@ static bool mark_around(const struct cells *cells, int32_t cell, bool *near_dumm
             const int32_t other = cell_at(cells, x, y);
             if (other < 0) continue;
             near_dummies[other] = true;
-            wet |= cells->kind[KIND_FLUID].count[other] > 0;
+            wet |= cells->list[KIND_FLUID].count[other] > 0;
         }
     }
     return wet;
@@ -180,7 +180,7 @@ static bool mark_around(const struct cells *cells, int32_t cell, bool *near_dumm
 /* The cells around those of fluid, chunk by chunk. */
 static void find_around(struct fluid *fluid, const struct cells *cells)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const int32_t chunks = fluid_chunk_count(list->n_active);
 #pragma omp parallel for schedule(static)
     for (int32_t m = 0; m < chunks; m++) {
@@ -197,7 +197,7 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
 {
     find_around(fluid, cells);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const struct cell_list *list = &cells->kind[kind];
+        const struct cell_list *list = &cells->list[kind];
         bool *const near_dummies = fluid->near_dummies[kind];
         int32_t n = 0;
         if (!near_dummies) continue;
@@ -214,7 +214,7 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
 static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                            const struct cells *cells)
 {
-    const int32_t n_active = cells->kind[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
+    const int32_t n_active = cells->list[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(fluid->threads) \
     reduction(max                                                     \

@@ -177,7 +177,7 @@ struct neighbour_scratch {
 struct fluid {
     struct fluid_constants k;
     effect_set effects; /* of the simulation: a copy, since sweeps test them for each cluster */
-    bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
+    bool never_skip;    /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
     double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
     bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
@@ -257,8 +257,8 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
 {
     if (!(fluid->effects & FX_THIN)) return 1;
     const int32_t own = fluid_line_of(fluid, kind, i);
-    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
-                      (const double[]){x, y}, own, own ? fluid->lines.filled[i] : 0);
+    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from, (const double[]){x, y},
+                      own, own ? fluid->lines.filled[i] : 0);
 }
 
 /* repulsion.c: energy that walls and structures have stored by repelling each section of fluid

@@ -54,7 +54,7 @@ SPHFSI_INLINE void state_across(const struct open *o, const double at[2], bool f
 {
     const struct cells *const cells = o->cells;
     const struct particles *const particles = o->particles;
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const struct cell_window window = cells_window(cells, at, KERNEL_REACH * o->k->h);
     four_double s[S_SUMS] = {{0}};
     for (int m = 0; m < window.n[0] * window.n[1]; m++) {

@@ -121,7 +121,7 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *pa
                              const struct particles *particles, const struct cells *cells,
                              int32_t cell)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const struct packed_fields *const packed = &fluid->packed[KIND_FLUID];
     const double centre[2] = {cell_centre_x(cells, cell), cell_centre_y(cells, cell)};
     const int32_t count = list->count[cell];
@@ -144,11 +144,11 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *pa
 static void SWEEP(packed)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    const int32_t n = cells->kind[KIND_FLUID].n_active;
+    const int32_t n = cells->list[KIND_FLUID].n_active;
     const struct packing packing = packing_of(fluid);
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < n; k++)
-        pack_cell(fluid, &packing, &kinds[KIND_FLUID], cells, cells->kind[KIND_FLUID].active[k]);
+        pack_cell(fluid, &packing, &kinds[KIND_FLUID], cells, cells->list[KIND_FLUID].active[k]);
 }
 
 /* V t^3 of the candidates. */
@@ -201,7 +201,7 @@ SPHFSI_INLINE void slopes_from(real sum[SLOPE_SUMS][CLUSTER], four_double slope[
 SPHFSI_INLINE void slopes_of_cell(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t cell, bool thin)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell, thin);
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
@@ -229,7 +229,7 @@ SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct p
                                        const struct particles *particles, const struct cells *cells,
                                        int32_t cell)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     for (int32_t m = 0; m < clusters_in(list, cell); m++)
         pack_slopes(packing, particles, list->start[cell] + m * CLUSTER,
                     cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m)));
@@ -238,7 +238,7 @@ SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct p
 static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
-    const struct cell_list *list = &cells->kind[KIND_FLUID];
+    const struct cell_list *list = &cells->list[KIND_FLUID];
     struct particles *const particles = &kinds[KIND_FLUID];
     const struct packing packing = packing_of(fluid);
     if (fluid->keeps_slopes) return; /* packed with the other fields */

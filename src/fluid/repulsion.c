@@ -35,7 +35,7 @@ void fluid_repulsion_energy(const struct fluid *fluid, const struct particles ki
                             const struct cells *cells, double of[SCENE_MAX_SECTIONS])
 {
     const struct particles *const particles = &kind[KIND_FLUID];
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const struct fluid_constants *const k = &fluid->k;
     const double most = fluid->effects & FX_THIN ? 1 : REPULSION_REACH; /* solids are finer */
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);

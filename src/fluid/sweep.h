@@ -155,7 +155,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
                                  const struct vector_constants *k, struct pair_set effects,
                                  const struct chunk *chunk, struct chunk_totals *largest)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const int32_t cell = list->active[n];
     struct neighbour_scratch *const neighbour_scratch = &fluid->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(fluid, cells, cell, PAIR_HAS(effects, THIN));
@@ -189,7 +189,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
                                   const struct vector_constants *k, struct pair_set effects,
                                   struct fluid_extremes *largest)
 {
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
                                 fluid->neighbour_scratch[thread_index()].deferred};
     struct chunk_totals here = {.acceleration2 = {0}};

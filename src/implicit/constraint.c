@@ -95,5 +95,5 @@ void constraint_end(const struct implicit *implicit, struct hinges *hinges,
     for (int k = 0; k < hinges->n; k++)
         for (int c = 0; c < 2; c++) hinges->hinge[k].target[c] = -hinges->force[2 * k + c];
     memcpy(hinges->force, implicit->hinge_force, bytes);
-    hinges->kick = dt;
+    hinges->kick_time = dt;
 }

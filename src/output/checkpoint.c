@@ -148,13 +148,18 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
     for (unsigned k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++) {
             const struct field_info *const info = &field_table[f];
-            void *const data = field_array(&sim->kind[k], info);
+            void *const data = field_array(&sim->particles[k], info);
             if (!data || info->keep != KEEP_STATE) continue;
-            struct part part = {
-                info->name, k,     item_of(info->type), data, (size_t)sim->kind[k].n, FORK_LOADS,
-                -FINITE,    FINITE};
+            struct part part = {info->name,
+                                k,
+                                item_of(info->type),
+                                data,
+                                (size_t)sim->particles[k].n,
+                                FORK_LOADS,
+                                -FINITE,
+                                FINITE};
             if (info->group & new_in_fork[k]) part.in_fork = FORK_LOADS_IF_THERE;
-            if (data == sim->kind[k].body) part.low = 0, part.high = sections[k] - 1;
+            if (data == sim->particles[k].body) part.low = 0, part.high = sections[k] - 1;
             add_part(list, part);
         }
 }
@@ -201,7 +206,7 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
     TRY(reserve(m, head.file_size, d));
     memcpy(head.magic, magic, sizeof magic);
     snprintf(head.version, sizeof head.version, "%s", version);
-    for (int k = 0; k < KIND_COUNT; k++) head.count[k] = sim->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++) head.count[k] = sim->particles[k].n;
     memcpy(m->bytes, &head, sizeof head);
     m->size = sizeof head;
     put_block(m, &text);
@@ -518,20 +523,20 @@ enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, str
     struct parts list;
     struct block b;
     for (int k = 0; k < KIND_COUNT; k++) {
-        const int64_t n = info.count[k], most = sim->kind[k].capacity;
+        const int64_t n = info.count[k], most = sim->particles[k].capacity;
         if (n < 0 || n > most)
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: it has %" PRId64 " %s particles, but the case has "
                              "%" PRId64,
                              n, kind_names[k], most);
-        sim->kind[k].n = n;
+        sim->particles[k].n = n;
     }
     list_parts(&list, m, sim);
     for (const struct part *part = list.item; part < list.item + list.n; part++) {
         if (fork && part->in_fork == FORK_SKIPS) continue;
         if (fork && part->in_fork == FORK_LOADS_IF_THERE &&
             !find_block(m, part->name, part->owner, &b))
-            set_missing(&sim->kind[part->owner], part);
+            set_missing(&sim->particles[part->owner], part);
         else
             TRY(load_part(m, part, d));
     }
@@ -542,8 +547,8 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
 {
     const int64_t cells = (int64_t)sim->cells.nx * sim->cells.ny;
     for (int k = 0; k < KIND_COUNT; k++)
-        for (int64_t i = 0; i < sim->kind[k].n; i++) {
-            const struct particles *const particles = &sim->kind[k];
+        for (int64_t i = 0; i < sim->particles[k].n; i++) {
+            const struct particles *const particles = &sim->particles[k];
             const int32_t cell = particles->cell[i];
             const bool known = cell >= -1 && cell < cells;
             if (known &&

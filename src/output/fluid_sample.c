@@ -57,8 +57,8 @@ struct sample fluid_sample(const struct simulation *sim, double x, double y)
     struct sample *const sum = &at.sum;
     const double place[2] = {x, y};
     if (!(sim->effects & FX_FLUID)) return *sum;
-    struct cell_visit v =
-        cells_visit(&sim->cells, sim->kind, 0, KIND_COUNT, place, KERNEL_REACH * sim->fluid.k.h);
+    struct cell_visit v = cells_visit(&sim->cells, sim->particles, 0, KIND_COUNT, place,
+                                      KERNEL_REACH * sim->fluid.k.h);
     while (cells_next(&v)) add_to_sample(&at, &sim->fluid, &v);
     const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
     sum->pressure = mean * sum->pressure + rise_to_place(sim, &at, mean);
@@ -112,7 +112,7 @@ double fluid_level(const struct simulation *sim, double x, double y)
 
 double fluid_front(const struct simulation *sim, int direction)
 {
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     const bool vertical = direction == DIRECTION_UP || direction == DIRECTION_DOWN;
     const double sign = direction == DIRECTION_RIGHT || direction == DIRECTION_UP ? 1 : -1;
     const double *const coordinate = vertical ? particles->y : particles->x;
@@ -138,7 +138,7 @@ double fluid_front(const struct simulation *sim, int direction)
  * opening round its edge. */
 double fluid_flux(const struct simulation *sim, const double a[2], const double b[2])
 {
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]), reach = sim->scene->top.dp,
                  tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
     double sum = 0, shift[2];

@@ -20,7 +20,7 @@ static enum err check_jump(const struct simulation *sim, const char *what, const
 
 static enum err fork_walls(struct simulation *sim, struct diag *d)
 {
-    struct particles *particles = &sim->kind[KIND_WALL];
+    struct particles *particles = &sim->particles[KIND_WALL];
     struct motion_state m = {0};
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     for (int64_t i = 0; i < particles->n; i++) {
@@ -44,7 +44,7 @@ static enum err fork_walls(struct simulation *sim, struct diag *d)
  * they are; the motion of a clamp must continue from their present displacement. */
 static enum err fork_clamps(struct simulation *sim, const double *free, struct diag *d)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     double *const ux = sim->solid.scratch[1], *const uy = sim->solid.scratch[2];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->free[i] = free[i];
@@ -74,7 +74,7 @@ static bool order_fits(const struct simulation *sim)
     if (checkpoint_check_cells(sim, &other_grid)) return false;
     const struct cells *const cells = &sim->cells;
     for (int k = 0; k < KIND_COUNT; k++) {
-        const struct particles *const particles = &sim->kind[k];
+        const struct particles *const particles = &sim->particles[k];
         for (int64_t i = 0; i < particles->n; i++) {
             const double x = particles->x[i] - cells->lower[0],
                          y = particles->y[i] - cells->lower[1];
@@ -90,7 +90,7 @@ static enum err sort_again(struct simulation *sim, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
         if (k == KIND_SOLID && !(sim->effects & FX_COUPLING)) continue;
-        const int64_t out = cells_sort(&sim->cells, (enum kind)k, &sim->kind[k]);
+        const int64_t out = cells_sort(&sim->cells, (enum kind)k, &sim->particles[k]);
         if (k == KIND_FLUID && out)
             return diag_fail(d, ERR_INPUT,
                              "fork: %" PRId64 " fluid particles of the checkpoint are outside the "
@@ -103,7 +103,7 @@ static enum err sort_again(struct simulation *sim, struct diag *d)
 
 enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d)
 {
-    struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct particles *const solid = &sim->particles[KIND_SOLID];
     double *const free = sim->solid.scratch[0];
     if (sim->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
     TRY(checkpoint_load(m, sim, true, d));

@@ -25,7 +25,7 @@ static double beam_value(enum data what, const struct simulation *sim, const str
 double snapshot_value(enum data what, const struct simulation *sim, enum kind kind, int64_t i,
                       int column)
 {
-    const struct particles *particles = &sim->kind[kind];
+    const struct particles *particles = &sim->particles[kind];
     static const int order[] = {0, 1, 3, 2}; /* of a stress in the file: xx yy zz xy yz xz */
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;

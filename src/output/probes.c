@@ -38,7 +38,7 @@ static void find_weights(struct probe *probe, const struct particles *particles,
 static enum err attach(struct probe *probe, const struct simulation *sim, struct arena *a,
                        struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     const double reach = 2 * scene_solid_h(sim->scene, probe->body);
     for (int64_t i = 0; i < particles->n; i++) {
         const double x = particles->X[i] - probe->of->point[0],
@@ -221,7 +221,7 @@ static void stress(const struct probe *probe, const struct simulation *sim, doub
     double mean[4] = {0};
     for (int k = 0; k < probe->n; k++) {
         double sigma[4], det;
-        solid_cauchy(&sim->solid, &sim->kind[KIND_SOLID], probe->particle[k], sigma, &det);
+        solid_cauchy(&sim->solid, &sim->particles[KIND_SOLID], probe->particle[k], sigma, &det);
         for (int c = 0; c < 4; c++) mean[c] += probe->weight[k] * sigma[c];
     }
     out[0] = mean[0], out[1] = mean[1], out[2] = mean[3], out[3] = mean[2];
@@ -230,7 +230,7 @@ static void stress(const struct probe *probe, const struct simulation *sim, doub
 
 static void strain(const struct probe *probe, const struct simulation *sim, double out[3])
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     out[0] = out[1] = out[2] = 0;
     for (int k = 0; k < probe->n; k++) {
         const int32_t i = probe->particle[k];
@@ -259,7 +259,7 @@ static void force(const struct probe *probe, const struct simulation *sim, doubl
 {
     out[0] = out[1] = out[2] = 0;
     for (int k = 0; k < probe->n_bodies; k++) {
-        const struct particles *const particles = &sim->kind[probe->bodies[k].kind];
+        const struct particles *const particles = &sim->particles[probe->bodies[k].kind];
         add_forces(probe, particles, probe->bodies[k].body, particles->fx, particles->fy, out);
     }
 }
@@ -268,7 +268,7 @@ static void force(const struct probe *probe, const struct simulation *sim, doubl
 static void pose(const struct probe *probe, const struct simulation *sim, double out[3],
                  double rate[3])
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     double X = 0, Y = 0, ux = 0, uy = 0, vx = 0, vy = 0, n = 0;
     double across = 0, along = 0, to_across = 0, to_along = 0;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -334,7 +334,7 @@ static void rigid_reaction(const struct probe *probe, const struct simulation *s
 
 static void energy(const struct probe *probe, const struct simulation *sim, double out[3])
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     double det, sum = 0;
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->body[i] == probe->body)
@@ -357,7 +357,7 @@ static void present_point(const struct probe *probe, const struct simulation *si
     memcpy(at, probe->of->point, sizeof probe->of->point);
     move_with_wall(probe, sim, at);
     if (probe->n > 0) {
-        const struct particles *const particles = &sim->kind[KIND_SOLID];
+        const struct particles *const particles = &sim->particles[KIND_SOLID];
         double u[2];
         weighted_sum(probe, particles->ux, particles->uy, u);
         at[0] += u[0];
@@ -407,7 +407,7 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
 /* Values, and their rates where these are known. */
 static void evaluate(const struct probe *probe, struct simulation *sim, double *row, double *rate)
 {
-    struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct particles *const solid = &sim->particles[KIND_SOLID];
     struct solid_forces_now now;
     double at[2] = {0};
     if (probe->beam >= 0 && probe->target != TARGET_BODY) {

@@ -194,7 +194,7 @@ static void write_drift(struct json *j, const struct simulation *sim, const stru
 
 static void write_extremes(struct json *j, const struct simulation *sim)
 {
-    const bool fluid = sim->kind[KIND_FLUID].n > 0, solid = sim->kind[KIND_SOLID].n > 0;
+    const bool fluid = sim->particles[KIND_FLUID].n > 0, solid = sim->particles[KIND_SOLID].n > 0;
     json_open(j, "extremes", '{');
     number_if(j, fluid, "density_lowest", sim->state.dens_low);
     number_if(j, fluid, "density_highest", sim->state.dens_high);
@@ -345,7 +345,7 @@ enum err report_summary(const char *folder, struct simulation *sim, const struct
     json_open(&j, NULL, '{');
     write_head(&j, sim, r);
     json_open(&j, "particles", '{');
-    for (int k = 0; k < KIND_COUNT; k++) json_integer(&j, kind_names[k], sim->kind[k].n);
+    for (int k = 0; k < KIND_COUNT; k++) json_integer(&j, kind_names[k], sim->particles[k].n);
     json_close(&j, '}');
     json_integer(&j, "fluid_left_domain", sim->state.lost);
     write_cost(&j, sim, r);

@@ -13,7 +13,8 @@
 static int64_t count_points(const struct simulation *sim, bool most)
 {
     int64_t n = 0;
-    for (int k = 0; k < KIND_COUNT; k++) n += most ? sim->kind[k].capacity : sim->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++)
+        n += most ? sim->particles[k].capacity : sim->particles[k].n;
     return n;
 }
 

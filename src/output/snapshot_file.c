@@ -90,8 +90,8 @@ static int64_t integer_value(enum data what, const struct simulation *sim, enum 
 {
     switch (what) {
     case D_KIND: return kind;
-    case D_ID: return sim->kind[kind].id[i];
-    case D_BODY: return sim->kind[kind].body[i];
+    case D_ID: return sim->particles[kind].id[i];
+    case D_BODY: return sim->particles[kind].body[i];
     default: return 1; /* VTK_VERTEX */
     }
 }
@@ -118,7 +118,7 @@ static void values_of(const struct source *source, enum data what, int column, i
     default: break;
     }
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t i = 0; i < sim->kind[kind].n; i++) {
+        for (int64_t i = 0; i < sim->particles[kind].n; i++) {
             if (!is_real(columns[what].item)) {
                 *integer++ = integer_value(what, sim, (enum kind)kind, i);
                 continue;
@@ -338,7 +338,7 @@ bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout,
     int64_t before[D_COUNT];
     if (of.steps_before < 0 || !snapshot_file_rows(file, of.steps_before, before)) return false;
     of.points_before = before[D_POINTS];
-    for (int k = 0; k < KIND_COUNT; k++) of.n += sim->kind[k].n;
+    for (int k = 0; k < KIND_COUNT; k++) of.n += sim->particles[k].n;
     /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
      * below carry no information, and would take as long to compress as all other fields together.
      */

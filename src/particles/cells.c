@@ -66,7 +66,7 @@ enum err cells_create(struct cells *cells, struct arena *a, const double lower[2
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         if (kinds[k].capacity > most) most = kinds[k].capacity;
-        TRY(list_create(&cells->kind[k], a, cells, &kinds[k], k != KIND_FLUID, d));
+        TRY(list_create(&cells->list[k], a, cells, &kinds[k], k != KIND_FLUID, d));
     }
     TRY(arena_array(a, &cells->pair_a, most, "sorting", d));
     TRY(arena_array(a, &cells->pair_b, most, "sorting", d));
@@ -217,7 +217,7 @@ static void overhang_of(const struct cells *cells, const struct cell_list *list,
 
 void cells_measure_overhang(struct cells *cells, enum kind kind, const struct particles *particles)
 {
-    struct cell_list *const list = &cells->kind[kind];
+    struct cell_list *const list = &cells->list[kind];
     double most[] = {-INFINITY, -INFINITY, -INFINITY, -INFINITY};
 #pragma omp parallel for schedule(static) reduction(max : most)
     for (int32_t k = 0; k < list->n_active; k++) {
@@ -238,11 +238,11 @@ void cells_measure_overhang(struct cells *cells, enum kind kind, const struct pa
  * only if their overhangs add up to more than the cells' side exceeds the reach. */
 double cells_skin_left(const struct cells *cells, double reach)
 {
-    const double *const fluid = cells->kind[KIND_FLUID].overhang;
+    const double *const fluid = cells->list[KIND_FLUID].overhang;
     double left = INFINITY;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const double *const other = cells->kind[kind].overhang;
-        if (!cells->kind[kind].n_active && !(other[0] > 0)) continue;
+        const double *const other = cells->list[kind].overhang;
+        if (!cells->list[kind].n_active && !(other[0] > 0)) continue;
         for (int to = 0; to < 4; to++) { /* to ^ 1: the opposite */
             const double excess = cells->side[to / 2] - reach;
             left = min2(left, cells->skin - other[to]);
@@ -272,7 +272,7 @@ static const int32_t *sort_by_cell(struct cells *cells, const struct cell_list *
 
 int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *particles)
 {
-    struct cell_list *list = &cells->kind[kind];
+    struct cell_list *list = &cells->list[kind];
     const int64_t n = particles->n;
     if (n == 0) return 0;
     for (int axis = 0; axis < 2 && kind == KIND_FLUID; axis++)
@@ -295,7 +295,7 @@ int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *partic
 
 void cells_rebuild(struct cells *cells, enum kind kind, struct particles *particles)
 {
-    struct cell_list *list = &cells->kind[kind];
+    struct cell_list *list = &cells->list[kind];
     if (list->order) sort_by_cell(cells, list, particles);
     list_fill(list, particles->cell, particles->n);
     cells_measure_overhang(cells, kind, particles);
@@ -305,7 +305,7 @@ int32_t cells_fullest(const struct cells *cells)
 {
     int32_t fullest = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct cell_list *const list = &cells->kind[kind];
+        const struct cell_list *const list = &cells->list[kind];
         for (int32_t k = 0; k < list->n_active; k++)
             if (list->count[list->active[k]] > fullest) fullest = list->count[list->active[k]];
     }

@@ -58,7 +58,7 @@ struct cells {
     int nx, ny;
     bool periodic[2];     /* in x, in y */
     int64_t crossings[2]; /* of fluid through the upper side, less the lower, in the last sort */
-    struct cell_list kind[KIND_COUNT];
+    struct cell_list list[KIND_COUNT];
     uint64_t *pair_a, *pair_b; /* sorting scratch, (Morton key, particle) in one word */
     int64_t (*histogram)[1 << CELLS_SORT_DIGIT_BITS]; /* [sort_threads] */
     int sort_threads;
@@ -229,7 +229,7 @@ SPHFSI_INLINE struct cell_visit cells_visit(const struct cells *cells,
 SPHFSI_INLINE bool cells_next(struct cell_visit *v)
 {
     for (; v->kind < v->end_kind; v->kind++, v->particles++, v->m = 0) {
-        const struct cell_list *const list = &v->cells->kind[v->kind];
+        const struct cell_list *const list = &v->cells->list[v->kind];
         while (list->n_active) {
             if (v->k == v->end) {
                 if (v->m == v->window.n[0] * v->window.n[1]) break;

@@ -11,7 +11,7 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
 void cells_around_find(struct cells_around *around, const struct cells *cells, enum kind kind,
                        int32_t cell, struct cluster_range range)
 {
-    const struct cell_list *const list = &cells->kind[kind];
+    const struct cell_list *const list = &cells->list[kind];
     const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);
     int n = 0;
     for (int row = 0; row < 3; row++)

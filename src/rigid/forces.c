@@ -123,7 +123,7 @@ void rigid_find_alone(struct rigid *rigid, int k, double time)
     find_yields(&f, alone, rigid->eq[k].alone);
 }
 
-void rigid_solve(struct rigid *rigid, int k, double end, double kick)
+void rigid_solve(struct rigid *rigid, int k, double end, double rates_time)
 {
     struct rigid_equations *const eq = &rigid->eq[k];
     const struct rigid_body *const body = &rigid->body[k];
@@ -131,10 +131,10 @@ void rigid_solve(struct rigid *rigid, int k, double end, double kick)
     const struct freedom f = freedom_of(rigid, k, end);
     double A[3][3], right[3], S[3][3] = {{0}}, q[3];
     for (int c = 0; c < 3; c++) {
-        right[c] = eq->impulse[c] - kick * body->mass[c] * s->a[c];
+        right[c] = eq->impulse[c] - rates_time * body->mass[c] * s->a[c];
         for (int e = 0; e < 3; e++) {
             A[c][e] = eq->fluid[c][e] + (c == e ? body->mass[c] : 0);
-            right[c] += A[c][e] * (s->v[e] + kick * s->a[e] - f.base[e]);
+            right[c] += A[c][e] * (s->v[e] + rates_time * s->a[e] - f.base[e]);
         }
     }
     for (int i = 0; i < f.n; i++) {
@@ -151,11 +151,11 @@ void rigid_solve(struct rigid *rigid, int k, double end, double kick)
     for (int c = 0; c < 3; c++) {
         eq->change[c] = f.base[c] - s->v[c];
         for (int j = 0; j < f.n; j++) eq->change[c] += f.B[c][j] * q[j];
-        eq->faster[c] = eq->change[c] - kick * s->a[c];
+        eq->faster[c] = eq->change[c] - rates_time * s->a[c];
     }
 }
 
-void rigid_find_reaction(struct rigid *rigid, int k, double kick)
+void rigid_find_reaction(struct rigid *rigid, int k, double rates_time)
 {
     const struct rigid_body *const body = &rigid->body[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
@@ -164,7 +164,7 @@ void rigid_find_reaction(struct rigid *rigid, int k, double kick)
     for (int c = 0; c < 3; c++) {
         double needed = body->mass[c] * eq->change[c] - eq->impulse[c];
         for (int e = 0; e < 3; e++) needed += eq->fluid[c][e] * eq->faster[e];
-        rigid->state[k].reaction[c] = free ? 0 : needed / kick;
+        rigid->state[k].reaction[c] = free ? 0 : needed / rates_time;
     }
 }
 

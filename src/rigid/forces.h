@@ -36,9 +36,9 @@ struct rigid_equations {
     double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */
-void rigid_solve(struct rigid *rigid, int k, double end, double kick);
+void rigid_solve(struct rigid *rigid, int k, double end, double rates_time);
 /* The reaction of hinge or guide. */
-void rigid_find_reaction(struct rigid *rigid, int k, double kick);
+void rigid_find_reaction(struct rigid *rigid, int k, double rates_time);
 
 /* Finds eq->alone, the masses of a body alone as it may move at a time. */
 void rigid_find_alone(struct rigid *rigid, int k, double time);
@@ -47,7 +47,7 @@ void rigid_find_alone(struct rigid *rigid, int k, double time);
 
 /* A step, the time for which its rates act, and that for which its last velocity moves bodies. */
 struct rigid_step {
-    double dt, kick, late;
+    double dt, rates_time, late;
 };
 
 /* What decides on the impulse of a row: surfaces do not come nearer than their gap; friction stops
@@ -106,7 +106,7 @@ void rigid_add_hinges(struct rigid *rigid, double time);
  * velocity. */
 double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late);
 /* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
-void rigid_hinges_hold(struct rigid *rigid, double time, double kick);
+void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time);
 /* Energy of the springs in the hinges that a body has. */
 double rigid_hinge_energy(const struct rigid *rigid, int k);
 

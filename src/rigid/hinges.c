@@ -136,7 +136,7 @@ double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, 
 
 /* Changes velocities to what a row allows after the step. The reaction of the second body is that
  * of its own hinge. Returns the change of the velocity, 0: below round-off. */
-static double hold_row(struct rigid *rigid, struct rigid_row *row, double kick)
+static double hold_row(struct rigid *rigid, struct rigid_row *row, double rates_time)
 {
     const double a = rigid_row_yields(rigid, row, RIGID_IMPACT);
     double rate = row->component == 2 ? -row->hinge->end_rate : 0, speed = fabs(rate);
@@ -154,13 +154,14 @@ static double hold_row(struct rigid *rigid, struct rigid_row *row, double kick)
             struct rigid_state *const s = &rigid->state[row->body[side]];
             for (int e = 0; e < 3; e++)
                 s->v[c] += rigid->eq[row->body[side]].alone[c][e] * row->along[side][e] * impulse;
-            if (side && kick > 0) s->reaction[c] -= row->along[side][c] * impulse / kick;
+            if (side && rates_time > 0)
+                s->reaction[c] -= row->along[side][c] * impulse / rates_time;
         }
     return max2(0, fabs(rate) - 1e-15 * speed);
 }
 
 /* T-99a: velocities after the step, which the hinges allow where the bodies are. */
-void rigid_hinges_hold(struct rigid *rigid, double time, double kick)
+void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time)
 {
     double largest = 1, first = 0;
     for (int k = 0; k < rigid->n_rows; k++) {
@@ -172,7 +173,7 @@ void rigid_hinges_hold(struct rigid *rigid, double time, double kick)
         largest = 0;
         for (int k = 0; k < rigid->n_rows; k++)
             if (rigid->row[k].law == RIGID_JOINT)
-                largest = max2(largest, hold_row(rigid, &rigid->row[k], kick));
+                largest = max2(largest, hold_row(rigid, &rigid->row[k], rates_time));
         if (turn == 0) first = largest;
     }
 }

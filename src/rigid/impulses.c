@@ -48,16 +48,16 @@ static double find_more(const struct rigid *rigid, const struct rigid_row *row,
     switch (row->law) {
     case RIGID_GAP: return max2(0, had - (rate - least_rate(row, stage, step->dt)) / a) - had;
     case RIGID_FRICTION: {
-        const double normal = row->hinge ? step->kick : row[-1].impulse[stage],
+        const double normal = row->hinge ? step->rates_time : row[-1].impulse[stage],
                      most = row->friction * normal;
         return max2(-most, min2(most, had - rate / a)) - had;
     }
     case RIGID_SPRING: {
         const double K = row->stiffness, C = row->damping;
-        const double e = step->kick * (row->later * step->dt * K + 0.5 * C);
+        const double e = step->rates_time * (row->later * step->dt * K + 0.5 * C);
         const double force = row->force + C * row->start_rate;
         const double more =
-            -(had + step->kick * force + e * (rate - row->start_rate)) / (1 + e * a);
+            -(had + step->rates_time * force + e * (rate - row->start_rate)) / (1 + e * a);
         return row->pulls_only ? max2(-had, more) : more;
     }
     case RIGID_JOINT:

@@ -111,19 +111,19 @@ static void add_pressure(const struct rigid *rigid, const struct rigid_body *bod
 /* --- a step --- */
 
 /* The part of the waiting impulse that the fluid receives in a kick (T-97). */
-static double received_part(const struct rigid *rigid, int k, double kick)
+static double received_part(const struct rigid *rigid, int k, double rates_time)
 {
-    return rigid->mean_time > 0 ? kick / rigid->state[k].exchange_time : 0;
+    return rigid->mean_time > 0 ? rates_time / rigid->state[k].exchange_time : 0;
 }
 
 static void prepare_body(struct rigid *rigid, int k, const double gravity[2], double now, double dt,
-                         double kick)
+                         double rates_time)
 {
     const struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     struct rigid_equations *const eq = &rigid->eq[k];
     const double after = exchange_time_after(s->exchange_time, dt),
-                 part = received_part(rigid, k, kick);
+                 part = received_part(rigid, k, rates_time);
     double force[3], impedance[3][3];
     memcpy(eq->start, s->v, sizeof eq->start);
     memcpy(eq->at_start, rigid->scene->rigid_motion[k].now.v, 2 * sizeof(double));
@@ -134,8 +134,8 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
     for (int c = 0; c < 3; c++) {
         const double heavy = c < 2 && body->given->gravity ? body->mass[c] * gravity[c] : 0;
         eq->before[c] = s->v[c];
-        eq->from_fluid[c] = kick * force[c] - part * s->impulse[c];
-        eq->impulse[c] = eq->from_fluid[c] + kick * heavy;
+        eq->from_fluid[c] = rates_time * force[c] - part * s->impulse[c];
+        eq->impulse[c] = eq->from_fluid[c] + rates_time * heavy;
         for (int e = 0; e < 3; e++) eq->fluid[c][e] = after * impedance[c][e];
     }
 }
@@ -172,17 +172,17 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double kick = step->kick, part = received_part(rigid, k, kick);
-    rigid_find_reaction(rigid, k, kick);
+    const double rates_time = step->rates_time, part = received_part(rigid, k, rates_time);
+    rigid_find_reaction(rigid, k, rates_time);
     body->received = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
-        const double change = kick * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
+        const double change = rates_time * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
         body->mean[c] = eq->before[c] + 0.5 * (change - change_by_solids(rigid, k, c));
         body->received += (eq->from_fluid[c] - resisted) * body->mean[c];
-        s->rate[c] = -(part * s->impulse[c] + resisted) / kick;
-        s->impulse[c] += kick * s->rate[c];
+        s->rate[c] = -(part * s->impulse[c] + resisted) / rates_time;
+        s->impulse[c] += rates_time * s->rate[c];
         s->v[c] = eq->before[c] + change;
         s->x[c] += step->late * (s->v[c] - eq->pushed[c]) + body->moved[c] +
                    step->dt * eq->touch[RIGID_PUSH][c];
@@ -191,32 +191,34 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
 }
 
 /* What follows from the velocity at the end of the step. */
-static void end_body(struct rigid *rigid, int k, double dt, double kick)
+static void end_body(struct rigid *rigid, int k, double dt, double rates_time)
 {
     struct rigid_body *const body = &rigid->body[k];
     struct rigid_state *const s = &rigid->state[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double weight = kick / (kick + rigid->mean_time);
+    const double weight = rates_time / (rates_time + rigid->mean_time);
     for (int c = 0; c < 3; c++) {
-        const double impact = eq->touch[RIGID_IMPACT][c] / kick, push = eq->pushed[c] / kick;
+        const double impact = eq->touch[RIGID_IMPACT][c] / rates_time,
+                     push = eq->pushed[c] / rates_time;
         /* An impact is no acceleration that the fluid could expect to go on. */
-        const double steady = (s->v[c] - eq->start[c]) / kick - impact;
+        const double steady = (s->v[c] - eq->start[c]) / rates_time - impact;
         /* The force that turns the velocity within the step is a reaction, too. */
         s->reaction[c] +=
             body->mass[c] *
             (steady + impact -
-             (2 * (body->mean[c] - eq->before[c]) + change_by_solids(rigid, k, c)) / kick);
+             (2 * (body->mean[c] - eq->before[c]) + change_by_solids(rigid, k, c)) / rates_time);
         /* Contact with solids is not half a step behind. */
         s->last[c] = steady - push;
         s->a[c] += weight * (steady - s->a[c]);
     }
-    body->driven += kick * rigid_hinge_power(rigid, k, dt);
-    const double left = (1 - received_part(rigid, k, kick)) * s->exchange_time;
+    body->driven += rates_time * rigid_hinge_power(rigid, k, dt);
+    const double left = (1 - received_part(rigid, k, rates_time)) * s->exchange_time;
     s->exchange_time = exchange_time_after(s->exchange_time, dt);
     if (rigid->impedance > 0) add_pressure(rigid, body, left / s->exchange_time, eq->faster);
 }
 
-void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick)
+void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt,
+                 double rates_time)
 {
     const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late;
     rigid->end = time + dt;
@@ -227,17 +229,17 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
         struct motion_state *const published = &rigid->scene->rigid_motion[k].now;
         memset(body->pushed, 0, sizeof body->pushed);
         memset(body->moved, 0, sizeof body->moved);
-        prepare_body(rigid, k, gravity, now, dt, kick);
-        rigid_solve(rigid, k, rigid->end, kick);
+        prepare_body(rigid, k, gravity, now, dt, rates_time);
+        rigid_solve(rigid, k, rigid->end, rates_time);
         /* The published motion goes on as without contact. */
-        for (int c = 0; c < 2; c++) published->a[c] = rigid->eq[k].change[c] / kick;
-        published->angular_acceleration = rigid->eq[k].change[2] / kick;
+        for (int c = 0; c < 2; c++) published->a[c] = rigid->eq[k].change[c] / rates_time;
+        published->angular_acceleration = rigid->eq[k].change[2] / rates_time;
     }
 }
 
-void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
+void rigid_advance(struct rigid *rigid, double time, double dt, double rates_time)
 {
-    const struct rigid_step step = {dt, kick, .late = rigid->centred ? 0.5 * dt : dt};
+    const struct rigid_step step = {dt, rates_time, .late = rigid->centred ? 0.5 * dt : dt};
     const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) {
         velocity_by(&rigid->eq[k], rigid->body[k].pushed, rigid->eq[k].pushed);
@@ -245,8 +247,8 @@ void rigid_advance(struct rigid *rigid, double time, double dt, double kick)
     }
     rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, &step);
-    if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, kick);
-    for (int k = 0; k < rigid->n; k++) end_body(rigid, k, dt, kick);
+    if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, rates_time);
+    for (int k = 0; k < rigid->n; k++) end_body(rigid, k, dt, rates_time);
     rigid_impulse_work(rigid);
 }
 

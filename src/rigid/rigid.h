@@ -90,11 +90,12 @@ void rigid_publish(const struct rigid *rigid, double time, double dt);
 struct motion_state rigid_placed(const struct rigid *rigid, int k, const double x[3]);
 
 /* Begins a step of dt from a time on: the motion of the bodies without contact, which is published.
- * The rates of the last evaluation act for `kick`, as on the fluid (T-96). */
-void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt, double kick);
+ * The rates of the last evaluation act for `rates_time`, as on the fluid (T-96). */
+void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt,
+                 double rates_time);
 
 /* Ends it, after the sub-steps of solids. */
-void rigid_advance(struct rigid *rigid, double time, double dt, double kick);
+void rigid_advance(struct rigid *rigid, double time, double dt, double rates_time);
 
 /* --- contact with solids, between these two (T-102a) --- */
 

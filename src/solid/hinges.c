@@ -271,7 +271,7 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
     solve_hinges(hinges, particles, resisted);
     for (int k = 0; k < 2 * hinges->n && dt > 0; k++) hinges->force[k] /= dt;
     hinges_push(hinges, hinges->force, particles->sx, particles->sy);
-    hinges->kick = dt;
+    hinges->kick_time = dt;
 }
 
 void hinges_hold(struct hinges *hinges, double *const a[2], double *const force[2], double time)
@@ -303,7 +303,7 @@ double hinges_work(const struct hinges *hinges, const double *vx, const double *
         if (h->motion < 0) continue;
         for (int c = 0; c < 2; c++) {
             const double v = -before[2 * k + c];
-            const double after = hinges->kick > 0 ? h->target[c] : v + dt * h->target[c];
+            const double after = hinges->kick_time > 0 ? h->target[c] : v + dt * h->target[c];
             done += 0.5 * dt * hinges->force[2 * k + c] * (v + after);
         }
         work += done;

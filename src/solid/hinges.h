@@ -29,7 +29,7 @@ struct hinges {
     struct hinge_node *node; /* in the order of their particles */
     double *matrix;          /* [2 n][2 n] */
     double *force;           /* [2 n] of the last call, on the body, N/m */
-    double kick;             /* its dt */
+    double kick_time;        /* its dt */
     bool released;           /* hinges_forces does nothing */
 };
 

@@ -30,7 +30,7 @@ struct loads {
     double *held_power;          /* [n_held] of the clamp, W/m, */
     double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
-    int infinite;  /* a [load], counted from 1, whose force was not finite; 0: none */
+    int infinite;                /* a [load], counted from 1, whose force was not finite; 0: none */
     bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
 };
 

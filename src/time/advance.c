@@ -3,35 +3,36 @@
 #include "time/advance.h"
 #include "time/timestep.h"
 
-void advance_solids(struct simulation *sim, double dt, double kick)
+void advance_solids(struct simulation *sim, double dt, double rates_time)
 {
     const int n = timestep_substeps(sim, dt);
-    sim->sorting.solid_move = coupling_advance(&sim->coupling, dt, n, kick, !(sim->state.dt > 0));
+    sim->sorting.solid_move =
+        coupling_advance(&sim->coupling, dt, n, rates_time, !(sim->state.dt > 0));
     energy_book_solid(sim, dt, n);
     sim->substeps = n;
     sim->state.solid_substeps += n;
     sim->state.solid_evaluations += n;
 }
 
-void begin_rigid(struct simulation *sim, double time, double dt, double kick)
+void begin_rigid(struct simulation *sim, double time, double dt, double rates_time)
 {
     double gravity[2];
     scene_gravity_at(sim->scene, time + (sim->rigid.centred ? 0.5 * dt : 0), gravity);
-    rigid_begin(&sim->rigid, gravity, time, dt, kick);
+    rigid_begin(&sim->rigid, gravity, time, dt, rates_time);
 }
 
-void advance_rigid(struct simulation *sim, double time, double dt, double kick)
+void advance_rigid(struct simulation *sim, double time, double dt, double rates_time)
 {
-    rigid_advance(&sim->rigid, time, dt, kick);
+    rigid_advance(&sim->rigid, time, dt, rates_time);
     for (int k = 0; k < sim->rigid.n; k++) {
         const struct rigid_body *const b = &sim->rigid.body[k];
         energy_book_body(sim, scene_rigid_wall(sim->scene, k), b->received, b->driven, b->passed);
     }
 }
 
-void advance_beams(struct simulation *sim, double time, double dt, double kick)
+void advance_beams(struct simulation *sim, double time, double dt, double rates_time)
 {
-    const struct beam_times times = {dt, sim->state.dt, kick};
+    const struct beam_times times = {dt, sim->state.dt, rates_time};
     beams_advance(&sim->beams, time, &times);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
@@ -67,7 +68,7 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
 {
     enum { BLOCK = 256 };
-    struct particles *const particles = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->particles[KIND_FLUID];
     double low = 0, high = 0, speed2 = 0, nan_probe = 0;
 #pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
     reduction(+ : nan_probe)
@@ -87,7 +88,7 @@ void update_extremes(struct simulation *sim) { advance_fluid(sim, NULL, NULL); }
 
 void find_speed(struct simulation *sim)
 {
-    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    const struct particles *const solid = &sim->particles[KIND_SOLID];
     double largest = sim->extremes.speed2;
 #pragma omp parallel for schedule(static) reduction(max : largest) if (solid->n > 0)
     for (int64_t i = 0; i < solid->n; i++)
@@ -95,7 +96,8 @@ void find_speed(struct simulation *sim)
     sim->sorting.speed2 = largest;
     if (sim->effects & FX_MOTION)
         sim->sorting.speed2 =
-            max2(sim->sorting.speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
+            max2(sim->sorting.speed2,
+                 wall_motion_speed2(&sim->wall_motion, &sim->particles[KIND_WALL]));
 }
 
 void step_of_one_stage(struct simulation *sim, double t_limit)
@@ -105,14 +107,15 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
     double clock = phase_clock();
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
-    const double kick = 0.5 * (sim->state.dt + dt);
+    const double rates_time = 0.5 * (sim->state.dt + dt);
     energy_book_step(sim, dt);
     integrator->update(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
-    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, kick);
-    if (sim->effects & FX_COUPLING) advance_solids(sim, dt, integrator->alternates ? dt : kick);
-    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, kick);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, kick);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, rates_time);
+    if (sim->effects & FX_COUPLING)
+        advance_solids(sim, dt, integrator->alternates ? dt : rates_time);
+    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, rates_time);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, rates_time);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -43,16 +43,16 @@ typedef void advance_range(struct particles *particles, const void *parameters, 
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters);
 
 /* The sub-steps of solids in a fluid step of dt; the rates of the evaluation act on the
- * fluid for `kick`. */
-void advance_solids(struct simulation *sim, double dt, double kick);
+ * fluid for `rates_time`. */
+void advance_solids(struct simulation *sim, double dt, double rates_time);
 
 /* The step of rigid bodies from a time on, in the same way: before that of solids, which may push
  * them, and after it. */
-void begin_rigid(struct simulation *sim, double time, double dt, double kick);
-void advance_rigid(struct simulation *sim, double time, double dt, double kick);
+void begin_rigid(struct simulation *sim, double time, double dt, double rates_time);
+void advance_rigid(struct simulation *sim, double time, double dt, double rates_time);
 
 /* The step of beams from a time on. */
-void advance_beams(struct simulation *sim, double time, double dt, double kick);
+void advance_beams(struct simulation *sim, double time, double dt, double rates_time);
 
 /* A step with one evaluation at its start, in which the integrator updates the fluid. */
 void step_of_one_stage(struct simulation *sim, double t_limit);

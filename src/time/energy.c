@@ -6,9 +6,9 @@
 /* Share of a section or region in the ledger, and what only the account has. Doubles only. */
 struct energies {
     struct ledger row;
-    double dummies;   /* compression energy of dummies by their pressure */
-    double repulsion; /* of walls and structures, by L-7b */
-    double damper;    /* that the acoustic damper holds and has yet to dissipate (T-9a) */
+    double dummies;     /* compression energy of dummies by their pressure */
+    double repulsion;   /* of walls and structures, by L-7b */
+    double damper;      /* that the acoustic damper holds and has yet to dissipate (T-9a) */
     double undelivered; /* work that the fluid has still to receive from a body: that of the
                        interface impulse (T-35b), at the velocity that the fluid uses */
     double term[ENERGY_TERMS];
@@ -44,7 +44,7 @@ static void add_particle(struct ledger *row, const struct particles *particles, 
 
 static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
 {
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     for (int64_t i = 0; i < particles->n; i++) {
         struct energies *const e = &of[energy_entry(KIND_FLUID, particles->body[i])];
@@ -60,7 +60,7 @@ static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_EN
 /* Returns the smallest det F. The first solid carries the energy of contact of all. */
 static double add_solids(struct simulation *sim, struct energies *solid)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     double lowest = 1;
     for (int64_t i = 0; i < particles->n; i++) {
         struct energies *const e = &solid[particles->body[i]];
@@ -89,7 +89,7 @@ static double add_solids(struct simulation *sim, struct energies *solid)
  * of the forces that have a potential in this half step (T-46h). Stresses are up to date. */
 static void add_late_work(struct simulation *sim, struct energies *solid)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     struct solid alone = sim->solid; /* without forces whose work is booked; overwrites sx and sy */
     if (alone.centred || sim->substeps == 0) return;
     const double half = 0.5 * sim->state.dt / sim->substeps;
@@ -127,7 +127,7 @@ static void add_dummies(const struct simulation *sim, struct energies *fluid)
 {
     double dummies = 0, internal = 0;
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
+        const struct particles *const particles = &sim->particles[kind];
         for (int64_t i = 0; i < particles->n && particles->dens; i++)
             dummies += sim->fluid.volume[kind][particles->body[i]] *
                        eos_energy(particles->dens[i], sim->fluid.k.c0);
@@ -147,7 +147,7 @@ static double find_energies(struct simulation *sim, struct energies of[ENERGY_EN
     if (sim->effects & FX_FLUID) add_fluid(sim, of);
     if (sim->effects & FX_FLUID && keeps_account(sim)) add_dummies(sim, of);
     if (sim->effects & FX_REPULSION && keeps_account(sim))
-        fluid_repulsion_energy(&sim->fluid, sim->kind, &sim->cells, repulsion);
+        fluid_repulsion_energy(&sim->fluid, sim->particles, &sim->cells, repulsion);
     for (int k = 0; k < sim->scene->n_fluid; k++) of[k].repulsion = repulsion[k];
     add_bodies(sim, &of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, 0))]);
     return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
@@ -157,7 +157,7 @@ struct ledger simulation_ledger(struct simulation *sim)
 {
     struct energies of[ENERGY_ENTRIES], sum = {.tolerance = 0};
     const struct state *const state = &sim->state;
-    const struct particles *const fluid = &sim->kind[KIND_FLUID];
+    const struct particles *const fluid = &sim->particles[KIND_FLUID];
     simulation_refresh(sim);
     const double det_low = find_energies(sim, of);
     for (int k = 0; k < ENERGY_ENTRIES; k++) add_energies(&sum, &of[k]);
@@ -197,8 +197,8 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 void energy_book_evaluation(struct simulation *sim, double dt)
 {
     if (!keeps_account(sim)) return;
-    const struct particles *const fluid = &sim->kind[KIND_FLUID];
-    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    const struct particles *const fluid = &sim->particles[KIND_FLUID];
+    const struct particles *const solid = &sim->particles[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_FLUID];
     for (int64_t i = 0; i < fluid->n && external->at; i++)
         entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
@@ -209,7 +209,7 @@ void energy_book_evaluation(struct simulation *sim, double dt)
     for (int b = 0; b < sim->wall_motion.n; b++) {
         const struct moving_wall *const wall = &sim->wall_motion.body[b];
         struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
-        const double work = dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
+        const double work = dt * moving_wall_power(wall, &sim->particles[KIND_WALL]);
         *(wall->free ? &e->given : &e->supplied) += wall->free ? -work : work;
     }
     for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
@@ -220,7 +220,7 @@ void energy_book_evaluation(struct simulation *sim, double dt)
 void energy_book_solid(struct simulation *sim, double dt, int n)
 {
     if (!keeps_account(sim)) return;
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     const struct external *const external = sim->solid.external;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
@@ -261,7 +261,7 @@ static double gravity_work(struct simulation *sim)
     for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - scene->top.gravity[c]);
     for (int solid = 0; solid < 2; solid++) {
         const enum kind kind = solid ? KIND_SOLID : KIND_FLUID;
-        const struct particles *const p = &sim->kind[kind];
+        const struct particles *const p = &sim->particles[kind];
         for (int64_t i = 0; i < p->n; i++) {
             const int b = p->body[i];
             const double m = solid ? scene->solid[b].gravity * p->free[i] * sim->solid.body[b].mass
@@ -335,7 +335,7 @@ static void join_neighbours(struct simulation *sim)
     struct box2 box[ENERGY_ENTRIES];
     for (int k = 0; k < ENERGY_ENTRIES; k++) box[k] = box2_empty();
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
+        const struct particles *const particles = &sim->particles[kind];
         for (int64_t i = 0; i < particles->n && !all; i++)
             box2_include(&box[energy_entry((enum kind)kind, particles->body[i])], particles->x[i],
                          particles->y[i]);
@@ -350,7 +350,7 @@ void energy_after_step(struct simulation *sim)
 {
     double *const work = &sim->state.wall_work;
     if (sim->effects & FX_MOTION && sim->effects & FX_FLUID)
-        *work += sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
+        *work += sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->particles[KIND_WALL]);
     *work += sim->solid.work;
     sim->solid.work = 0;
     damping_book(&sim->damping, sim->state.dt);
@@ -442,7 +442,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     /* Energy of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive.
      * Beside it the energy at the start from rest says nothing. */
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
-    const double driven = sim->effects & FX_OPEN ? flow * (double)sim->kind[KIND_FLUID].n : 0;
+    const double driven = sim->effects & FX_OPEN ? flow * (double)sim->particles[KIND_FLUID].n : 0;
     find_energies(sim, of);
     if (sim->effects & FX_SOLID) add_late_work(sim, &of[energy_entry(KIND_SOLID, 0)]);
     join_neighbours(sim);
@@ -491,7 +491,7 @@ void energy_test_if_due(struct simulation *sim)
     energy_supply(sim, KIND_FLUID, 0, open - account->open); /* other than by the constraint */
     account->open = open;
     if (!test_is_due(sim)) return;
-    if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+    if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);
     sim->gain.found = true;
     account->tested_at = sim->state.time;
@@ -552,7 +552,7 @@ static void write_fastest(const struct simulation *sim, int region, char text[TE
     double top = -1, x = 0, y = 0;
     int fastest = region;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
+        const struct particles *const particles = &sim->particles[kind];
         for (int64_t i = 0; i < particles->n; i++) {
             const double speed2 = square(particles->vx[i]) + square(particles->vy[i]);
             const int own = energy_entry((enum kind)kind, particles->body[i]);

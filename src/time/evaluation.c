@@ -7,12 +7,13 @@
 void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->kind[KIND_WALL], scene_time(sim, time));
+    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->particles[KIND_WALL],
+                      scene_time(sim, time));
     for (int j = 0; j < sim->fluid.lines.n; j++) {
         struct thin_line *const line = &sim->fluid.lines.line[j];
         if (line->bends || !(line->own || line->into[0] || line->into[1])) continue;
         if (line->own) line_follow(line, &line->own->placed);
-        line_place(line, &sim->kind[KIND_WALL], time != sim->state.time);
+        line_place(line, &sim->particles[KIND_WALL], time != sim->state.time);
     }
     if (sim->beams.line)
         sim->wall_motion.moved_most += beams_place(&sim->beams, time - sim->state.time);
@@ -21,18 +22,18 @@ void move_walls(struct simulation *sim, double time)
 void find_external(struct simulation *sim, enum kind kind, double time)
 {
     struct external *const external = &sim->external[kind];
-    const size_t bytes = (size_t)sim->kind[kind].n * sizeof *external->ax;
+    const size_t bytes = (size_t)sim->particles[kind].n * sizeof *external->ax;
     memset(external->ax, 0, bytes);
     memset(external->ay, 0, bytes);
-    external->at(external->context, max2(0, scene_time(sim, time)), &sim->kind[kind], external->ax,
-                 external->ay);
+    external->at(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
+                 external->ax, external->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
 static void add_external(struct simulation *sim, double time)
 {
     const struct external *const external = &sim->external[KIND_FLUID];
-    struct particles *const particles = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->particles[KIND_FLUID];
     find_external(sim, KIND_FLUID, time);
     double largest = sim->fluid.extremes.acceleration2;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -71,13 +72,13 @@ void evaluate_rates(struct simulation *sim, double time)
         phase_add(sim, PHASE_open, start);
     }
     if (sim->effects & FX_ANTUONO) sim->fluid.keeps_slopes = keeps_slopes(sim, time);
-    fluid_evaluate(&sim->fluid, sim->kind, &sim->cells, sim->phase_seconds);
+    fluid_evaluate(&sim->fluid, sim->particles, &sim->cells, sim->phase_seconds);
     const double clock = phase_clock();
-    coupling_find_forces(&sim->coupling, sim->kind, &sim->cells);
+    coupling_find_forces(&sim->coupling, sim->particles, &sim->cells);
     phase_add(sim, PHASE_wall, clock);
     if (sim->effects & FX_OPEN) open_hold(&sim->open);
     if (sim->effects & FX_DAMPING_ZONE)
-        damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->kind[KIND_FLUID]);
+        damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->particles[KIND_FLUID]);
     if (sim->external[KIND_FLUID].at) add_external(sim, time);
     if (sim->external[KIND_SOLID].at) find_external(sim, KIND_SOLID, time);
 }
@@ -88,7 +89,7 @@ void evaluate_start(struct simulation *sim)
     evaluate_rates(sim, sim->state.time);
     sim->evaluated = false;
     if (sim->effects & FX_DAMPER)
-        fluid_follow_density(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
+        fluid_follow_density(&sim->fluid, &sim->particles[KIND_FLUID], sim->state.dt);
 }
 
 void simulation_refresh(struct simulation *sim)
@@ -102,12 +103,12 @@ void simulation_refresh(struct simulation *sim)
                          !sim->scene->motion_hook;
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }
-    if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+    if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
 }
 
 void simulation_wall_forces(struct simulation *sim)
 {
     simulation_refresh(sim);
     if (sim->effects & FX_FLUID && !sim->cells_overfull)
-        coupling_find_wall_forces(&sim->coupling, sim->kind, &sim->cells);
+        coupling_find_wall_forces(&sim->coupling, sim->particles, &sim->cells);
 }

@@ -38,7 +38,7 @@ static struct finding find_invalid(const struct particles *particles, double spe
 static enum err invalid(const struct simulation *sim, enum kind kind, struct finding f,
                         const char *cause, struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[kind];
+    const struct particles *const particles = &sim->particles[kind];
     char limit[48];
     snprintf(limit, sizeof limit, isfinite(f.value) ? "beyond the limit of %.3g" : "not finite",
              f.limit);
@@ -89,8 +89,8 @@ static bool fluid_is_valid(struct simulation *sim)
 static enum err check_fluid(struct simulation *sim, struct diag *d)
 {
     if (!fluid_is_valid(sim)) {
-        const struct finding f =
-            find_invalid(&sim->kind[KIND_FLUID], sim->guard.speed_limit, sim->guard.dens_limit);
+        const struct finding f = find_invalid(&sim->particles[KIND_FLUID], sim->guard.speed_limit,
+                                              sim->guard.dens_limit);
         if (f.at >= 0)
             return invalid(sim, KIND_FLUID, f, sim->guard.warned_entered ? ENTERED : UNSTABLE, d);
     }
@@ -180,7 +180,7 @@ static enum err check_contact(struct simulation *sim, struct diag *d)
 
 static enum err check_solid(struct simulation *sim, struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     const struct finding fast = too_fast(sim, particles);
     if (fast.at >= 0)
         return invalid(sim, KIND_SOLID, fast,
@@ -234,8 +234,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
     if (dt > STEP_WARNING * limit) return ERR_OK;
     if (dt < limit)
         return diag_fail(d, ERR_GUARD, "%s: the time step has fallen to %.3g s, limited by %s; %s",
-                         time_text(sim).text, dt, bound_table[bound].name,
-                         step_remedy(sim, bound));
+                         time_text(sim).text, dt, bound_table[bound].name, step_remedy(sim, bound));
     warn_once(sim, &sim->guard.warned_step, d,
               "the time step has fallen to %.3g s, limited by %s, and the run stops at %.3g s; %s",
               dt, bound_table[bound].name, limit, step_remedy(sim, bound));
@@ -274,7 +273,7 @@ enum { VOIDS_INTERVAL = 256 };
 static void check_voids(struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     const double area = square(scene->top.dp);
     double volume = 0, margin = 0; /* a buffer has a row more or less */
     if (!scene->full || sim->guard.warned_voids || sim->state.steps % VOIDS_INTERVAL) return;
@@ -302,7 +301,7 @@ static void check_voids(struct simulation *sim, struct diag *d)
 /* A particle of a wall, or of a rigid body behind body k, inside of rigid body k; -1: none. */
 static int64_t find_entered(const struct simulation *sim, int k)
 {
-    const struct particles *const p = &sim->kind[KIND_WALL];
+    const struct particles *const p = &sim->particles[KIND_WALL];
     const struct moving_wall *const b = sim->rigid.body[k].wall;
     const double inside = RIGID_INSIDE * sim->scene->top.dp;
     struct box2 box = box2_empty();
@@ -323,7 +322,7 @@ static int64_t find_entered(const struct simulation *sim, int k)
 
 static void check_rigid(struct simulation *sim, struct diag *d)
 {
-    const struct particles *const p = &sim->kind[KIND_WALL];
+    const struct particles *const p = &sim->particles[KIND_WALL];
     if (sim->guard.warned_rigid || sim->state.steps % CHECK_INTERVAL) return;
     for (int k = 0; k < sim->rigid.n; k++) {
         const int64_t at = find_entered(sim, k);
@@ -370,7 +369,7 @@ static enum err check_hinges(struct simulation *sim, struct diag *d)
 /* A beam and a solid do not see each other. */
 static void check_beams_in_solids(struct simulation *sim, struct diag *d)
 {
-    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    const struct particles *const solid = &sim->particles[KIND_SOLID];
     int beam;
     if (sim->guard.warned_beam_in_solid || sim->state.steps % CHECK_INTERVAL) return;
     const int64_t i = beams_find_solid(&sim->beams, solid, 0.5 * sim->solid.dp, &beam);
@@ -453,7 +452,7 @@ enum err guards_check(struct simulation *sim, struct diag *d)
 
 void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d)
 {
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     diag_warn(d,
               "%s: fluid particle %lld has left the domain at (%.6g, %.6g) m and is removed: its "
               "mass and pressure will be missing; a [wall] in its way "
@@ -484,7 +483,7 @@ void guards_warn_of_leaving(struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
-        const struct particles *const p = &sim->kind[kind];
+        const struct particles *const p = &sim->particles[kind];
         for (int64_t first = 0, end = 0; first < p->n; first = end) {
             const int body = p->body[first];
             bool inside = kind == KIND_WALL && body < scene_rigid_wall(scene, 0);
@@ -494,7 +493,8 @@ void guards_warn_of_leaving(struct simulation *sim, struct diag *d)
                       "%s has left the domain by its %s side, and takes no part in the flow from "
                       "then on unless it comes back; a larger [domain] keeps it",
                       section_title(kind == KIND_SOLID ? &scene->solid[body].common
-                                                       : &scene->wall[body].common).text,
+                                                       : &scene->wall[body].common)
+                          .text,
                       side_beyond(scene, (double[]){p->x[first], p->y[first]}));
         }
     }
@@ -513,8 +513,9 @@ static bool inside_body(const struct simulation *sim, double x, double y)
 {
     const double at[2] = {x, y}, taken = TAKEN * sim->scene->top.dp;
     /* A stretched particle of a solid reaches further. */
-    const double reach = sim->kind[KIND_SOLID].n > 0 ? KERNEL_REACH * sim->scene->h : taken;
-    struct cell_visit v = cells_visit(&sim->cells, sim->kind, KIND_WALL, KIND_COUNT, at, reach);
+    const double reach = sim->particles[KIND_SOLID].n > 0 ? KERNEL_REACH * sim->scene->h : taken;
+    struct cell_visit v =
+        cells_visit(&sim->cells, sim->particles, KIND_WALL, KIND_COUNT, at, reach);
     while (cells_next(&v)) {
         const struct particles *const p = v.particles;
         double limit = taken;
@@ -533,8 +534,8 @@ static bool inside_body(const struct simulation *sim, double x, double y)
 
 int64_t guards_count_entered(const struct simulation *sim, int64_t *first)
 {
-    const struct cell_list *const fluid = &sim->cells.kind[KIND_FLUID];
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct cell_list *const fluid = &sim->cells.list[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     int64_t count = 0, lowest = INT64_MAX;
 #pragma omp parallel for schedule(static) reduction(+ : count) reduction(min : lowest)
     for (int32_t k = 0; k < fluid->n_active; k++) {
@@ -560,7 +561,7 @@ enum err guards_check_entered(struct simulation *sim, struct diag *d)
         return ERR_OK;
     int64_t first;
     const int64_t count = guards_count_entered(sim, &first);
-    const struct particles *const particles = &sim->kind[KIND_FLUID];
+    const struct particles *const particles = &sim->particles[KIND_FLUID];
     if (count == 0) return ERR_OK;
     sim->state.entered = sim->state.entered > count ? sim->state.entered : count;
     if (count > ENTERED_LEAST && (double)count > ENTERED_SHARE * (double)particles->n)

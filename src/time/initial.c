@@ -9,7 +9,7 @@ static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_
 {
     const struct scene_points *const points = &sim->scene->points[kind];
     unsigned groups = effects_groups(sim->effects, kind);
-    struct particles *const particles = &sim->kind[kind];
+    struct particles *const particles = &sim->particles[kind];
     memset(particles, 0, sizeof *particles);
     if (!groups || points->n == 0) return ERR_OK;
     if (kind == KIND_FLUID) groups |= sim->integrator->fluid_groups;
@@ -37,7 +37,7 @@ static double expr_or(const struct expr *e, double x, double y, double otherwise
 
 static void start_fluid(struct simulation *sim)
 {
-    struct particles *const particles = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         const struct scene_fluid *const f = &sim->scene->fluid[particles->body[i]];
         const double x = particles->x[i], y = particles->y[i];
@@ -62,7 +62,7 @@ static void start_fluid(struct simulation *sim)
 
 static void start_solid(struct simulation *sim)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         const struct scene_solid *const b = &sim->scene->solid[particles->body[i]];
         particles->vx[i] =
@@ -88,7 +88,7 @@ static bool implicit_pays(const struct simulation *sim)
         possible &= sim->solid.body[k].variational || !(sim->solid.body[k].kappa > 0);
     if (!possible) return false;
     const double substeps = timestep_fluid_limit(sim) / sim->dt_solid;
-    return substeps > implicit_pays_from(&sim->solid, &sim->kind[KIND_SOLID]);
+    return substeps > implicit_pays_from(&sim->solid, &sim->particles[KIND_SOLID]);
 }
 
 /* Sub-steps help where the solid's step is the smaller one. */
@@ -132,24 +132,25 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
     const struct scene *const scene = sim->scene;
     const double reach = KERNEL_REACH * scene->h, stray = scene->numerics.skin * scene->h;
     TRY(cells_create(&sim->cells, &sim->arena, scene->domain_lower, scene->domain_upper,
-                     scene->top.dp, reach, stray, sim->kind, d));
+                     scene->top.dp, reach, stray, sim->particles, d));
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&sim->cells, axis, reach, d));
-    TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->kind, &sim->cells, d));
+    TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->particles, &sim->cells, d));
     start_fluid(sim);
     if (!(sim->effects & FX_DAMPING_ZONE)) return ERR_OK;
-    return damping_create(&sim->damping, &sim->arena, scene, sim->kind[KIND_FLUID].capacity, d);
+    return damping_create(&sim->damping, &sim->arena, scene, sim->particles[KIND_FLUID].capacity,
+                          d);
 }
 
 static enum err create_bare_solids(struct simulation *sim, struct diag *d)
 {
-    TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID],
+    TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->particles[KIND_SOLID],
                      sim->effects & FX_IMPLICIT, d));
     sim->solid.centred = sim->integrator->centred || sim->effects & FX_IMPLICIT;
     if (sim->effects & FX_HINGE)
-        TRY(hinges_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
+        TRY(hinges_create(&sim->solid, &sim->arena, sim->scene, &sim->particles[KIND_SOLID], d));
     start_solid(sim);
-    sim->solid.stable_step = solid_stable_step(&sim->solid, &sim->kind[KIND_SOLID],
+    sim->solid.stable_step = solid_stable_step(&sim->solid, &sim->particles[KIND_SOLID],
                                                &sim->solid.omega_max, &sim->solid.damping_max);
     return ERR_OK;
 }
@@ -162,18 +163,18 @@ static enum err create_solids(struct simulation *sim, struct diag *d)
     timestep_set_solid(sim);
     if (implicit_pays(sim)) {
         sim->effects |= FX_IMPLICIT;
-        TRY(particles_add(&sim->kind[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
+        TRY(particles_add(&sim->particles[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
         TRY(create_bare_solids(sim, d));
     }
     if (sim->effects & FX_CONTACT)
         TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
-                           &sim->kind[KIND_SOLID], d));
+                           &sim->particles[KIND_SOLID], d));
     if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION))
-        TRY(loads_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
+        TRY(loads_create(&sim->solid, &sim->arena, sim->scene, &sim->particles[KIND_SOLID], d));
     if (sim->effects & FX_IMPLICIT) {
-        TRY(implicit_create(&sim->solid, &sim->arena, &sim->kind[KIND_SOLID], d));
+        TRY(implicit_create(&sim->solid, &sim->arena, &sim->particles[KIND_SOLID], d));
         if (!(sim->effects & FX_FLUID))
-            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->kind[KIND_SOLID]);
+            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->particles[KIND_SOLID]);
     }
     sim->solid.gravity_scene = sim->gravity_varies ? sim->scene : NULL;
     timestep_set_solid(sim);
@@ -198,36 +199,37 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         TRY(fill_kind(sim, (enum kind)kind, id, d));
-        id += sim->kind[kind].n;
+        id += sim->particles[kind].n;
     }
     if (sim->effects & FX_FLUID) TRY(create_fluid(sim, d));
     sim->open = (struct open){.k = &sim->fluid.k,
-                              .particles = &sim->kind[KIND_FLUID],
+                              .particles = &sim->particles[KIND_FLUID],
                               .cells = &sim->cells};
     if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, &sim->arena, sim->scene, id, d));
     sim->coupling = (struct coupling){
         .scene = sim->scene,
         .fluid = &sim->fluid,
         .solid = &sim->solid,
-        .particles = &sim->kind[KIND_SOLID],
+        .particles = &sim->particles[KIND_SOLID],
         .stage = sim->integrator->stage,
         .exchange_time = &sim->state.exchange_time,
     };
     if (sim->effects & FX_SOLID) TRY(create_solids(sim, d));
     if (sim->effects & FX_MOTION) {
-        TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene, &sim->kind[KIND_WALL],
-                               d));
+        TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene,
+                               &sim->particles[KIND_WALL], d));
         if (sim->effects & FX_RIGID)
             TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
-                             &sim->kind[KIND_WALL],
+                             &sim->particles[KIND_WALL],
                              sim->integrator->stage > 0 || !(sim->effects & FX_FLUID), d));
         if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
     if (sim->effects & FX_BEAM && sim->effects & FX_RIGID) sim->beams.rigid = &sim->rigid;
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
-        TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines, &sim->kind[KIND_WALL],
-                             sim->integrator->stage, sim->integrator->alternates, d));
+        TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines,
+                             &sim->particles[KIND_WALL], sim->integrator->stage,
+                             sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);
     if (!(sim->effects & FX_FLUID)) set_step_of_bodies(sim);

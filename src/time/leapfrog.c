@@ -43,7 +43,7 @@ static void update_leapfrog_range(struct particles *particles, const void *param
 
 static void update_leapfrog(struct simulation *sim, double dt)
 {
-    struct particles *const particles = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->particles[KIND_FLUID];
     const double dt_old = sim->state.dt;
     const struct leapfrog_step step = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
                                        step_ratio(dt_old, sim->state.dt_old)};

@@ -5,8 +5,8 @@
 
 static double kinetic_energy(const struct simulation *sim)
 {
-    const struct particles *const f = &sim->kind[KIND_FLUID], *const particles =
-                                                                  &sim->kind[KIND_SOLID];
+    const struct particles *const f = &sim->particles[KIND_FLUID], *const particles =
+                                                                       &sim->particles[KIND_SOLID];
     double fluid = 0, solid = 0;
     for (int64_t i = 0; i < f->n; i++)
         fluid += relative_mass(f, i) * (square(f->vx[i]) + square(f->vy[i]));
@@ -20,7 +20,7 @@ static double kinetic_energy(const struct simulation *sim)
  * step before. Zero instead would put energy into the fastest modes. */
 static void clear_solid_velocities(struct simulation *sim)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     const double back = -0.5 * sim->state.dt / sim->substeps;
     particles_clear(particles->vx, particles->n);
     particles_clear(particles->vy, particles->n);
@@ -38,7 +38,7 @@ static void clear_solid_velocities(struct simulation *sim)
 /* The integrators' memories of earlier steps end with the motion. */
 static void clear_velocities(struct simulation *sim)
 {
-    const struct particles *const f = &sim->kind[KIND_FLUID];
+    const struct particles *const f = &sim->particles[KIND_FLUID];
     double *const of_fluid[] = {f->vx,     f->vy,     f->vx_half,   f->vy_half,
                                 f->vx_old, f->vy_old, f->ddens_old, f->ddens_older};
     for (size_t k = 0; k < COUNT_OF(of_fluid); k++) particles_clear(of_fluid[k], f->n);
@@ -65,7 +65,7 @@ void relax_end(struct simulation *sim)
         .relax_quiet_since = found.relax_quiet_since,
         .relax_peaks = found.relax_peaks,
     };
-    solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], 0);
+    solid_place_clamps(&sim->solid, &sim->particles[KIND_SOLID], 0);
     energy_begin(sim);
 }
 
@@ -117,7 +117,7 @@ static enum err check_held(const struct simulation *sim, const struct particles 
 /* T-78a: solids without fluid, at once; if that fails, they move as with fluid. */
 static enum err find_equilibrium(struct simulation *sim, struct diag *d)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     sim->guard.case_at_fault = true; /* a body that nothing holds */
     TRY(equilibrium_find(&sim->rest, &sim->solid, particles, sim->scene,
                          sim->effects & FX_CONTACT ? &sim->contact : NULL, d));
@@ -152,13 +152,13 @@ enum err relax_step(struct simulation *sim, struct diag *d)
     if (first && !(sim->effects & FX_FLUID)) TRY(find_equilibrium(sim, d));
     if (!sim->state.seeks_rest) return ERR_OK;
     if (first) /* clamps at rest */
-        solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], scene_time(sim, 0));
+        solid_place_clamps(&sim->solid, &sim->particles[KIND_SOLID], scene_time(sim, 0));
     TRY(simulation_step(sim, (double)INFINITY, d));
     sim->guard.case_at_fault = true; /* for what follows */
     if (scene->n_fluid)
-        TRY(check_held(sim, &sim->kind[KIND_FLUID], -1, &scene->fluid[0].common, d));
+        TRY(check_held(sim, &sim->particles[KIND_FLUID], -1, &scene->fluid[0].common, d));
     for (int b = 0; b < scene->n_solid; b++)
-        TRY(check_held(sim, &sim->kind[KIND_SOLID], b, &scene->solid[b].common, d));
+        TRY(check_held(sim, &sim->particles[KIND_SOLID], b, &scene->solid[b].common, d));
     test_for_rest(sim);
     if (sim->state.seeks_rest) TRY(check_limit(sim, d));
     sim->guard.case_at_fault = false;

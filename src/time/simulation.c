@@ -36,7 +36,7 @@ enum err simulation_set_external(struct simulation *sim, enum kind kind, externa
                                  void *context, struct diag *d)
 {
     struct external *const external = &sim->external[kind];
-    const size_t n = (size_t)sim->kind[kind].capacity;
+    const size_t n = (size_t)sim->particles[kind].capacity;
     if (!external->ax) TRY(arena_array(&sim->arena, &external->ax, n, "accelerations", d));
     if (!external->ay) TRY(arena_array(&sim->arena, &external->ay, n, "accelerations", d));
     external->at = at;
@@ -51,7 +51,7 @@ void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 /* Adds the magnitude of the impulse that fluid and structure exchanged in the last step. */
 static void add_exchanged_impulse(struct simulation *sim)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     double fx = 0, fy = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         fx += particles->fx[i];
@@ -75,11 +75,11 @@ static enum err step_and_check(struct simulation *sim, double t_limit, struct di
     clock = phase_clock();
     /* Done here so that the state does not depend on output between two steps. */
     if (sim->effects & FX_SHIFTING) {
-        sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
+        sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->particles[KIND_FLUID], sim->state.dt);
         clock = phase_add(sim, PHASE_shift, clock);
     }
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
-    if (guards_strain_due(sim)) solid_write_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+    if (guards_strain_due(sim)) solid_write_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     find_speed(sim);
     if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);
     energy_after_step(sim);
@@ -105,7 +105,7 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     const double begin = wall_clock();
     thread_use(sim->team.now);
     sim->fluid.threads = sim->team.now;
-    solid_use_threads(&sim->solid, &sim->kind[KIND_SOLID], sim->team.now);
+    solid_use_threads(&sim->solid, &sim->particles[KIND_SOLID], sim->team.now);
     sim->solid.time = scene_time(sim, sim->state.time);
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     enum err e = ERR_OK;
@@ -122,15 +122,16 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     if (sim->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
-            if (sim->kind[kind].capacity && (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
-                cells_rebuild(&sim->cells, (enum kind)kind, &sim->kind[kind]);
+            if (sim->particles[kind].capacity &&
+                (kind != KIND_SOLID || (sim->effects & FX_COUPLING)))
+                cells_rebuild(&sim->cells, (enum kind)kind, &sim->particles[kind]);
         if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
         if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) /* the run has warned */
             guards_warn_of_leaving(sim, &(struct diag){.warn = NULL});
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);
-        if (sim->effects & FX_COUPLING) forget_fluid(&sim->kind[KIND_SOLID]);
-        if (sim->effects & FX_WALL) forget_fluid(&sim->kind[KIND_WALL]);
+        if (sim->effects & FX_COUPLING) forget_fluid(&sim->particles[KIND_SOLID]);
+        if (sim->effects & FX_WALL) forget_fluid(&sim->particles[KIND_WALL]);
         if (cells_fullest(&sim->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT,
                              "the checkpoint cannot be used, because it has more than %d particles "
@@ -141,9 +142,10 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         timestep_set_solid(sim);
         if (sim->effects & FX_COUPLING)
             coupling_set_rate(&sim->coupling, sim->effects, timestep_fluid_limit(sim));
-        contact_forget(&sim->contact, &sim->kind[KIND_WALL]);
-        if (sim->effects & FX_IMPLICIT) implicit_resume(&sim->solid, &sim->kind[KIND_SOLID]);
-        solid_stress(&sim->solid, &sim->kind[KIND_SOLID]); /* the guards read the last gradients */
+        contact_forget(&sim->contact, &sim->particles[KIND_WALL]);
+        if (sim->effects & FX_IMPLICIT) implicit_resume(&sim->solid, &sim->particles[KIND_SOLID]);
+        /* The guards read the last gradients. */
+        solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     }
     update_extremes(sim);
     find_speed(sim);
@@ -154,7 +156,7 @@ uint64_t simulation_hash(struct simulation *sim)
 {
     simulation_refresh(sim);
     uint64_t h = HASH_START;
-    for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&sim->kind[kind], h);
+    for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&sim->particles[kind], h);
     struct state state = sim->state;
     state.energy_start = state.gain = state.gain_share = state.gain_since = 0;
     h = hash_bytes(h, &state, offsetof(struct state, energy));

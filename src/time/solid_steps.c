@@ -22,7 +22,7 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     if (integrator->solid_step && !solid->implicit) {
         for (int k = 0; k < n; k++) integrator->solid_step(sim, dt);
     } else {
-        solid_advance_any(solid, &sim->kind[KIND_SOLID], dt / sim->substeps, all);
+        solid_advance_any(solid, &sim->particles[KIND_SOLID], dt / sim->substeps, all);
         sim->state.solid_evaluations += all;
     }
 }
@@ -47,7 +47,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
         part = near ? 1 : *n - k;
         if (sim->observer.context) /* up to the state before a time observed, then over it */
             part = (int)max2(1, min2(floor((sim->observer.next - st->time) / step - 1e-6), part));
-        if (k && sim->observer.context) solid_set_positions(&sim->kind[KIND_SOLID]);
+        if (k && sim->observer.context) solid_set_positions(&sim->particles[KIND_SOLID]);
         TRY(observe(sim, st->time + (part + 1e-6) * step, d));
         if (sim->effects & FX_RIGID) begin_rigid(sim, st->time, step, step);
         advance_lone(sim, step, part);
@@ -64,7 +64,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
  * positions after the step follow later. */
 static void external_for_step(struct simulation *sim, double dt)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     const double half = sim->solid.centred ? 0.5 * dt : 0;
     for (int64_t i = 0; half > 0 && i < particles->n; i++) {
         particles->x[i] += half * particles->vx[i];
@@ -76,7 +76,7 @@ static void external_for_step(struct simulation *sim, double dt)
 /* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
 static void add_external_work(struct simulation *sim, double dt)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         energy_supply(sim, KIND_SOLID, particles->body[i],
@@ -107,7 +107,7 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
     TRY(advance_batch(sim, near, dt, &n, &cut, d));
     if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
-    solid_set_positions(&sim->kind[KIND_SOLID]);
+    solid_set_positions(&sim->particles[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));
     timestep_count(sim, dt, n);
     return ERR_OK;

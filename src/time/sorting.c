@@ -36,8 +36,9 @@ void find_skin_left(struct simulation *sim)
 
 enum err sort_particles(struct simulation *sim, struct diag *d)
 {
-    struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
-    if (sim->effects & FX_WALL) forget_fluid(&sim->kind[KIND_WALL]);
+    struct particles *const fluid = &sim->particles[KIND_FLUID], *const solid =
+                                                                     &sim->particles[KIND_SOLID];
+    if (sim->effects & FX_WALL) forget_fluid(&sim->particles[KIND_WALL]);
     if (sim->effects & FX_COUPLING) forget_fluid(solid);
     if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, d));
     const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
@@ -52,9 +53,9 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     sim->state.lost += lost;
     if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, d));
     if ((sim->effects & FX_WALL) && sim->state.sorts == 0)
-        cells_sort(&sim->cells, KIND_WALL, &sim->kind[KIND_WALL]);
+        cells_sort(&sim->cells, KIND_WALL, &sim->particles[KIND_WALL]);
     else if (sim->effects & FX_MOTION)
-        wall_motion_sort(&sim->wall_motion, &sim->cells, &sim->kind[KIND_WALL]);
+        wall_motion_sort(&sim->wall_motion, &sim->cells, &sim->particles[KIND_WALL]);
     if (sim->effects & FX_COUPLING) cells_sort(&sim->cells, KIND_SOLID, solid);
     if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) guards_warn_of_leaving(sim, d);
     fluid_find_near(&sim->fluid, &sim->cells);
@@ -85,7 +86,7 @@ void use_skin_left(struct simulation *sim, double speed2_before)
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
                          sim->sorting.shifted;
     const double other = max2(sim->sorting.solid_move, sim->wall_motion.moved_most);
-    for (int side = 0; side < 4; side++) sim->cells.kind[KIND_FLUID].overhang[side] += moved;
+    for (int side = 0; side < 4; side++) sim->cells.list[KIND_FLUID].overhang[side] += moved;
     sim->sorting.skin_left -= moved + max2(moved, other);
     sim->wall_motion.moved_most = 0;
 }
@@ -95,7 +96,7 @@ static void measure_overhangs(struct simulation *sim, enum kind first)
     const bool moves[] = {true, sim->wall_motion.moved, (sim->effects & FX_COUPLING) != 0};
     for (int kind = (int)first; kind < KIND_COUNT; kind++)
         if (moves[kind])
-            cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
+            cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->particles[kind]);
     find_skin_left(sim);
 }
 
@@ -117,7 +118,7 @@ int particles_near(const struct simulation *sim, double x, double y, int kinds)
 {
     const double at[] = {x, y};
     struct cell_visit v =
-        cells_visit(&sim->cells, sim->kind, 0, kinds, at, KERNEL_REACH * sim->fluid.k.h);
+        cells_visit(&sim->cells, sim->particles, 0, kinds, at, KERNEL_REACH * sim->fluid.k.h);
     int n = 0;
     while (cells_next(&v)) n++;
     return n;
@@ -130,7 +131,7 @@ void limit_isolated_tension(struct simulation *sim)
     const double factor = sim->scene->numerics.sound_factor;
     const double lowest = max2(-1 / factor, -2.0 / 3 * sim->guard.dens_limit);
     if (!(sim->extremes.dens_low < lowest)) return;
-    struct particles *const particles = &sim->kind[KIND_FLUID];
+    struct particles *const particles = &sim->particles[KIND_FLUID];
     /* Particles within reach: a third of the number inside the fluid, fewer than a corner of
      * it has. */
     const double reach = KERNEL_REACH * sim->fluid.k.h / sim->scene->top.dp;

@@ -88,9 +88,9 @@ struct simulation {
     const struct scene *scene; /* borrowed; outlives the simulation */
     const struct integrator *integrator;
     struct arena arena;
-    struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
+    struct particles particles[KIND_COUNT]; /* fluid, wall, solid */
     struct cells cells;
-    struct fluid fluid; /* model and sweeps of fluid and walls; unused without fluid */
+    struct fluid fluid;             /* model and sweeps of fluid and walls; unused without fluid */
     struct wall_motion wall_motion; /* walls that move; unused where none does */
     struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
     struct beams beams;             /* unused without any */

@@ -57,8 +57,8 @@ static void correct_range(struct particles *particles, const void *parameters, i
 
 static void rates_of_solid(struct simulation *sim)
 {
-    solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
-    solid_forces(&sim->solid, &sim->kind[KIND_SOLID]);
+    solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
+    solid_forces(&sim->solid, &sim->particles[KIND_SOLID]);
     sim->state.solid_evaluations++;
 }
 
@@ -92,15 +92,15 @@ static void correct_solid(struct particles *particles, double dt)
 /* The first half of the solid's step of the same length as the fluid's, with the interface. */
 static void predict_at_single_rate(struct simulation *sim, double dt)
 {
-    predict_solid(&sim->kind[KIND_SOLID], 0.5 * dt);
+    predict_solid(&sim->particles[KIND_SOLID], 0.5 * dt);
     sim->solid.time = scene_time(sim, sim->state.time + 0.5 * dt);
-    solid_place_clamps(&sim->solid, &sim->kind[KIND_SOLID], sim->solid.time);
+    solid_place_clamps(&sim->solid, &sim->particles[KIND_SOLID], sim->solid.time);
     motion_at_single_rate(&sim->coupling, 0);
 }
 
 static void correct_at_single_rate(struct simulation *sim, double dt)
 {
-    struct particles *const solid = &sim->kind[KIND_SOLID];
+    struct particles *const solid = &sim->particles[KIND_SOLID];
     correct_solid(solid, dt);
     energy_book_solid(sim, dt, 1);
     solid_finish_kick(&sim->solid, solid, solid->vx0, solid->vy0, dt);
@@ -126,7 +126,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     const bool needs_fields =
         sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].at;
     if (needs_fields)
-        predict_fields(&sim->kind[KIND_FLUID], 0.5 * dt);
+        predict_fields(&sim->particles[KIND_FLUID], 0.5 * dt);
     else
         sim->fluid.predict_by = 0.5 * dt;
     if (multirate) coupling_predict(&sim->coupling, dt);
@@ -143,7 +143,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
 
-    if (needs_fields) swap_states(&sim->kind[KIND_FLUID]);
+    if (needs_fields) swap_states(&sim->particles[KIND_FLUID]);
     advance_fluid(sim, correct_range, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
@@ -154,7 +154,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
 
 static void symplectic_solid(struct simulation *sim, double dt)
 {
-    struct particles *const particles = &sim->kind[KIND_SOLID];
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     rates_of_solid(sim);
     predict_solid(particles, 0.5 * dt);
     sim->solid.time += 0.5 * dt;

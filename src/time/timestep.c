@@ -45,8 +45,8 @@ static double bound_value(const struct simulation *sim, enum bound k,
         return square(f->h / f->dp) * f->h / (8.1 * sqrt(f->model->wall_repulsion) * f->c_u);
     case BOUND_viscous: { /* L-6b gives pairs with a surface twice the weight */
         const double weight = sim->effects & FX_NO_SLIP && sim->effects & FX_ONE_SIDED ? 2 : 1;
-        const double inside = 0.125 * square(f->h) * f->second_moment /
-                              (weight * f->model->laminar_viscosity);
+        const double inside =
+            0.125 * square(f->h) * f->second_moment / (weight * f->model->laminar_viscosity);
         return sim->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&sim->coupling))
                                           : inside;
     }
@@ -62,8 +62,8 @@ static double bound_value(const struct simulation *sim, enum bound k,
         double rate = 0;
         for (int z = 0; z < sim->scene->n_damping; z++) rate += sim->scene->damping[z].rate;
         /* A decay that fluid cannot pass on grows until two alternating solutions meet again. */
-        const double limit = sim->integrator->alternates ? 2.0 / n->verlet_reset
-                                                         : sim->integrator->velocity_decay;
+        const double limit =
+            sim->integrator->alternates ? 2.0 / n->verlet_reset : sim->integrator->velocity_decay;
         return 0.9 * limit / rate;
     }
     case BOUND_spring: {
@@ -212,7 +212,7 @@ bool timestep_watch_contact(struct simulation *sim, double time, int steps)
                            : sim->effects & FX_FLUID ? timestep_fluid_limit(sim)
                                                      : sim->dt_lone_solid;
     const bool near =
-        contact_watch(&sim->contact, &sim->kind[KIND_SOLID], time, longest, steps * longest);
+        contact_watch(&sim->contact, &sim->particles[KIND_SOLID], time, longest, steps * longest);
     const double resolved = min2(sim->dt_lone_solid, sim->scene->numerics.solid_safety * RESOLVED /
                                                          sqrt(sim->contact.first_omega2));
     /* Sub-steps are held as a number. Without them this is the last time with surfaces near. */
@@ -237,10 +237,11 @@ void timestep_recheck_solid(struct simulation *sim)
 {
     struct state *const st = &sim->state;
     if (sim->scene->numerics.fixed_step > 0) return;
-    const double now = solid_stiffening(&sim->solid, &sim->kind[KIND_SOLID]);
+    const double now = solid_stiffening(&sim->solid, &sim->particles[KIND_SOLID]);
     if (now <= STIFFER * st->solid_stiffening && now >= SOFTER * st->solid_stiffening) return;
     double omega, damping;
-    const double step = solid_stable_step(&sim->solid, &sim->kind[KIND_SOLID], &omega, &damping);
+    const double step =
+        solid_stable_step(&sim->solid, &sim->particles[KIND_SOLID], &omega, &damping);
     if (!(step > 0)) return; /* not a number: the guards report the cause */
     st->solid_stiffening = now;
     st->solid_slowing = step / sim->solid.stable_step;
@@ -253,7 +254,7 @@ void timestep_count(struct simulation *sim, double dt, int n)
     st->dt = dt;
     st->dt_max = max2(st->dt_max, dt);
     st->steps += n;
-    st->particle_steps += n * (sim->kind[KIND_FLUID].n + sim->kind[KIND_SOLID].n);
+    st->particle_steps += n * (sim->particles[KIND_FLUID].n + sim->particles[KIND_SOLID].n);
     st->bound_steps[timestep_binding(sim)] += n;
 }
 

@@ -38,7 +38,7 @@ static void compare(const char *integrator)
     const double times[] = {0.025, 0.055};
     for (int k = 0; k < 2; k++) {
         const uint64_t skipped = run(false, integrator, times[k]);
-        const struct cell_list *const walls = &rig.sim.cells.kind[KIND_WALL];
+        const struct cell_list *const walls = &rig.sim.cells.list[KIND_WALL];
         TEST_ASSERT_TRUE(2 * rig.sim.fluid.n_near_fluid[KIND_WALL] < walls->n_active);
         TEST_ASSERT_TRUE(rig.sim.state.sorts > 10);
         const uint64_t worked = run(true, integrator, times[k]);
@@ -57,8 +57,8 @@ static void test_walls_are_all_listed(void)
     rig_open(&rig, scene, NULL);
     for (int k = 0; k < 30; k++) {
         rig_steps(&rig, 10, 1);
-        const struct cell_list *const list = &rig.sim.cells.kind[KIND_WALL];
-        const struct particles *const particles = &rig.sim.kind[KIND_WALL];
+        const struct cell_list *const list = &rig.sim.cells.list[KIND_WALL];
+        const struct particles *const particles = &rig.sim.particles[KIND_WALL];
         int64_t seen = 0;
         for (int32_t m = 0; m < list->n_active; m++) {
             const int32_t cell = list->active[m];

@@ -171,9 +171,8 @@ static void sums_with(effect_set effects, uint64_t *fluid, uint64_t *force)
 {
     rig.sim.effects = rig.sim.fluid.effects = effects;
     rig_evaluate(&rig);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
-                                                                             &rig.sim
-                                                                                  .kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID],
+                                  *const s = &rig.sim.particles[KIND_SOLID];
     const double *const of_fluid[] = {particles->ax,       particles->ay,       particles->ddens,
                                       particles->grad_c_x, particles->grad_c_y, particles->div_r};
     *fluid = *force = HASH_START;
@@ -193,7 +192,7 @@ static void test_every_pair_effect_has_a_law(void)
     rig_switches.generic_variant = false;
     uint64_t seed = 3, fluid, force, fluid_without, force_without;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const particles = &rig.sim.kind[kind];
+        struct particles *const particles = &rig.sim.particles[kind];
         for (int64_t i = 0; i < particles->n; i++) {
             particles->x[i] += 0.002 * noise(&seed);
             particles->y[i] += 0.002 * noise(&seed);

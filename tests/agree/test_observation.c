@@ -71,8 +71,9 @@ static void test_walls_forget_the_fluid(void)
 {
     struct rig rig = {0};
     rig_open(&rig, piston, NULL);
-    struct particles *const fluid = &rig.sim.kind[KIND_FLUID], *const wall =
-                                                                   &rig.sim.kind[KIND_WALL];
+    struct particles *const fluid = &rig.sim.particles[KIND_FLUID], *const wall =
+                                                                        &rig.sim
+                                                                             .particles[KIND_WALL];
     double top = 0;
     for (int64_t i = 0; i < wall->n; i++) top = fmax(top, wall->p[i]);
     TEST_ASSERT_TRUE(top > 1000);

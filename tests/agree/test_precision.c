@@ -28,7 +28,7 @@ struct picture {
 /* Fields by id, since the fluid is sorted. */
 static void take(struct picture *q)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     TEST_ASSERT_EQUAL_INT64(MOST, particles->n);
     for (int64_t i = 0; i < particles->n; i++) {
         q->x[particles->id[i]] = particles->x[i];

@@ -105,7 +105,7 @@ static uint64_t push(int threads)
     thread_use(threads);
     rig_open(&rig, bar, "precision=mixed", NULL);
     struct solid *const solid = &rig.sim.solid;
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     solid->threads = threads;
     double force[2][1200];
     TEST_ASSERT_TRUE(particles->n <= 1200);

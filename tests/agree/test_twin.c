@@ -54,7 +54,7 @@ static void disorder(void)
 {
     uint64_t seed = 42, other = 7; /* places are the same whatever fields there are */
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const particles = &rig.sim.kind[kind];
+        struct particles *const particles = &rig.sim.particles[kind];
         for (int64_t i = 0; i < particles->n; i++) {
             particles->x[i] += 0.002 * noise(&seed);
             particles->y[i] += 0.002 * noise(&seed);
@@ -75,7 +75,7 @@ static void disorder(void)
 
 static void compare_fluid(double tolerance)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     const double rho0 = twin.rho0;
     double top_a = 0, top_rho = 0, size_a = 0, size_rho = 0, size_p = 0, top_p = 0;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -109,7 +109,7 @@ static void compare_fluid(double tolerance)
  * compared with the others' all the same. */
 static void compare_dummies(enum kind kind, double tolerance)
 {
-    const struct particles *const particles = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.particles[kind];
     const double c2 = twin.rho0 * twin.c0 * twin.c0;
     double top = 0, top_rho = 0, size = 0;
     int64_t wet = 0, dry = 0;
@@ -134,7 +134,7 @@ static void compare_dummies(enum kind kind, double tolerance)
 
 static void compare_forces(double tolerance)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     double top = 0, size = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         const struct twin_point *const q = &twin.point[KIND_SOLID][i];
@@ -172,7 +172,7 @@ static void agree_with_earlier_slopes(const char *text, const char *precision, d
     twin_copy(&before, &rig.sim);
     rig_evaluate(&rig);
     twin_evaluate(&before);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x[i] += 2e-4 * noise(&seed);
         particles->y[i] += 2e-4 * noise(&seed);
@@ -246,8 +246,8 @@ static void test_the_comparison_can_fail(void)
         double a = 0, rho = 0, size_a = 0, size_rho = 0;
         for (int64_t i = 0; i < twin.n[KIND_FLUID]; i++) {
             const struct twin_point *const q = &twin.point[KIND_FLUID][i];
-            a = fmax(a, fabs(rig.sim.kind[KIND_FLUID].ay[i] - q->ay));
-            rho = fmax(rho, fabs(rig.sim.kind[KIND_FLUID].ddens[i] * twin.rho0 - q->drho));
+            a = fmax(a, fabs(rig.sim.particles[KIND_FLUID].ay[i] - q->ay));
+            rho = fmax(rho, fabs(rig.sim.particles[KIND_FLUID].ddens[i] * twin.rho0 - q->drho));
             size_a = fmax(size_a, q->size_a);
             size_rho = fmax(size_rho, q->size_drho);
         }

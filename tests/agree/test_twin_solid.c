@@ -85,7 +85,7 @@ static void compare_stress(const struct particles *particles)
 static void compare(const char *set, const char *another, const char *third)
 {
     rig_open(&rig, text, precision, set, another, third, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     deform(particles);
     timestep_watch_contact(&rig.sim, 0, 1);
     solid_stress(&rig.sim.solid, particles);

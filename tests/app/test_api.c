@@ -118,8 +118,8 @@ static void force_on_solids_is_the_present_one(void)
         TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "x", &x));
         TEST_ASSERT_TRUE(sphfsi_time(s) == rig.sim.state.time);
         for (int64_t i = 0; i < x.count; i++)
-            TEST_ASSERT_TRUE(((const double *)x.data)[i] == rig.sim.kind[KIND_FLUID].x[i]);
-        const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+            TEST_ASSERT_TRUE(((const double *)x.data)[i] == rig.sim.particles[KIND_FLUID].x[i]);
+        const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
         double before[64], changed = 0, top = 0;
         TEST_ASSERT_TRUE(particles->n <= 64);
         for (int64_t i = 0; i < particles->n; i++) before[i] = particles->fx[i];

@@ -39,8 +39,8 @@ void tearDown(void) { session_close(&session); }
 static void check_bytes(const struct forecast *f)
 {
     double state = 0;
-    for (int k = 0; k < KIND_COUNT; k++) state += (double)particles_bytes(&sim->kind[k]);
-    const double particles = 100 + 45 + (double)sim->kind[KIND_WALL].n;
+    for (int k = 0; k < KIND_COUNT; k++) state += (double)particles_bytes(&sim->particles[k]);
+    const double particles = 100 + 45 + (double)sim->particles[KIND_WALL].n;
     const double fields = 2 * 5 * 140 * particles + 2 * state, rows = 18 * (20 * 12 + 200 * 7);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, fields + rows, f->disk);
 }

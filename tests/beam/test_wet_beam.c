@@ -138,7 +138,7 @@ static void test_snapshots_have_what_is_in_the_section(void)
         rig.sim.beams.state[n].x[1] = k * x * x / 2;
         rig.sim.beams.state[n].x[2] = k * x;
     }
-    const struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    const struct particles *const walls = &rig.sim.particles[KIND_WALL];
     const struct thin_line *const line = rig.sim.beams.line[0];
     for (int64_t i = 0; i < walls->n; i++) {
         const int on = i >= line->first && i < line->first + line->scene->n_dummies;
@@ -178,7 +178,7 @@ static void test_packing_does_not_pass_a_line(void)
              "[beam b]\nshape = polyline: " HULL
              "bending_stiffness = 50\naxial_stiffness = 1e6\nmass = 37.5\n",
              NULL);
-    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < fluid->n; i++) {
         TEST_ASSERT_TRUE(fluid->y[i] < 0.4);
         TEST_ASSERT_FALSE(fluid->x[i] > 0.6 && fluid->x[i] < 1 && fluid->y[i] > 0.3625);

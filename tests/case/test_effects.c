@@ -172,19 +172,19 @@ static void test_a_set_is_named_as_the_caller(void)
 static void test_nothing_is_allocated_that_is_not_needed(void)
 {
     rig_open(&rig, TOP FLUID WALL, NULL);
-    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_SOLID].capacity);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_FLUID].ux);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].ax);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].X);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.particles[KIND_SOLID].capacity);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_FLUID].ux);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_WALL].ax);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_WALL].X);
     TEST_ASSERT_NULL(rig.sim.fluid.sticks[KIND_WALL]);
     TEST_ASSERT_EQUAL_INT(PACKED_FIELDS, rig.sim.fluid.packed[KIND_WALL].n);
     rig_open(&rig, TOP SOLID WALL "[contact none]\nenabled = off\n", NULL);
-    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_FLUID].capacity);
-    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_WALL].capacity);
-    TEST_ASSERT_NULL(rig.sim.cells.kind[KIND_SOLID].start);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.particles[KIND_FLUID].capacity);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.particles[KIND_WALL].capacity);
+    TEST_ASSERT_NULL(rig.sim.cells.list[KIND_SOLID].start);
     TEST_ASSERT_NULL(rig.sim.fluid.neighbour_scratch);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].p);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].fx);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_SOLID].p);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_SOLID].fx);
 }
 
 static void check_phases(const char *text, const char *expected)

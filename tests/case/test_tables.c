@@ -105,8 +105,9 @@ static void test_a_cubic_is_smooth_and_does_not_overshoot(void)
 /* One file, a [table] for each column; also in constants and at the top. */
 static void test_columns(void)
 {
-    must_read("gravity = a(t), b(t) - 1\n" CASE "[motion move]\n" FILE_OF("a")
-              "column = 2\n" FILE_OF("b") "column = n\n[constants]\nn = 3\nc = 10*a(0.1)\n",
+    must_read("gravity = a(t), b(t) - 1\n" CASE
+              "[motion move]\n" FILE_OF("a") "column = 2\n" FILE_OF(
+                  "b") "column = n\n[constants]\nn = 3\nc = 10*a(0.1)\n",
               "0, 1, 4\n0.2, 2, -2\n");
     double g[2];
     scene_gravity_at(&scene, 0.05, g);
@@ -133,15 +134,16 @@ static void test_a_file_of_a_spreadsheet(void)
     must_read(MOVES("way(t)"), "\xEF\xBB\xBFt;d\r\n0.1;0.01\r\n0.2;0.04\r\n");
     expect(0.15, 0.015, 0.3, 0);
     scene_free(&scene);
-    must_read(MOVES("way(t)"), "\xEF\xBB\xBF" "0.1\t0.01\r\n0.2\t0.04\r\n");
+    must_read(MOVES("way(t)"), "\xEF\xBB\xBF"
+                               "0.1\t0.01\r\n0.2\t0.04\r\n");
     expect(0.15, 0.015, 0.3, 0);
 }
 
 /* Quotes as R and pandas write them; units in brackets; CR alone at the end of a line. */
 static void test_names_of_columns_and_line_ends(void)
 {
-    static const char *const first[] = {"\"t\",\"v\"\n", "(s),(m)\n", "infiltration\n",
-                                       "inf_1\n",          "t,d\r"};
+    static const char *const first[] = {"\"t\",\"v\"\n", "(s),(m)\n", "infiltration\n", "inf_1\n",
+                                        "t,d\r"};
     for (size_t k = 0; k < COUNT_OF(first); k++) {
         char text[100];
         snprintf(text, sizeof text, "%s0.1,0.01%c0.2,0.04\n", first[k], k == 4 ? '\r' : '\n');
@@ -176,7 +178,7 @@ static void test_bad_tables_are_refused(void)
          "test_tables.tmp:1: 2 numbers are expected: argument, value (or `column = 3`); here "
          "`\"0\",\"0\"`"},
         {"inf, 0\n0.2, 1\n", "test_tables.tmp:1: 2 numbers are expected: argument, value (or "
-                              "`column = 3`); here `inf, 0`"},
+                             "`column = 3`); here `inf, 0`"},
         {"0, 0\n0.2, nan\n", "test_tables.tmp:2: 2 numbers are expected: argument, value (or "
                              "`column = 3`); here `0.2, nan`"},
     };

@@ -33,7 +33,7 @@ void tearDown(void) { rig_close(&rig); }
  * the slope there, 1.38/L of the deflection for the first mode. */
 static double tip(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     const double dp = rig.scene.top.dp;
     double sum = 0;
     int n = 0;

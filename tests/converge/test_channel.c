@@ -35,11 +35,10 @@ static double exact(double y, double t)
 /* Largest difference from the series, in units of the final top speed. */
 static double difference(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double worst = 0;
     for (int64_t i = 0; i < particles->n; i++)
-        worst = fmax(worst, fabs(particles->vx[i] -
-                                 exact(particles->y[i], rig.sim.state.time)));
+        worst = fmax(worst, fabs(particles->vx[i] - exact(particles->y[i], rig.sim.state.time)));
     return worst / top_speed;
 }
 
@@ -68,7 +67,7 @@ static void test_plates_without_friction(void)
 {
     rig_open(&rig, channel, "plates.slip=free", "dp=0.1 mm", NULL);
     rig_run(&rig, 0.1);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++)
         assert_near(1e-6 * F * 0.1, F * 0.1, particles->vx[i], "speed");
 }
@@ -97,7 +96,7 @@ static void test_taylor_green(void)
     assert_near(0.025, 1, rate / (8 * M_PI * M_PI * 0.1), "rate of decay over the exact one");
     assert_at_most(1e-11 * row.mass, fabs(row.momentum_x), "momentum, x");
     assert_at_most(1e-11 * row.mass, fabs(row.momentum_y), "momentum, y");
-    TEST_ASSERT_EQUAL_INT64(2500, rig.sim.kind[KIND_FLUID].n);
+    TEST_ASSERT_EQUAL_INT64(2500, rig.sim.particles[KIND_FLUID].n);
 }
 
 /* At Re = 100 the particles line up and the amplitude, exp(-8 pi^2 0.01 0.4) = 0.729 by theory, is
@@ -130,7 +129,7 @@ static void test_shifting_keeps_the_mean_density(void)
              "pressure = -250*(cos(4*pi*x) + cos(4*pi*y))\n",
              NULL);
     rig_run(&rig, 0.4);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double sum = 0;
     for (int64_t i = 0; i < particles->n; i++) sum += particles->dens[i];
     assert_at_most(0.01, fabs(sum / (double)particles->n), "mean of rho/rho0 - 1");
@@ -156,7 +155,7 @@ static void test_shifting_at_one_speed_keeps_vortices_whole(void)
 /* Mean of rho/rho0 - 1 in units of U^2/c0^2, which is the mean pressure over rho U^2. */
 static double mean_pressure(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double sum = 0;
     for (int64_t i = 0; i < particles->n; i++) sum += particles->dens[i];
     return 10 * 10 * sum / (double)particles->n;

@@ -16,7 +16,7 @@ void tearDown(void) { rig_close(&rig); }
 static void open(const char *text, const char *set, const char *another)
 {
     rig_open(&rig, text, "precision=double", set, another, NULL);
-    p = &rig.sim.kind[KIND_SOLID];
+    p = &rig.sim.particles[KIND_SOLID];
 }
 
 static const char block[] = "dp = 1 cm\nend_time = 1\n[solid b]\nshape = box 0, 0, 0.13, "

@@ -48,7 +48,7 @@ static struct response response_of(const char *set)
         double force = 0;
         rig_run(&rig, t);
         rig_evaluate(&rig); /* the force of a step is that at its start */
-        const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+        const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
         for (int64_t i = 0; i < particles->n; i++) force += particles->fy[i];
         r.mass -= 2 * force * cos(w * t) / (SAMPLES * speed * w * rho);
         r.drag -= 2 * force * sin(w * t) / (SAMPLES * speed * rho);

@@ -39,7 +39,7 @@ static void run(double time)
 /* Mean displacement of a body's particles within 0.8 dp of a place. */
 static double displacement(int body, double X, double Y, bool upright)
 {
-    const struct particles *const particles = &sim.kind[KIND_SOLID];
+    const struct particles *const particles = &sim.particles[KIND_SOLID];
     const double reach = 0.8 * sim.solid.body[body].dp;
     double sum = 0;
     int n = 0;
@@ -123,7 +123,7 @@ static void test_ringing_bar(void)
 /* Momentum that the fluid has about a point, N s m/m, with the velocity that leapfrog carries. */
 static double angular_momentum(double x, double y)
 {
-    const struct particles *const particles = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.particles[KIND_FLUID];
     double sum = 0;
     for (int64_t i = 0; i < particles->n; i++)
         sum += sim.fluid.k.mass * ((particles->x[i] - x) * particles->vy_half[i] -
@@ -134,7 +134,7 @@ static double angular_momentum(double x, double y)
 /* Share of the fluid whose nearest neighbour is within half of the spacing. */
 static double clumped(void)
 {
-    const struct particles *const particles = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.particles[KIND_FLUID];
     const double near2 = square(0.5 * scene.top.dp);
     int64_t count = 0;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -174,7 +174,7 @@ static void test_rotating_patch(void)
  * the bed. */
 static void level(double *height, double *error)
 {
-    const struct particles *const particles = &sim.kind[KIND_FLUID];
+    const struct particles *const particles = &sim.particles[KIND_FLUID];
     const double way = 9.81 / 4 * square(sim.state.time) / 2, dp = scene.top.dp;
     double sum = 0, square_sum = 0;
     simulation_refresh(&sim);
@@ -236,7 +236,7 @@ static void test_rolling_tank(void)
         assert_at_most(0.03, fmax(-sim.state.dens_low, sim.state.dens_high), "density");
         /* 4 degrees (1 - cos(2 pi 0.4/1.6)) = 4 degrees. */
         const double angle = (k ? -4 : 4) * 3.14159265358979323846 / 180;
-        const struct particles *const particles = &sim.kind[KIND_SOLID];
+        const struct particles *const particles = &sim.particles[KIND_SOLID];
         TEST_ASSERT_TRUE(sim.solid.loads->n_held > 0);
         for (int64_t h = 0; h < sim.solid.loads->n_held; h++) {
             const int32_t i = sim.solid.loads->held[h];

@@ -35,12 +35,13 @@ static int64_t velocities(const char *density, const char *steps, int count, dou
     rig_open(&rig, bar, density, steps, step, "integrator=leapfrog", NULL);
     for (int k = 0; k < count; k++) rig_steps(&rig, 1, 1);
     for (int k = 0; k < 2; k++) {
-        const struct particles *const p = &rig.sim.kind[k ? KIND_SOLID : KIND_FLUID];
-        const int64_t first = k ? rig.sim.kind[KIND_FLUID].n + rig.sim.kind[KIND_WALL].n : 0;
+        const struct particles *const p = &rig.sim.particles[k ? KIND_SOLID : KIND_FLUID];
+        const struct particles *const all = rig.sim.particles;
+        const int64_t first = k ? all[KIND_FLUID].n + all[KIND_WALL].n : 0;
         TEST_ASSERT_TRUE(p->n <= MOST);
         for (int64_t i = 0; i < p->n; i++) v[k][p->id[i] - first] = p->vx[i];
     }
-    const int64_t n = rig.sim.kind[KIND_FLUID].n;
+    const int64_t n = rig.sim.particles[KIND_FLUID].n;
     rig_close(&rig);
     return n;
 }

@@ -39,7 +39,7 @@ static struct errors errors_at(int n, const char *set)
     rig_open(&rig, channel, set, NULL);
     for (int k = 0; k < TIMES; k++) {
         rig_run(&rig, 2 + 0.05 * k);
-        const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < particles->n; i++) {
             if (particles->x[i] < 1.2 || particles->x[i] > 1.7) continue;
             const int row = (int)fmin(n - 1, fmax(0, particles->y[i] * n));

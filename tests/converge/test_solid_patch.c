@@ -24,7 +24,7 @@ void tearDown(void) { rig_close(&rig); }
 static void open(const char *text, const char *gradient, const char *set)
 {
     rig_open(&rig, text, "precision=double", gradient, set, NULL);
-    p = &rig.sim.kind[KIND_SOLID];
+    p = &rig.sim.particles[KIND_SOLID];
 }
 
 /* Unlike fmax it does not pass over a NaN. */

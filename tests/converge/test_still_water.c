@@ -65,10 +65,10 @@ static void settle(const char *h_over_dp, double h, const char *integrator, cons
 {
     rig_open(&rig, tank, h_over_dp, integrator, precision, "water.surface=0.2",
              "water.sound_speed=60", NULL);
-    const int64_t n = rig.sim.kind[KIND_FLUID].n;
+    const int64_t n = rig.sim.particles[KIND_FLUID].n;
     rig_run(&rig, 0.6);
     simulation_refresh(&rig.sim);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double pressure[2], scatter;
     fit(particles, pressure, &scatter);
     const double expected = (1 + 0.5 * g * H / (60 * 60)) / lattice_gradient(h);
@@ -98,7 +98,7 @@ static void test_pressure_within_two_percent(void)
     rig_open(&rig, tank, "numerics.h_over_dp=1.5", "water.surface=0.2", NULL);
     rig_run(&rig, 1.5);
     simulation_refresh(&rig.sim);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++)
         if (H - particles->y[i] > 2 * dp)
             assert_near(0.02 * rho * g * H, rho * g * (H - particles->y[i]),

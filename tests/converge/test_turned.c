@@ -35,7 +35,7 @@ void tearDown(void) { rig_close(&rig); }
 /* Mean deflection of the particles that carry the load, over that of theory at their distance. */
 static double deflection(double angle, double across)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     const double L = 0.2, thick = 0.02, dp = thick / across, rise = 0.985, period = 0.4925;
     const double E = 2e6, I = thick * thick * thick / 12, P = 3 * E * I / (L * L * L) * 2e-3;
     const double arm = L - 0.5 * dp;

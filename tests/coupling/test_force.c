@@ -15,8 +15,8 @@ void tearDown(void) { rig_close(&rig); }
 static void open(const char *text, const char *set, const char *another)
 {
     rig_open(&rig, text, set, another, NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
-    solid = &rig.sim.kind[KIND_SOLID];
+    fluid = &rig.sim.particles[KIND_FLUID];
+    solid = &rig.sim.particles[KIND_SOLID];
 }
 
 /* A fluid particle of rho = 1010 beside one solid particle, h = 1 m apart, no gravity: the solid
@@ -60,7 +60,7 @@ static void disorder(void)
 {
     uint64_t seed = 3;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        struct particles *const particles = &rig.sim.kind[kind];
+        struct particles *const particles = &rig.sim.particles[kind];
         for (int64_t i = 0; i < particles->n; i++) {
             particles->x[i] += 0.002 * noise(&seed);
             particles->y[i] += 0.002 * noise(&seed);
@@ -208,8 +208,8 @@ static void test_momentum_with_leapfrog(void)
     for (int k = 0; k < 4; k++) {
         rig_open(&rig, impact, k / 2 ? "precision=double" : "precision=mixed", rates[k % 2],
                  "integrator=leapfrog", NULL);
-        fluid = &rig.sim.kind[KIND_FLUID];
-        solid = &rig.sim.kind[KIND_SOLID];
+        fluid = &rig.sim.particles[KIND_FLUID];
+        solid = &rig.sim.particles[KIND_SOLID];
         const double start[2] = {momentum_of_kicks(0), momentum_of_kicks(1)};
         for (double t = 0.001; t < 0.04; t += 0.0013) rig_run(&rig, t); /* uneven steps */
         const double exchanged = rig.sim.state.exchanged;

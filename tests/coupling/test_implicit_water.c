@@ -32,7 +32,7 @@ static struct result run(const char *integrator, const char *scheme, const char 
     struct result r = {0};
     int count = 0;
     rig_open(&rig, plate, integrator, scheme, steps, NULL);
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const p = &rig.sim.particles[KIND_SOLID];
     while (rig.sim.state.time < 0.6) {
         rig_steps(&rig, 1, 0.6);
         if (rig.sim.state.time < 0.2) continue;
@@ -103,7 +103,7 @@ static void test_account_of_the_solid_is_exact(void)
         rig_open(&rig, plate, integrators[k], "numerics.solid_steps=implicit",
                  "plate.artificial_viscosity=0", "plate.law=svk", NULL);
         energy_begin(&rig.sim);
-        const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+        const struct particles *const p = &rig.sim.particles[KIND_SOLID];
         const struct energy_entry *const entry =
             &rig.sim.state.energy.entry[energy_entry(KIND_SOLID, 0)];
         const double before = entry->supplied, mass = rig.sim.solid.body[0].mass;

@@ -26,8 +26,8 @@ void tearDown(void) { rig_close(&rig); }
 static void open(const char *set, const char *another)
 {
     rig_open(&rig, block, set, another, NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
-    solid = &rig.sim.kind[KIND_SOLID];
+    fluid = &rig.sim.particles[KIND_FLUID];
+    solid = &rig.sim.particles[KIND_SOLID];
 }
 
 static void test_wherever_there_are_substeps(void)
@@ -59,7 +59,7 @@ static void test_surface_of_a_straight_side(void)
              "[solid floor]\nshape = box 0, -0.04, 0.24, 0\ndensity = 100\nyoung = 1e6\n"
              "poisson = 0.3\n[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
              NULL);
-    solid = &rig.sim.kind[KIND_SOLID];
+    solid = &rig.sim.particles[KIND_SOLID];
     rig_evaluate(&rig);
     double across = 0, along = 0;
     for (int64_t i = 0; i < solid->n; i++) {
@@ -154,7 +154,7 @@ static void test_law_is_continuous_at_the_fluids_density(void)
             for (int n = 0; n < 2; n++) {
                 rig_open(&rig, block, integrators[k], densities[pair][n], "block.young=1e8",
                          "numerics.fixed_step=1e-4", NULL);
-                solid = &rig.sim.kind[KIND_SOLID];
+                solid = &rig.sim.particles[KIND_SOLID];
                 rig_run(&rig, 0.02);
                 x[n] = solid->ux[0];
                 rig_close(&rig);
@@ -210,8 +210,8 @@ static void twin(const char *integrator, bool centred)
     enum { FIELDS = 6, MOST = 32 };
     static double start[FIELDS][MOST], end[FIELDS][MOST];
     rig_open(&rig, block, integrator, "block.density=2000", "block.young=2e6", NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
-    solid = &rig.sim.kind[KIND_SOLID];
+    fluid = &rig.sim.particles[KIND_FLUID];
+    solid = &rig.sim.particles[KIND_SOLID];
     rig_steps(&rig, 30, 1);
     const double kicks = rig.sim.state.dt * (centred ? 0.5 : 0.5 - 0.5 / rig.sim.substeps);
     assert_near(1e-18, kicks - rig.sim.coupling.stage * rig.sim.state.dt, rig.sim.coupling.lead,
@@ -468,7 +468,7 @@ static void test_dry_particles_owe_nothing(void)
              "density = 100\nyoung = 1e6\npoisson = 0.3\nvelocity = -0.5, 0\n"
              "[domain]\nlower = -1, -0.2\nupper = 0.5, 0.5\n",
              NULL);
-    solid = &rig.sim.kind[KIND_SOLID];
+    solid = &rig.sim.particles[KIND_SOLID];
     rig_run(&rig, 0.02);
     double impulse = 0;
     for (int64_t i = 0; i < solid->n; i++)
@@ -495,7 +495,7 @@ static void test_moving_clamps_owe_nothing(void)
         "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
         NULL);
     TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
-    solid = &rig.sim.kind[KIND_SOLID];
+    solid = &rig.sim.particles[KIND_SOLID];
     rig_steps(&rig, 20, 1);
     double most = 0, wet = 0;
     for (int64_t i = 0; i < solid->n; i++) {

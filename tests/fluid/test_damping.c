@@ -25,7 +25,7 @@ static void test_the_velocity_decays(void)
         rig_open(&rig, DROPS "[damping d]\nfrom = 1, 0\nto = 1.5, 0\nrate = 5\n", integrators[k],
                  NULL);
         rig_run(&rig, 0.1);
-        const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+        const struct particles *const p = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < p->n; i++) {
             const bool inside = p->body[i] == 1;
             assert_near(1e-6, inside ? 0 : 1, p->vx[i], "vx");
@@ -46,7 +46,7 @@ static void test_a_high_rate_is_followed(void)
         rig_open(&rig, DROPS "[damping d]\nfrom = 1, 0\nto = 1.5, 0\nrate = 1e5\n", integrators[k],
                  NULL);
         rig_run(&rig, 1e-3);
-        const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+        const struct particles *const p = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < p->n; i++)
             assert_near(1e-3, 0, p->body[i] == 1 ? p->vy[i] : p->vx[i] - 1, "velocity");
     }
@@ -57,7 +57,7 @@ static void test_the_rate_grows(void)
 {
     rig_open(&rig, DROPS "[damping d]\nfrom = 1.02, 0\nto = 3.02, 0\nrate = 5\n", NULL);
     rig_run(&rig, 0.1);
-    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const p = &rig.sim.particles[KIND_FLUID];
     double mean = 0, n = 0;
     for (int64_t i = 0; i < p->n; i++)
         if (p->body[i] == 1) mean += p->vy[i], n++;

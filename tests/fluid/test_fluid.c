@@ -19,7 +19,7 @@ static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\n"
                            "[fluid w]\nshape = box 0, 0, 1.6, 0.8\nsound_speed = 10\n";
 
 static struct rig rig;
-static struct particles *p;
+static struct particles *fluid;
 
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
@@ -27,39 +27,41 @@ void tearDown(void) { rig_close(&rig); }
 static void place(const char *set, const char *another)
 {
     rig_open(&rig, pair, set, another, NULL);
-    p = &rig.sim.kind[KIND_FLUID];
-    TEST_ASSERT_EQUAL_INT64(2, p->n);
+    fluid = &rig.sim.particles[KIND_FLUID];
+    TEST_ASSERT_EQUAL_INT64(2, fluid->n);
     const double x[2] = {0.6, 0}, y[2] = {0.8, 0}, dens[2] = {0.01, 0.02};
     for (int64_t i = 0; i < 2; i++) {
-        p->id[i] = i;
-        p->x[i] = x[i];
-        p->y[i] = y[i];
-        p->dens[i] = dens[i];
-        p->vx[i] = p->vy[i] = 0;
+        fluid->id[i] = i;
+        fluid->x[i] = x[i];
+        fluid->y[i] = y[i];
+        fluid->dens[i] = dens[i];
+        fluid->vx[i] = fluid->vy[i] = 0;
     }
 }
 
-/* Velocities of a and b; evaluates. The cells may have put b first. */
-static int64_t a, b;
+/* Where the cells have put a and b. */
+static int64_t first, second;
+
+/* Sets the velocities of a and b; evaluates. */
 static void evaluate(double ua, double va, double ub, double vb)
 {
-    p->vx[0] = ua;
-    p->vy[0] = va;
-    p->vx[1] = ub;
-    p->vy[1] = vb;
+    fluid->vx[0] = ua;
+    fluid->vy[0] = va;
+    fluid->vx[1] = ub;
+    fluid->vy[1] = vb;
     rig_sort(&rig);
     rig_evaluate(&rig);
-    a = p->id[0] == 0 ? 0 : 1;
-    b = 1 - a;
+    first = fluid->id[0] == 0 ? 0 : 1;
+    second = 1 - first;
 }
 
 static void check_forces(double magnitude, double gx, double gy)
 {
     const double tolerance = 1e-13 * (magnitude + fabs(gx) + fabs(gy));
-    assert_near(tolerance, 0.6 * magnitude + gx, p->ax[a], "ax of a");
-    assert_near(tolerance, 0.8 * magnitude + gy, p->ay[a], "ay of a");
-    assert_near(tolerance, -0.6 * magnitude + gx, p->ax[b], "ax of b");
-    assert_near(tolerance, -0.8 * magnitude + gy, p->ay[b], "ay of b");
+    assert_near(tolerance, 0.6 * magnitude + gx, fluid->ax[first], "ax of a");
+    assert_near(tolerance, 0.8 * magnitude + gy, fluid->ay[first], "ay of a");
+    assert_near(tolerance, -0.6 * magnitude + gx, fluid->ax[second], "ax of b");
+    assert_near(tolerance, -0.8 * magnitude + gy, fluid->ay[second], "ay of b");
 }
 
 /* Eq. 4b: m (P_a + P_b)/(rho_a rho_b) |grad W|
@@ -69,9 +71,9 @@ static void test_pressure(void)
     place("w.density=1000", "gravity=0,0");
     evaluate(0, 0, 0, 0);
     check_forces(0.6822899792818219, 0, 0);
-    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
-    assert_near(1e-10, 2124.080966418286, rig_pressure(&rig.sim, b), "P_b");
-    TEST_ASSERT_TRUE(p->ddens[a] == 0);
+    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, first), "P_a");
+    assert_near(1e-10, 2124.080966418286, rig_pressure(&rig.sim, second), "P_b");
+    TEST_ASSERT_TRUE(fluid->ddens[first] == 0);
 }
 
 /* Masses of 1.5 and 0.5 m: as test_pressure, of a with the mass of b and of b with that of a,
@@ -80,14 +82,14 @@ static void test_pressure(void)
 static void test_particles_of_unlike_mass(void)
 {
     place("w.particle_mass=hydrostatic", "w.pressure=0");
-    p->m[0] = 1.5;
-    p->m[1] = 0.5;
+    fluid->m[0] = 1.5;
+    fluid->m[1] = 0.5;
     evaluate(1, 0, -1, 2);
     const double full = 0.6822899792818219;
-    assert_near(1e-13, 0.6 * 0.5 * full, p->ax[a], "ax of a");
-    assert_near(1e-13, -0.8 * 1.5 * full, p->ay[b], "ay of b");
-    assert_near(1e-11, 0.5 * 88.2529762870353, 1000 * p->ddens[a], "drho_a");
-    assert_near(1e-11, 1.5 * 90.00921138028774, 1000 * p->ddens[b], "drho_b");
+    assert_near(1e-13, 0.6 * 0.5 * full, fluid->ax[first], "ax of a");
+    assert_near(1e-13, -0.8 * 1.5 * full, fluid->ay[second], "ay of b");
+    assert_near(1e-11, 0.5 * 88.2529762870353, 1000 * fluid->ddens[first], "drho_a");
+    assert_near(1e-11, 1.5 * 90.00921138028774, 1000 * fluid->ddens[second], "drho_b");
     const struct ledger row = simulation_ledger(&rig.sim);
     assert_near(1e-9, 2 * 640, row.mass, "mass");
     assert_near(1e-9, 640 * (1.5 * 0.5 + 0.5 * 0.5 * 5), row.kinetic, "kinetic energy");
@@ -99,10 +101,10 @@ static void test_particles_of_unlike_mass(void)
 static void test_masses_carry_the_density(void)
 {
     rig_open(&rig, pair, "w.particle_mass=hydrostatic", "w.surface=3", "gravity=0,-9.81", NULL);
-    p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) {
-        TEST_ASSERT_TRUE(p->dens[i] > 0.1);
-        assert_near(1e-15, 1, p->m[i] / (1 + p->dens[i]), "volume over dp^2");
+    fluid = &rig.sim.particles[KIND_FLUID];
+    for (int64_t i = 0; i < fluid->n; i++) {
+        TEST_ASSERT_TRUE(fluid->dens[i] > 0.1);
+        assert_near(1e-15, 1, fluid->m[i] / (1 + fluid->dens[i]), "volume over dp^2");
     }
 }
 
@@ -112,11 +114,11 @@ static void test_masses_carry_the_density(void)
 static void test_acoustic_damper(void)
 {
     place("w.acoustic_damper=4", "gravity=0,0");
-    p->dens_slow[0] = p->dens[0] - 0.004;
-    p->dens_slow[1] = p->dens[1] + 0.001;
+    fluid->dens_slow[0] = fluid->dens[0] - 0.004;
+    fluid->dens_slow[1] = fluid->dens[1] + 0.001;
     evaluate(1, 0, -1, 2);
     check_forces(0.6822899792818219 * (1 + 300 / 3154.5859965184296), 0, 0);
-    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
+    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, first), "P_a");
 }
 
 /* T-9b, h/c0 = 0.1 s: after 0.1 s with alpha_D = 4 a fifth of the difference is left out, 0.1/(0.1
@@ -124,10 +126,10 @@ static void test_acoustic_damper(void)
 static void test_damper_follows_density(void)
 {
     place("w.acoustic_damper=4", "gravity=0,0");
-    p->dens[0] = 0.02;
-    p->dens_slow[0] = 0.01;
-    fluid_follow_density(&rig.sim.fluid, p, 0.1);
-    assert_near(1e-15, 0.012, p->dens_slow[0], "dens with delay");
+    fluid->dens[0] = 0.02;
+    fluid->dens_slow[0] = 0.01;
+    fluid_follow_density(&rig.sim.fluid, fluid, 0.1);
+    assert_near(1e-15, 0.012, fluid->dens_slow[0], "dens with delay");
 }
 
 static void test_gravity_is_added(void)
@@ -147,8 +149,8 @@ static void test_continuity(void)
 {
     place("w.density=1000", "gravity=0,0");
     evaluate(1, 0, -1, 2);
-    assert_near(1e-11, 88.2529762870353, 1000 * p->ddens[a], "drho_a");
-    assert_near(1e-11, 90.00921138028774, 1000 * p->ddens[b], "drho_b");
+    assert_near(1e-11, 88.2529762870353, 1000 * fluid->ddens[first], "drho_a");
+    assert_near(1e-11, 90.00921138028774, 1000 * fluid->ddens[second], "drho_b");
     assert_near(1e-14, 0.4 / 1.01, rig.sim.fluid.extremes.approach, "rate of approach");
     check_forces(0.6822899792818219, 0, 0);
 }
@@ -164,7 +166,7 @@ static void test_viscosity_acts_on_approaching_pairs(void)
     place("w.artificial_viscosity=0.1", "gravity=0,0");
     evaluate(-1, 0, 1, -2);
     check_forces(0.6822899792818219, 0, 0);
-    assert_near(1e-11, -88.2529762870353, 1000 * p->ddens[a], "drho_a");
+    assert_near(1e-11, -88.2529762870353, 1000 * fluid->ddens[first], "drho_a");
 }
 
 /* L-1 with nu = 0.3 m^2/s, M = 0.966540345811312 and v_ab = (2, -2): 2 nu rho0 m/(rho_a rho_b) |x .
@@ -176,10 +178,10 @@ static void test_laminar_viscosity(void)
         place("w.laminar_viscosity=0.3", "gravity=0,0");
         evaluate(sign, 0, -sign, 2 * sign);
         const double drag = 2 * sign * 0.13426347546303982;
-        assert_near(1e-13, 0.6 * 0.6822899792818219 - drag, p->ax[a], "ax of a");
-        assert_near(1e-13, 0.8 * 0.6822899792818219 + drag, p->ay[a], "ay of a");
-        assert_near(1e-13, -0.6 * 0.6822899792818219 + drag, p->ax[b], "ax of b");
-        assert_near(1e-13, -0.8 * 0.6822899792818219 - drag, p->ay[b], "ay of b");
+        assert_near(1e-13, 0.6 * 0.6822899792818219 - drag, fluid->ax[first], "ax of a");
+        assert_near(1e-13, 0.8 * 0.6822899792818219 + drag, fluid->ay[first], "ay of a");
+        assert_near(1e-13, -0.6 * 0.6822899792818219 + drag, fluid->ax[second], "ax of b");
+        assert_near(1e-13, -0.8 * 0.6822899792818219 - drag, fluid->ay[second], "ay of b");
     }
 }
 
@@ -192,8 +194,8 @@ static void test_no_viscosity_is_the_limit(void)
         place(k ? "w.laminar_viscosity=1e-30" : "w.laminar_viscosity=0", "gravity=0,-9.81");
         evaluate(1, 0, -1, 2);
         TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_LAMINAR));
-        ax[k] = p->ax[a];
-        ay[k] = p->ay[a];
+        ax[k] = fluid->ax[first];
+        ay[k] = fluid->ay[first];
     }
     TEST_ASSERT_TRUE(ax[0] == ax[1] && ay[0] == ay[1]);
 }
@@ -204,8 +206,8 @@ static void test_diffusion_levels_densities(void)
 {
     place("w.density_diffusion=0.1", "gravity=0,0");
     evaluate(0, 0, 0, 0);
-    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
-    assert_near(1e-12, -4.368530934783912, 1000 * p->ddens[b], "D_b");
+    assert_near(1e-12, 4.325702200129168, 1000 * fluid->ddens[first], "D_a");
+    assert_near(1e-12, -4.368530934783912, 1000 * fluid->ddens[second], "D_b");
     check_forces(0.6822899792818219, 0, 0);
 }
 
@@ -216,21 +218,21 @@ static void test_diffusion_spares_the_hydrostatic_part(void)
 {
     place("w.density_diffusion=0.1", "w.diffusion_form=fourtakas");
     evaluate(0, 0, 0, 0);
-    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "no gravity: as Eq. 6");
+    assert_near(1e-12, 4.325702200129168, 1000 * fluid->ddens[first], "no gravity: as Eq. 6");
     rig_open(&rig, pair, "gravity=0,-9.81", "w.density_diffusion=0.1", "w.diffusion_form=fourtakas",
              NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < 2; i++) {
-        p->id[i] = i;
-        p->x[i] = i ? 0 : 0.6;
-        p->y[i] = i ? 0 : 0.8;
-        p->dens[i] = i ? 0.02 : 0.01;
+        fluid->id[i] = i;
+        fluid->x[i] = i ? 0 : 0.6;
+        fluid->y[i] = i ? 0 : 0.8;
+        fluid->dens[i] = i ? 0.02 : 0.01;
     }
     evaluate(0, 0, 0, 0);
-    assert_near(1e-11, -29.622408666484546, 1000 * p->ddens[a], "D_a");
-    p->dens[a] = 0.02 - 0.07848;
+    assert_near(1e-11, -29.622408666484546, 1000 * fluid->ddens[first], "D_a");
+    fluid->dens[first] = 0.02 - 0.07848;
     rig_evaluate(&rig);
-    assert_near(1e-14, 0, p->ddens[a], "hydrostatic difference");
+    assert_near(1e-14, 0, fluid->ddens[first], "hydrostatic difference");
 }
 
 /* Antuono et al. 2010: a density that rises linearly is taken out of the difference exactly, at the
@@ -240,12 +242,13 @@ static void disordered_block(const char *form, bool linear)
 {
     rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35", "gravity=0, 0",
              "w.density_diffusion=0.1", form, NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     uint64_t seed = 19;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] += 0.03 * noise(&seed);
-        p->y[i] += 0.03 * noise(&seed);
-        p->dens[i] = linear ? 0.01 + 0.02 * p->x[i] - 0.03 * p->y[i] : 0.05 * noise(&seed);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        fluid->x[i] += 0.03 * noise(&seed);
+        fluid->y[i] += 0.03 * noise(&seed);
+        fluid->dens[i] =
+            linear ? 0.01 + 0.02 * fluid->x[i] - 0.03 * fluid->y[i] : 0.05 * noise(&seed);
     }
     rig_sort(&rig);
     rig_evaluate(&rig);
@@ -255,18 +258,18 @@ static void test_diffusion_spares_linear_densities(void)
 {
     disordered_block("w.diffusion_form=molteni", true);
     double most = 0;
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, fabs(p->ddens[i]));
+    for (int64_t i = 0; i < fluid->n; i++) most = fmax(most, fabs(fluid->ddens[i]));
     disordered_block("w.diffusion_form=antuono", true);
-    for (int64_t i = 0; i < p->n; i++) {
-        assert_near(1e-13, 0.02, p->slope_x[i], "gradient, x");
-        assert_near(1e-13, -0.03, p->slope_y[i], "gradient, y");
-        assert_near(1e-12 * most, 0, p->ddens[i], "rate of density");
+    for (int64_t i = 0; i < fluid->n; i++) {
+        assert_near(1e-13, 0.02, fluid->slope_x[i], "gradient, x");
+        assert_near(1e-13, -0.03, fluid->slope_y[i], "gradient, y");
+        assert_near(1e-12 * most, 0, fluid->ddens[i], "rate of density");
     }
     disordered_block("w.diffusion_form=antuono", false);
     double sum = 0, size = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        sum += p->ddens[i] / (1 + p->dens[i]);
-        size += fabs(p->ddens[i]);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        sum += fluid->ddens[i] / (1 + fluid->dens[i]);
+        size += fabs(fluid->ddens[i]);
     }
     TEST_ASSERT_TRUE(size > 0.1 * most);
     assert_near(1e-13 * size, 0, sum, "sum of V D");
@@ -290,7 +293,7 @@ static void test_diffusion_is_limited_by_the_strain(void)
     for (size_t k = 0; k < COUNT_OF(motions); k++) {
         place("w.density_diffusion=0.1", "w.diffusion_limiter=strain");
         evaluate(motions[k].u, motions[k].v, 0, 0);
-        assert_near(1e-11, motions[k].drho, 1000 * p->ddens[a], motions[k].what);
+        assert_near(1e-11, motions[k].drho, 1000 * fluid->ddens[first], motions[k].what);
     }
 }
 
@@ -303,21 +306,21 @@ static void test_gradient_of_neighbours_almost_on_a_line(void)
     for (int k = 0; k < 2; k++) {
         rig_open(&rig, pair, "w.shape=box 0, 0, 2.4, 0.8", "gravity=0, 0",
                  "w.density_diffusion=0.1", "w.diffusion_form=antuono", NULL);
-        p = &rig.sim.kind[KIND_FLUID];
-        TEST_ASSERT_EQUAL_INT64(3, p->n);
+        fluid = &rig.sim.particles[KIND_FLUID];
+        TEST_ASSERT_EQUAL_INT64(3, fluid->n);
         for (int i = 0; i < 3; i++) {
-            p->id[i] = i;
-            p->x[i] = 0.8 * (i - 1);
-            p->y[i] = i == 1 ? 0 : height[k];
-            p->dens[i] = 0.02 * p->x[i] - 0.01 * p->y[i];
+            fluid->id[i] = i;
+            fluid->x[i] = 0.8 * (i - 1);
+            fluid->y[i] = i == 1 ? 0 : height[k];
+            fluid->dens[i] = 0.02 * fluid->x[i] - 0.01 * fluid->y[i];
         }
         rig_sort(&rig);
         rig_evaluate(&rig);
         int64_t middle = 0;
-        while (p->id[middle] != 1) middle++;
+        while (fluid->id[middle] != 1) middle++;
         const double exact = k == 0;
-        assert_near(1e-14, 0.02 * exact, p->slope_x[middle], "gradient, x");
-        assert_near(1e-14, -0.01 * exact, p->slope_y[middle], "gradient, y");
+        assert_near(1e-14, 0.02 * exact, fluid->slope_x[middle], "gradient, x");
+        assert_near(1e-14, -0.01 * exact, fluid->slope_y[middle], "gradient, y");
     }
 }
 
@@ -326,8 +329,8 @@ static void test_gradient_of_a_pair_is_none(void)
 {
     place("w.density_diffusion=0.1", "w.diffusion_form=antuono");
     evaluate(0, 0, 0, 0);
-    TEST_ASSERT_TRUE(p->slope_x[a] == 0 && p->slope_y[b] == 0);
-    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
+    TEST_ASSERT_TRUE(fluid->slope_x[first] == 0 && fluid->slope_y[second] == 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * fluid->ddens[first], "D_a");
 }
 
 /* Diffusion that vanishes leaves the bits of a scene without. */
@@ -339,9 +342,9 @@ static void test_no_diffusion_is_the_limit(void)
                  k ? "w.density_diffusion=1e-300" : "w.density_diffusion=0",
                  k ? "w.diffusion_form=antuono" : "w.diffusion_form=molteni", "w.velocity=y, x*x",
                  NULL);
-        p = &rig.sim.kind[KIND_FLUID];
+        fluid = &rig.sim.particles[KIND_FLUID];
         rig_evaluate(&rig);
-        rate[k] = p->ddens[5];
+        rate[k] = fluid->ddens[5];
     }
     TEST_ASSERT_TRUE(rate[0] == rate[1] && rate[0] != 0);
 }
@@ -350,29 +353,29 @@ static void test_no_diffusion_is_the_limit(void)
 static void test_nothing_beyond_the_support(void)
 {
     place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
-    p->x[0] = 2.0000001;
-    p->y[0] = 0;
+    fluid->x[0] = 2.0000001;
+    fluid->y[0] = 0;
     evaluate(-1, 0, 1, 0);
-    TEST_ASSERT_TRUE(p->ax[a] == 0 && p->ay[a] == 0 && p->ddens[a] == 0);
-    p->x[a] = p->x[b] + 1.999;
+    TEST_ASSERT_TRUE(fluid->ax[first] == 0 && fluid->ay[first] == 0 && fluid->ddens[first] == 0);
+    fluid->x[first] = fluid->x[second] + 1.999;
     rig_sort(&rig);
     rig_evaluate(&rig);
-    TEST_ASSERT_TRUE(p->ax[a] > 0 || p->ax[b] > 0);
+    TEST_ASSERT_TRUE(fluid->ax[first] > 0 || fluid->ax[second] > 0);
 }
 
 /* Two particles on the same spot, and one alone: finite, and no force. */
 static void test_coincident_and_lone_particles(void)
 {
     place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
-    p->x[0] = p->x[1];
-    p->y[0] = p->y[1];
+    fluid->x[0] = fluid->x[1];
+    fluid->y[0] = fluid->y[1];
     evaluate(1, 0, -1, 0);
     for (int64_t i = 0; i < 2; i++)
-        TEST_ASSERT_TRUE(p->ax[i] == 0 && p->ay[i] == 0 && p->ddens[i] == 0);
-    p->x[0] = -8;
+        TEST_ASSERT_TRUE(fluid->ax[i] == 0 && fluid->ay[i] == 0 && fluid->ddens[i] == 0);
+    fluid->x[0] = -8;
     rig_sort(&rig);
     rig_evaluate(&rig);
-    TEST_ASSERT_TRUE(p->ax[0] == 0 && p->ddens[0] == 0);
+    TEST_ASSERT_TRUE(fluid->ax[0] == 0 && fluid->ddens[0] == 0);
     TEST_ASSERT_TRUE(isfinite(rig.sim.fluid.extremes.approach));
 }
 
@@ -385,10 +388,10 @@ static void test_tension_is_pushed_against(void)
     double ax[2];
     for (int k = 0; k < 2; k++) {
         place(k ? "w.tensile_control=0.2" : "w.tensile_control=0", "gravity=0,0");
-        p->dens[0] = -0.01;
+        fluid->dens[0] = -0.01;
         evaluate(0, 0, 0, 0);
-        ax[k] = p->ax[a];
-        assert_near(1e-13, -ax[k], p->ax[b], "ax of b");
+        ax[k] = fluid->ax[first];
+        assert_near(1e-13, -ax[k], fluid->ax[second], "ax of b");
     }
     const double pa = 1e5 / 7 * (pow(0.99, 7) - 1), f = 3.0 / 16 / (pow(0.6, 4) * 2.6);
     const double push = 640 * 0.2 * -pa * pow(f, 4) / (990 * 1020.0) * 0.3481514380135211;
@@ -405,9 +408,9 @@ static void test_no_tension_is_the_limit(void)
         char set[64];
         snprintf(set, sizeof set, "w.tensile_control=%s", control[k]);
         place(set, "gravity=0,0");
-        if (k > 1) p->dens[0] = -0.01;
+        if (k > 1) fluid->dens[0] = -0.01;
         evaluate(1, 0, -1, 2);
-        ax[k] = p->ax[a];
+        ax[k] = fluid->ax[first];
     }
     TEST_ASSERT_TRUE(ax[0] == ax[1] && ax[2] == ax[3] && ax[0] != ax[2]);
 }
@@ -420,16 +423,17 @@ static double closest_after(const char *control)
              "[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 10\npressure = -1000\n"
              "artificial_viscosity = 0.1\n",
              control, NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     uint64_t seed = 3;
-    for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.002 * noise(&seed);
+    for (int64_t i = 0; i < fluid->n; i++) fluid->x[i] += 0.002 * noise(&seed);
     rig_run(&rig, 1.5);
     double closest = 1;
-    for (int64_t i = 0; i < p->n; i++)
+    for (int64_t i = 0; i < fluid->n; i++)
         for (int64_t j = 0; j < i; j++)
             closest =
-                fmin(closest, hypot(cells_minimum_image(&rig.sim.cells, 0, p->x[i] - p->x[j]),
-                                    cells_minimum_image(&rig.sim.cells, 1, p->y[i] - p->y[j])));
+                fmin(closest,
+                     hypot(cells_minimum_image(&rig.sim.cells, 0, fluid->x[i] - fluid->x[j]),
+                           cells_minimum_image(&rig.sim.cells, 1, fluid->y[i] - fluid->y[j])));
     return closest / 0.1;
 }
 
@@ -449,11 +453,11 @@ static void test_concentration_by_hand(void)
     place("w.shifting=2", "gravity=0,0");
     evaluate(1, 0, -1, 2);
     const double size = 0.2206108122065876;
-    assert_near(1e-14, 0.6 * size, p->grad_c_x[b], "gradient, x");
-    assert_near(1e-14, 0.8 * size, p->grad_c_y[b], "gradient, y");
-    assert_near(1e-14, size, p->div_r[b], "divergence");
-    const double x = p->x[b];
-    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, p, 0.1) == 0 && p->x[b] == x);
+    assert_near(1e-14, 0.6 * size, fluid->grad_c_x[second], "gradient, x");
+    assert_near(1e-14, 0.8 * size, fluid->grad_c_y[second], "gradient, y");
+    assert_near(1e-14, size, fluid->div_r[second], "divergence");
+    const double x = fluid->x[second];
+    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, fluid, 0.1) == 0 && fluid->x[second] == x);
 }
 
 static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
@@ -466,31 +470,32 @@ static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
 static void shift_evens_out(const char *whose, double moves, double counts)
 {
     rig_open(&rig, block, whose, NULL);
-    p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) p->vx[i] = moves;
+    fluid = &rig.sim.particles[KIND_FLUID];
+    for (int64_t i = 0; i < fluid->n; i++) fluid->vx[i] = moves;
     rig_evaluate(&rig);
-    for (int64_t i = 0; i < p->n; i++) {
-        const double edge = fmin(fmin(p->x[i], 2 - p->x[i]), fmin(p->y[i], 2 - p->y[i]));
+    for (int64_t i = 0; i < fluid->n; i++) {
+        const double edge =
+            fmin(fmin(fluid->x[i], 2 - fluid->x[i]), fmin(fluid->y[i], 2 - fluid->y[i]));
         if (edge < 0.3) continue;
-        assert_near(1e-12, 0, hypot(p->grad_c_x[i], p->grad_c_y[i]), "gradient inside");
+        assert_near(1e-12, 0, hypot(fluid->grad_c_x[i], fluid->grad_c_y[i]), "gradient inside");
         /* The lattice's quadrature of 2: 1.96566 for h/dp = 1.35. */
-        assert_near(1e-3, 1.9657, p->div_r[i], "divergence inside");
+        assert_near(1e-3, 1.9657, fluid->div_r[i], "divergence inside");
     }
     int64_t out = 0, corner = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        if (hypot(p->x[i] - 1.05, p->y[i] - 1.05) < 0.01) out = i;
-        if (hypot(p->x[i] - 0.05, p->y[i] - 0.05) < 0.01) corner = i;
+    for (int64_t i = 0; i < fluid->n; i++) {
+        if (hypot(fluid->x[i] - 1.05, fluid->y[i] - 1.05) < 0.01) out = i;
+        if (hypot(fluid->x[i] - 0.05, fluid->y[i] - 0.05) < 0.01) corner = i;
     }
-    p->x[out] += 0.01;
+    fluid->x[out] += 0.01;
     rig_evaluate(&rig);
-    const double x = p->x[out], y = p->y[out], at = p->x[corner];
-    const double fade = (p->div_r[out] - 1.5) / 0.5;
-    const double expected = 2 * 0.135 * counts * 0.02 * fade * p->grad_c_x[out];
-    TEST_ASSERT_TRUE(fade > 0.5 && p->grad_c_x[out] > 0.1);
-    fluid_shift(&rig.sim.fluid, p, 0.02);
-    assert_near(1e-15, x - expected, p->x[out], "x");
-    assert_near(1e-14, y, p->y[out], "y");
-    TEST_ASSERT_TRUE(p->x[corner] == at);
+    const double x = fluid->x[out], y = fluid->y[out], at = fluid->x[corner];
+    const double fade = (fluid->div_r[out] - 1.5) / 0.5;
+    const double expected = 2 * 0.135 * counts * 0.02 * fade * fluid->grad_c_x[out];
+    TEST_ASSERT_TRUE(fade > 0.5 && fluid->grad_c_x[out] > 0.1);
+    fluid_shift(&rig.sim.fluid, fluid, 0.02);
+    assert_near(1e-15, x - expected, fluid->x[out], "x");
+    assert_near(1e-14, y, fluid->y[out], "y");
+    TEST_ASSERT_TRUE(fluid->x[corner] == at);
 }
 
 static void test_shift_evens_out(void)
@@ -506,10 +511,10 @@ static void test_no_shift_is_the_limit(void)
     for (int k = 0; k < 2; k++) {
         rig_open(&rig, block, k ? "w.shifting=1e-300" : "w.shifting=0", "w.velocity=y, -x", NULL);
         TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_SHIFTING));
-        TEST_ASSERT_TRUE(k == !!rig.sim.kind[KIND_FLUID].div_r);
+        TEST_ASSERT_TRUE(k == !!rig.sim.particles[KIND_FLUID].div_r);
         rig_steps(&rig, 20, 1);
-        x[k] = rig.sim.kind[KIND_FLUID].x[77];
-        vy[k] = rig.sim.kind[KIND_FLUID].vy[77];
+        x[k] = rig.sim.particles[KIND_FLUID].x[77];
+        vy[k] = rig.sim.particles[KIND_FLUID].vy[77];
     }
     TEST_ASSERT_TRUE(x[0] == x[1] && vy[0] == vy[1]);
 }
@@ -519,24 +524,24 @@ static void test_forces_between_particles_cancel(void)
 {
     rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35",
              "w.laminar_viscosity=0.3", "w.tensile_control=0.3", NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     uint64_t seed = 11;
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] += 0.05 * noise(&seed);
-        p->y[i] += 0.05 * noise(&seed);
-        p->vx[i] = noise(&seed);
-        p->vy[i] = noise(&seed);
-        p->dens[i] = 0.05 * noise(&seed);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        fluid->x[i] += 0.05 * noise(&seed);
+        fluid->y[i] += 0.05 * noise(&seed);
+        fluid->vx[i] = noise(&seed);
+        fluid->vy[i] = noise(&seed);
+        fluid->dens[i] = 0.05 * noise(&seed);
     }
     rig_sort(&rig);
     rig_evaluate(&rig);
     double sum_x = 0, sum_y = 0, size = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        sum_x += p->ax[i];
-        sum_y += p->ay[i];
-        size += hypot(p->ax[i], p->ay[i]);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        sum_x += fluid->ax[i];
+        sum_y += fluid->ay[i];
+        size += hypot(fluid->ax[i], fluid->ay[i]);
     }
-    TEST_ASSERT_TRUE(p->n == 32 && size > 1);
+    TEST_ASSERT_TRUE(fluid->n == 32 && size > 1);
     assert_near(1e-13 * size, 0, sum_x, "sum of forces, x");
     assert_near(1e-13 * size, 0, sum_y, "sum of forces, y");
 }

@@ -54,12 +54,12 @@ static void test_mass_and_momentum_are_booked(void)
     for (int up = 0; up < 2; up++) {
         rig_open(&rig, jets[up], "integrator=symplectic", "precision=double", NULL);
         const struct ledger start = simulation_ledger(&rig.sim);
-        const int64_t n = rig.sim.kind[KIND_FLUID].n;
+        const int64_t n = rig.sim.particles[KIND_FLUID].n;
         rig_run(&rig, 0.6);
         const struct ledger end = simulation_ledger(&rig.sim);
         TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 60);
         TEST_ASSERT_TRUE(rig.sim.open.count[1][OPEN_LEFT] > 60);
-        TEST_ASSERT_EQUAL_INT64(made_less_ended(), rig.sim.kind[KIND_FLUID].n - n);
+        TEST_ASSERT_EQUAL_INT64(made_less_ended(), rig.sim.particles[KIND_FLUID].n - n);
         assert_near(1e-9, rig.sim.fluid.k.mass * (double)made_less_ended(), end.mass - start.mass,
                     "mass");
         const double size = 1e-12 * end.mass, x = end.momentum_x - start.momentum_x,
@@ -88,7 +88,7 @@ static void test_a_uniform_stream_passes(void)
     rig_open(&rig, TOP WATER "velocity = 1, 0\n" PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n",
              NULL);
     rig_run(&rig, 2);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         assert_near(5e-3, 1, particles->vx[i], "velocity along the plates");
         assert_near(5e-3, 0, particles->vy[i], "velocity across");
@@ -116,7 +116,7 @@ static void test_a_vortex_stronger_than_the_stream_leaves(void)
              "[inflow left]\nfrom = -0.6, 0.5\nto = -0.6, -0.5\nspeed = 1\n"
              "[outflow right]\nfrom = 0.8, -0.5\nto = 0.8, 0.5\npressure = 0\nabsorb = 0.5\n",
              NULL);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     rig_run(&rig, 2);
     for (int64_t i = 0; i < particles->n; i++) {
         assert_near(0.1, 1, particles->vx[i], "velocity along the plates");
@@ -138,7 +138,7 @@ static void test_any_angle(void)
         "[outflow o]\nfrom = 1.5*c, 1.5*d\nto = 1.5*c - 0.8*d, 1.5*d + 0.8*c\npressure = 0\n",
         NULL);
     rig_run(&rig, 2);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double along = 0, across = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         along += particles->vx[i] * cos(0.5) + particles->vy[i] * sin(0.5);
@@ -178,9 +178,9 @@ static void test_a_flow_that_reverses(void)
 {
     rig_open(&rig, TOP WATER PLATES LEFT "speed = 0.5*sin(2*pi*t)\n" RIGHT "pressure = 3000\n",
              "w.pressure=3000", "w.sound_speed=40", NULL);
-    const int64_t n = rig.sim.kind[KIND_FLUID].n;
+    const int64_t n = rig.sim.particles[KIND_FLUID].n;
     rig_run(&rig, 2);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_TRUE(rig.sim.open.count[k][OPEN_ENTERED] > 20);
         TEST_ASSERT_TRUE(rig.sim.open.count[k][OPEN_LEFT] > 20);
@@ -312,7 +312,7 @@ static void test_no_place_left(void)
 {
     rig_open(&rig, TOP WATER "velocity = 1, 0\n" PLATES LEFT "speed = 1\n" RIGHT "speed = 0\n",
              NULL);
-    rig.sim.kind[KIND_FLUID].capacity = rig.sim.kind[KIND_FLUID].n;
+    rig.sim.particles[KIND_FLUID].capacity = rig.sim.particles[KIND_FLUID].n;
     enum err e = ERR_OK;
     for (int k = 0; k < 1000 && !e; k++) e = simulation_step(&rig.sim, 1, &rig.diag);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
@@ -354,7 +354,7 @@ static void test_refused(void)
 static void test_members_are_checked(void)
 {
     rig_open(&rig, TOP WATER PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n", NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     const int32_t kept = particles->open[0];
     const int32_t wrong[] = {3, -1};
     for (int k = 0; k < 2; k++) {

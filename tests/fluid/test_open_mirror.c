@@ -25,7 +25,7 @@ void setUp(void)
              "shape = box -0.4, 0.5, 1.4, 0.6\n[inflow left]\nfrom = 0, 0.5\nto = 0, 0\n"
              "speed = 1 + 2*t\n[outflow right]\nfrom = 1, 0\nto = 1, 0.5\npressure = 200\n",
              NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    p = &rig.sim.particles[KIND_FLUID];
     uint64_t seed = 5;
     for (int64_t i = 0; i < p->n; i++) {
         p->dens[i] = 0.02 * noise(&seed);

@@ -43,7 +43,7 @@ static int64_t index_of(const struct particles *particles, int64_t id)
 static void pair_through(double ax, double ay, double bx, double by)
 {
     rig_open(&rig, pair, NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    p = &rig.sim.particles[KIND_FLUID];
     TEST_ASSERT_EQUAL_INT64(2, p->n);
     const double x[2] = {ax, bx}, y[2] = {ay, by}, dens[2] = {0.01, 0.02};
     for (int64_t i = 0; i < 2; i++) {
@@ -75,7 +75,7 @@ static void test_free_fall_round_the_period(void)
 {
     rig_open(&rig, water, "domain.periodic=xy", "gravity=3, -4", "w.surface=-1",
              "w.artificial_viscosity=0", "end_time=2", NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    p = &rig.sim.particles[KIND_FLUID];
     rig_sort(&rig);
     const int64_t n = p->n;
     for (int64_t i = 0; i < n; i++) p->dens[i] = 0;
@@ -111,14 +111,14 @@ static void shift_by(double dx, double dy, double tolerance, const char *precisi
     for (int shifted = 0; shifted < 2; shifted++) {
         rig_open(&rig, channel, precision, dy != 0 ? "domain.periodic=xy" : "domain.periodic=x",
                  NULL);
-        p = &rig.sim.kind[KIND_FLUID];
+        p = &rig.sim.particles[KIND_FLUID];
         TEST_ASSERT_TRUE(p->n > 250 && p->n <= MOST);
         uint64_t seed = 7;
         disorder(p, &seed);
         for (int kind = 0; kind < KIND_SOLID && shifted; kind++) {
-            for (int64_t i = 0; i < rig.sim.kind[kind].n; i++) {
-                rig.sim.kind[kind].x[i] += dx;
-                rig.sim.kind[kind].y[i] += dy;
+            for (int64_t i = 0; i < rig.sim.particles[kind].n; i++) {
+                rig.sim.particles[kind].x[i] += dx;
+                rig.sim.particles[kind].y[i] += dy;
             }
         }
         rig_sort(&rig);
@@ -149,7 +149,7 @@ static void test_places_are_equal(void)
 static void test_momentum_of_a_periodic_box(void)
 {
     rig_open(&rig, water, "domain.periodic=xy", "gravity=0, 0", "w.surface=-1", NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    p = &rig.sim.particles[KIND_FLUID];
     uint64_t seed = 5;
     disorder(p, &seed);
     rig_sort(&rig);
@@ -169,13 +169,13 @@ static void test_momentum_of_a_periodic_box(void)
 static void test_moving_wall_goes_through_the_side(void)
 {
     rig_open(&rig, channel, "gravity=0, -9.81", NULL);
-    p = &rig.sim.kind[KIND_FLUID];
+    p = &rig.sim.particles[KIND_FLUID];
     const int64_t n = p->n;
     rig_run(&rig,
             0.3); /* the sill goes by half a period: from 0.1 ... 0.14 through the side at 0.2 */
     TEST_ASSERT_EQUAL_INT64(n, p->n);
     simulation_refresh(&rig.sim);
-    const struct particles *const w = &rig.sim.kind[KIND_WALL];
+    const struct particles *const w = &rig.sim.particles[KIND_WALL];
     int64_t wet = 0, beyond = 0;
     for (int64_t i = 0; i < w->n; i++) {
         if (w->body[i] != 1) continue;

@@ -25,7 +25,7 @@ void tearDown(void) { rig_close(&rig); }
 /* The present force on the wall number `body`. */
 static void force_on(int body, double f[2])
 {
-    const struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    const struct particles *const walls = &rig.sim.particles[KIND_WALL];
     simulation_wall_forces(&rig.sim);
     f[0] = f[1] = 0;
     for (int64_t i = 0; i < walls->n; i++) {
@@ -36,7 +36,7 @@ static void force_on(int body, double f[2])
 
 static double mean_square_speed(void)
 {
-    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
     double sum = 0;
     for (int64_t i = 0; i < fluid->n; i++) sum += square(fluid->vx[i]) + square(fluid->vy[i]);
     return sum / (double)fluid->n;
@@ -63,7 +63,7 @@ static void test_force_of_two_levels(void)
         }
         assert_near(0.015 * expected, expected, mean, "mean force");
         assert_at_most(square(0.01), mean_square_speed(), "speed^2");
-        const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+        const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < fluid->n; i++)
             TEST_ASSERT_TRUE((fluid->x[i] > 0) == (fluid->body[i] == 1));
     }
@@ -118,7 +118,7 @@ static void test_two_lines_that_meet(void)
 /* What crosses the line x = 0, which moves with `motion`, below `top` within a step. */
 static int crossings(double top, bool first)
 {
-    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
     const double place = rig.sim.fluid.lines.line[0].end[0].x[0];
     static int8_t side[20000];
     int n = 0;
@@ -141,7 +141,7 @@ static void test_a_piston(void)
         rig_steps(&rig, 1, 9);
         TEST_ASSERT_EQUAL_INT(0, crossings(1, rig.sim.state.steps == 1));
     }
-    const struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
     double mean[2] = {0}, n[2] = {0};
     for (int64_t i = 0; i < fluid->n; i++) {
         const int right = fluid->x[i] > rig.sim.fluid.lines.line[0].end[0].x[0];
@@ -212,7 +212,10 @@ static void test_what_is_seen_past_a_tip(void)
         const double from[2] = {-0.01, 0.1 - part * reach}, seen = max2(0, min2(1, part));
         for (int own = 0; own < 2; own++)
             for (double filled = 0; filled <= 1; filled += 0.5)
-                assert_near(1e-6, !own ? 1 - seen : part < 0 ? 0 : 1 - filled * (1 - seen),
+                assert_near(1e-6,
+                            !own       ? 1 - seen
+                            : part < 0 ? 0
+                                       : 1 - filled * (1 - seen),
                             lines_seen(&rig.sim.fluid.lines, &rig.sim.cells, reach, from, way, own,
                                        filled),
                             "weight");
@@ -267,7 +270,7 @@ static void test_action_and_reaction(void)
                  "-0.1, 0.03; 0.02, 0; 0.06, 0.1\n"
                  "shape = polyline: 0.02, 0; 0.01, -0.1\n" FORCE,
                  precision[k], NULL);
-        struct particles *const fluid = &rig.sim.kind[KIND_FLUID];
+        struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < fluid->n; i++) {
             fluid->x[i] += 0.005 * noise(&seed);
             fluid->y[i] += 0.005 * noise(&seed);
@@ -296,7 +299,7 @@ static void test_places_and_loads(void)
              "-0.05, 0.15; 0.05, 0.2; 0.05, 0.3\nmotion = m\n[motion m]\n"
              "centre = 0.1, 0.1\nturn = t*(0.5 + 2*t)\n",
              NULL);
-    struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    struct particles *const walls = &rig.sim.particles[KIND_WALL];
     const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
     const struct motion_state motion = motion_at(&rig.scene, 0, 0.3);
     rig_run(&rig, 0.1);
@@ -343,9 +346,9 @@ static void test_a_side_at_the_end_of_a_floor(void)
                  "[wall tank]\nshape = polyline: -0.4, 0.6; -0.4, 0; 0.4, 0\n", sides[k]);
         rig_open(&rig, text, NULL);
         rig_run(&rig, 0.3);
-        for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++) {
-            assert_at_most(0, -rig.sim.kind[KIND_FLUID].y[i], "depth");
-            assert_at_most(k ? 0.41 : 0.4, rig.sim.kind[KIND_FLUID].x[i], "x"); /* it bends */
+        for (int64_t i = 0; i < rig.sim.particles[KIND_FLUID].n; i++) {
+            assert_at_most(0, -rig.sim.particles[KIND_FLUID].y[i], "depth");
+            assert_at_most(k ? 0.41 : 0.4, rig.sim.particles[KIND_FLUID].x[i], "x"); /* it bends */
         }
         assert_at_most(0.005, rig.sim.state.gain_share, "gain");
     }

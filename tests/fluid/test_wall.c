@@ -25,8 +25,8 @@ void tearDown(void) { rig_close(&rig); }
 static void place(double wall_acceleration, const char *set)
 {
     rig_open(&rig, pair, set, NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
-    wall = &rig.sim.kind[KIND_WALL];
+    fluid = &rig.sim.particles[KIND_FLUID];
+    wall = &rig.sim.particles[KIND_WALL];
     TEST_ASSERT_TRUE(fluid->n == 1 && wall->n == 1);
     fluid->x[0] = wall->x[0] = 0;
     fluid->y[0] = 1;
@@ -103,8 +103,8 @@ static void test_fluid_sticks_to_a_wall(void)
     for (int sticks = 0; sticks < 2; sticks++) {
         rig_open(&rig, pair, sticks ? "plate.slip=none" : "plate.slip=free",
                  "w.laminar_viscosity=0.3", NULL);
-        fluid = &rig.sim.kind[KIND_FLUID];
-        wall = &rig.sim.kind[KIND_WALL];
+        fluid = &rig.sim.particles[KIND_FLUID];
+        wall = &rig.sim.particles[KIND_WALL];
         fluid->x[0] = wall->x[0] = wall->y[0] = 0;
         fluid->y[0] = 1;
         fluid->dens[0] = 0.01;
@@ -135,8 +135,8 @@ static void test_a_wall_pushes_back(void)
         for (int k = 0; k < 3; k++) {
             rig_open(&rig, pair, k ? "w.wall_repulsion=0.1" : "w.wall_repulsion=0",
                      k == 2 ? "w.max_speed=0.5" : NULL, NULL);
-            fluid = &rig.sim.kind[KIND_FLUID];
-            wall = &rig.sim.kind[KIND_WALL];
+            fluid = &rig.sim.particles[KIND_FLUID];
+            wall = &rig.sim.particles[KIND_WALL];
             fluid->x[0] = wall->x[0] = wall->y[0] = 0;
             fluid->y[0] = far ? 0.65 : 0.4;
             rig_sort(&rig);
@@ -164,8 +164,8 @@ static void test_a_wall_resists_approach(void)
         for (int k = 0; k < 2; k++) {
             rig_open(&rig, pair, "w.wall_repulsion=0.1",
                      k ? "w.wall_damping=1" : "w.wall_damping=0", NULL);
-            fluid = &rig.sim.kind[KIND_FLUID];
-            wall = &rig.sim.kind[KIND_WALL];
+            fluid = &rig.sim.particles[KIND_FLUID];
+            wall = &rig.sim.particles[KIND_WALL];
             fluid->x[0] = wall->x[0] = wall->y[0] = 0;
             fluid->y[0] = 0.4;
             fluid->vy[0] = part ? 3 : -3;
@@ -194,8 +194,8 @@ static void test_one_particle_has_one_side(void)
         for (int one = 0; one < 2; one++) {
             rig_open(&rig, pair, one ? "numerics.sides=one" : "numerics.sides=both",
                      k ? "numerics.suction=on" : "numerics.suction=off", NULL);
-            fluid = &rig.sim.kind[KIND_FLUID];
-            wall = &rig.sim.kind[KIND_WALL];
+            fluid = &rig.sim.particles[KIND_FLUID];
+            wall = &rig.sim.particles[KIND_WALL];
             fluid->x[0] = wall->x[0] = wall->y[0] = 0;
             fluid->y[0] = 1;
             fluid->dens[0] = k ? -0.03 : 0.01;
@@ -220,8 +220,8 @@ static void test_pressure_behind_a_wall_is_not_felt(void)
     for (int one = 0; one < 2; one++) {
         rig_open(&rig, pair, one ? "numerics.sides=one" : "numerics.sides=both", "gravity=0, 0",
                  "w.shape=box 0, 0, 0.8, 1.6", NULL);
-        fluid = &rig.sim.kind[KIND_FLUID];
-        wall = &rig.sim.kind[KIND_WALL];
+        fluid = &rig.sim.particles[KIND_FLUID];
+        wall = &rig.sim.particles[KIND_WALL];
         TEST_ASSERT_TRUE(fluid->n == 2 && wall->n == 1);
         for (int i = 0; i < 2; i++) {
             fluid->x[i] = 0;
@@ -241,7 +241,7 @@ static void test_pressure_behind_a_wall_is_not_felt(void)
 /* Where the first wall particle began. */
 static double wall_at(int axis)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_WALL];
+    const struct particles *const particles = &rig.sim.particles[KIND_WALL];
     return axis ? particles->Y[0] : particles->X[0];
 }
 
@@ -265,7 +265,7 @@ static void test_hydrostatic_pressure_continues_into_the_wall(void)
              "[wall w]\nshape = box -0.03, -0.03, 0.23, 0\nshape = box -0.03, 0, 0, 0.1\n",
              NULL);
     rig_evaluate(&rig);
-    wall = &rig.sim.kind[KIND_WALL];
+    wall = &rig.sim.particles[KIND_WALL];
     int64_t wet = 0;
     for (int64_t i = 0; i < wall->n; i++) {
         if (wall->p[i] == 0) continue;
@@ -286,7 +286,7 @@ static void test_moving_walls_follow_their_motion(void)
              "[wall floor]\nshape = box -0.04, -0.04, 0.14, 0\n"
              "[motion m]\nx = t*(0.1 + 2*t)\n",
              NULL);
-    wall = &rig.sim.kind[KIND_WALL];
+    wall = &rig.sim.particles[KIND_WALL];
     rig_run(&rig, 0.01);
     rig_evaluate(&rig);
     simulation_refresh(&rig.sim);
@@ -311,7 +311,7 @@ static void test_a_turning_tank_holds_its_water(void)
              "shape = box -0.04, 0, 0, 0.3\nshape = box 0.2, 0, 0.24, 0.3\nmotion = roll\n"
              "[motion roll]\ncentre = 0.1, 0\nturn = -0.4*cos(4*pi*t)\n",
              NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     const int64_t n = fluid->n;
     rig_run(&rig, 0.25);
     TEST_ASSERT_EQUAL_INT64(n, fluid->n);
@@ -324,8 +324,8 @@ static void test_a_turning_tank_holds_its_water(void)
         TEST_ASSERT_TRUE(x > -0.0025 && x < 0.2025 && y > -0.0025 && y < 0.3025);
     }
     TEST_ASSERT_TRUE(rig.sim.state.wall_work != 0);
-    assert_near(1e-15, 0.1 + c * (wall_at(0) - 0.1) - s * wall_at(1), rig.sim.kind[KIND_WALL].x[0],
-                "x of a wall particle");
+    assert_near(1e-15, 0.1 + c * (wall_at(0) - 0.1) - s * wall_at(1),
+                rig.sim.particles[KIND_WALL].x[0], "x of a wall particle");
 }
 
 /* A box of 0.2 m in water at rest is carried by the weight of what it displaces, to the error of
@@ -341,7 +341,7 @@ static void test_a_body_at_rest_is_carried(void)
              "[probe lift]\nquantity = force\nbody = box\npoint = 0.3, 0.3\n",
              NULL);
     simulation_wall_forces(&rig.sim);
-    wall = &rig.sim.kind[KIND_WALL];
+    wall = &rig.sim.particles[KIND_WALL];
     double force = 0;
     for (int64_t i = 0; i < wall->n; i++)
         if (wall->body[i] == 1) force += wall->fy[i];

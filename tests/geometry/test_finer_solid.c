@@ -62,7 +62,7 @@ static void test_repulsion_begins_nearer(void)
             rig_evaluate(&rig);
             force[on] = near[on] = 0;
             for (int64_t i = 0; i < p->n; i++) force[on] += p->fy[i];
-            struct particles *const water = &rig.sim.kind[KIND_FLUID];
+            struct particles *const water = &rig.sim.particles[KIND_FLUID];
             for (int64_t i = 0; i < water->n; i++) water->y[i] -= 0.0025 * (1 + 1.0 / (k + 1));
             rig_evaluate(&rig);
             for (int64_t i = 0; i < p->n; i++) near[on] += p->fy[i];

@@ -36,13 +36,13 @@ static uint64_t hash_after(const char *integrator, const char *precision)
     rig_steps(&rig, 60, 1);
     uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind += 2) {
-        const struct particles *const particles = &rig.sim.kind[kind];
+        const struct particles *const particles = &rig.sim.particles[kind];
         h = add(h, particles->x, particles->n);
         h = add(h, particles->y, particles->n);
         h = add(h, particles->vx, particles->n);
         h = add(h, particles->vy, particles->n);
     }
-    return add(h, rig.sim.kind[KIND_FLUID].dens, rig.sim.kind[KIND_FLUID].n);
+    return add(h, rig.sim.particles[KIND_FLUID].dens, rig.sim.particles[KIND_FLUID].n);
 }
 
 static const struct {

@@ -83,7 +83,7 @@ static void same_bits_double_single_rate(void)
 static uint64_t particles(const struct simulation *sim)
 {
     uint64_t hash = HASH_START;
-    for (int k = 0; k < KIND_COUNT; k++) hash = particles_hash(&sim->kind[k], hash);
+    for (int k = 0; k < KIND_COUNT; k++) hash = particles_hash(&sim->particles[k], hash);
     return hash;
 }
 
@@ -152,7 +152,7 @@ static void cells_of_another_grid_are_refused(void)
     for (int k = 0; k < 3; k++) {
         open_with(0, NULL);
         step(&first, 3);
-        first.kind[KIND_FLUID].cell[99] = wrong[k];
+        first.particles[KIND_FLUID].cell[99] = wrong[k];
         store(tiny_path("grid"), &first);
         TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
         diag = (struct diag){0};
@@ -197,16 +197,16 @@ static void numbers_that_no_run_has_are_refused(void)
     REFUSES(steps, INT64_MAX, "steps of run, item 0, is 9.22337e+18");
     REFUSES(bound_steps[2], INT64_MAX - 1, "bound_steps of run, item 2, is ");
     REFUSES(energy.entry[1].supplied, (double)NAN, "energy of run, item ");
-    first.kind[KIND_FLUID].ax[7] = (double)NAN;
+    first.particles[KIND_FLUID].ax[7] = (double)NAN;
     refuses("ax of fluid, item 7, is nan");
-    first.kind[KIND_FLUID].ax[7] = 0;
+    first.particles[KIND_FLUID].ax[7] = 0;
     REFUSES(energy.entry[1].work_change, -1, "the account of energy");
     REFUSES(energy.entry[0].region, -2, "the account of energy");
-    first.kind[KIND_SOLID].body[5] = 1;
+    first.particles[KIND_SOLID].body[5] = 1;
     refuses("body of solid, item 5, is 1, outside the valid range 0 to 0");
-    first.kind[KIND_SOLID].body[5] = -1;
+    first.particles[KIND_SOLID].body[5] = -1;
     refuses("body of solid, item 5, is -1");
-    first.kind[KIND_SOLID].body[5] = 0;
+    first.particles[KIND_SOLID].body[5] = 0;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &second, &diag), diag.text);
 }

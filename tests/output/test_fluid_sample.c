@@ -77,7 +77,7 @@ static void test_pressure_at_a_wall(void)
         const double x = places[k][0], y = places[k][1];
         open_at(x, y);
         const struct simulation *const sim = &rig.sim;
-        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        struct particles *const particles = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < particles->n; i++) particles->ax[i] = particles->ay[i] = 0;
         const double floor = fluid_sample(sim, x + 0.2, y).pressure,
                      side = fluid_sample(sim, x, y + 0.1).pressure;
@@ -103,8 +103,8 @@ static void test_pressure_at_a_moving_wall(void)
         char text[1200];
         snprintf(text, sizeof text, tank, 0.0, 0.0);
         const size_t end = strlen(text);
-        snprintf(text + end, sizeof text - end,
-                 "motion = m\n[motion m]\ny = %d*t^2\n", 5 * (k - 1));
+        snprintf(text + end, sizeof text - end, "motion = m\n[motion m]\ny = %d*t^2\n",
+                 5 * (k - 1));
         rig_open(&rig, text, NULL);
         rig_evaluate(&rig);
         floor[k] = fluid_sample(&rig.sim, 0.2, 0).pressure;
@@ -120,7 +120,7 @@ static void test_flux_of_denser_water(void)
 {
     const double from[2] = {0.2, 0.05}, to[2] = {0.2, 0.15};
     open_at(0, 0);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0;
     const double flux = fluid_flux(&rig.sim, from, to);
     for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0.1;
@@ -135,7 +135,7 @@ static void test_level_at_the_top_of_the_domain(void)
              "dp = 1 cm\nend_time = 1\n[domain]\nlower = -0.1, -0.1\nupper = 0.5, 0.2\n"
              "[fluid w]\nshape = box 0, 0, 0.4, 0.2\nsound_speed = 30\n",
              NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int k = 0; k < 5; k++) {
         const double rise = 0.0005 * k;
         for (int64_t i = 0; i < particles->n; i++) particles->y[i] += k ? 0.0005 : 0;
@@ -150,7 +150,7 @@ static void test_level_of_volume(void)
 {
     open_at(0, 0);
     const struct simulation *const sim = &rig.sim;
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     const double dp = sim->scene->top.dp;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->y[i] > 0.2 - dp)
@@ -171,7 +171,7 @@ static void test_level_of_volume(void)
 static void test_flux_is_that_at_the_line(void)
 {
     open_at(0, 0);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++)
         if (fabs(particles->x[i] - 0.2) > rig.sim.scene->top.dp) particles->vx[i] = 0;
     const double low[2] = {0.2, 0.05}, high[2] = {0.2, 0.15};

@@ -44,7 +44,7 @@ static const double *last_values(void)
 
 static void set_linear_field(void)
 {
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ux[i] = 0.5 + 2 * particles->X[i] - 3 * particles->Y[i];
         particles->uy[i] = -0.25 + particles->X[i] + 4 * particles->Y[i];
@@ -76,7 +76,7 @@ static void linear_on_a_particle(void) { weights_reproduce_linear_fields("M1.poi
 /* Stretches the gate along x by a share `e`. */
 static void stretch(double e)
 {
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ux[i] = e * particles->X[i];
         particles->uy[i] = 0;
@@ -119,7 +119,7 @@ static void energy_of_a_body(void)
 
 static void set_flow(double vx, double vy)
 {
-    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->vx[i] = vx;
         particles->vy[i] = vy;
@@ -153,7 +153,7 @@ static void pressure_is_hydrostatic_at_the_start(void)
 static void pressure_is_a_mean_of_the_near_fluid(void)
 {
     open_with("", "P.point=0.001, 0.03");
-    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.particles[KIND_FLUID];
     const double *const g = rig.sim.fluid.k.gravity;
     for (int64_t i = 0; i < particles->n; i++)
         particles->dens[i] = 1e-3, particles->ax[i] = g[0], particles->ay[i] = g[1];
@@ -181,7 +181,7 @@ static void level_of_a_dry_bed(void)
 /* Moves the last n fluid particles into a row at x, a spacing apart, and sorts. */
 static void splash(int n, double x)
 {
-    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.particles[KIND_FLUID];
     for (int k = 0; k < n; k++) {
         particles->x[particles->n - 1 - k] = x - 0.01 * k;
         particles->y[particles->n - 1 - k] = 0.005;
@@ -251,7 +251,7 @@ static void forces_balance(void)
     double tank[3], gate[3], fluid[2] = {0};
     probes_values(&probes, &rig.sim, probes.n - 2, tank);
     probes_values(&probes, &rig.sim, probes.n - 1, gate);
-    const struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         fluid[0] += 0.1 * particles->ax[i];
         fluid[1] += 0.1 * (particles->ay[i] + 9.81);
@@ -278,10 +278,10 @@ static void moment_about_a_point(void)
 static void walls_carry_forces_only_when_asked(void)
 {
     open_with("", NULL);
-    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].fx);
+    TEST_ASSERT_NULL(rig.sim.particles[KIND_WALL].fx);
     tearDown();
     open_with("[probe T]\nquantity = force\nbody = tank\n", NULL);
-    TEST_ASSERT_NOT_NULL(rig.sim.kind[KIND_WALL].fx);
+    TEST_ASSERT_NOT_NULL(rig.sim.particles[KIND_WALL].fx);
 }
 
 /* Of two files that are read at different times. */
@@ -291,7 +291,7 @@ static void walls_get_forces_only_for_rows_that_show_them(void)
     open_with("[probe T]\nquantity = force\nbody = tank\n"
               "[probe Q]\nquantity = pressure\npoint = 0.05, 0.05\ninterval = 1 ms\n",
               NULL);
-    double *const fy = rig.sim.kind[KIND_WALL].fy;
+    double *const fy = rig.sim.particles[KIND_WALL].fy;
     fy[0] = 7;
     probes_sample(&probes, &rig.sim, 1, false, row, rate);
     TEST_ASSERT_TRUE(fy[0] == 7);
@@ -304,7 +304,7 @@ static void walls_get_forces_only_for_rows_that_show_them(void)
 /* Density that differs from place to place. */
 static void set_uneven_density(void)
 {
-    struct particles *particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++)
         particles->dens[i] = 1e-2 * particles->x[i] + 3e-2 * particles->y[i];
 }
@@ -324,7 +324,7 @@ static void a_point_rides_on_a_solid(void)
     open_with("[probe F]\nquantity = pressure\npoint = 0.08, 0.06\n"
               "[probe R]\nquantity = pressure\non = gate\npoint = 0.1, 0.05\n",
               NULL);
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         particles->ux[i] = -0.2 * particles->X[i], particles->uy[i] = 0.2 * particles->Y[i];
     set_uneven_density();
@@ -401,7 +401,7 @@ static void force_on_three_bodies(void)
  * it. */
 static void set_pose(double angle, double e, const double shift[2])
 {
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     const double c = cos(angle), s = sin(angle);
     for (int64_t i = 0; i < particles->n; i++) {
         const double x = (1 + e) * particles->X[i], y = particles->Y[i];
@@ -418,7 +418,7 @@ static void strain_of_a_turned_body(void)
     assert_near(1e-10, 0.01 + 0.5e-4, last_values()[0], "Exx");
     assert_near(1e-10, 0, last_values()[1], "Eyy");
     assert_near(1e-10, 0, last_values()[2], "Exy");
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         particles->ux[i] = 0.02 * particles->Y[i], particles->uy[i] = 0;
     assert_near(1e-10, 0.01, last_values()[2], "Exy of a shear");
@@ -465,7 +465,7 @@ static void reaction_balances(const char *set)
     double got[3];
     memcpy(got, last_values(), sizeof got);
     TEST_ASSERT_TRUE(before == simulation_hash(&rig.sim));
-    struct particles *particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *particles = &rig.sim.particles[KIND_SOLID];
     const double mass = rig.sim.solid.body[0].mass;
     const struct solid_forces_now now =
         solid_forces_now(&rig.sim.solid, particles, rig.sim.state.time);

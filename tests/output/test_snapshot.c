@@ -73,7 +73,7 @@ static void begin(const char *folder)
 static void write_one(double time)
 {
     simulation.state.time = time;
-    simulation.kind[KIND_FLUID].x[0] = time;
+    simulation.particles[KIND_FLUID].x[0] = time;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_write(&writer, &simulation, &diag), diag.text);
 }
 
@@ -199,7 +199,7 @@ static void fewer_particles_are_fewer_points(void)
     static double counts[4];
     begin(tiny_path("fewer"));
     write_one(0);
-    simulation.kind[KIND_FLUID].n -= 7;
+    simulation.particles[KIND_FLUID].n -= 7;
     TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_write(&writer, &simulation, &diag));
     TEST_ASSERT_EQUAL_UINT(2, read_all("VTKHDF/NumberOfPoints", counts, 4));
     TEST_ASSERT_TRUE(counts[0] - counts[1] == 7);
@@ -237,7 +237,7 @@ static void fields_and_precision_are_chosen(void)
     double last;
     open_with(sets, 3);
     begin(tiny_path("chosen"));
-    simulation.kind[KIND_FLUID].vx[0] = 1.0 / 3;
+    simulation.particles[KIND_FLUID].vx[0] = 1.0 / 3;
     for (int k = 0; k < 3; k++) write_one(k);
     TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_resume(&writer, tiny_path("chosen"), &scene, "1.2.3", 1,
                                                    &last, &diag));
@@ -279,7 +279,7 @@ static void everything_in_single_precision_unless_chosen(void)
 /* rho0/det F, with stretches of 1.1 and 0.95. */
 static void density_of_a_stretched_solid(void)
 {
-    struct particles *const particles = &simulation.kind[KIND_SOLID];
+    struct particles *const particles = &simulation.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ux[i] = 0.1 * particles->X[i];
         particles->uy[i] = -0.05 * particles->Y[i];

@@ -115,7 +115,7 @@ void tearDown(void)
 
 static enum err write_one(double time)
 {
-    struct particles *const particles = &simulation.kind[KIND_FLUID];
+    struct particles *const particles = &simulation.particles[KIND_FLUID];
     simulation.state.time = time;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x[i] = 0.001 * (double)i + 0.125 * time;
@@ -160,7 +160,7 @@ static void text_is(const char *at, const char *name, const char *expected)
 static void times_are(const double *expected, hsize_t n)
 {
     static double value[4 * 3 * 2000];
-    const int64_t fluid = simulation.kind[KIND_FLUID].n;
+    const int64_t fluid = simulation.particles[KIND_FLUID].n;
     TEST_ASSERT_EQUAL_UINT_MESSAGE(n, read_all("VTKHDF/Steps/Values", value, 8), message);
     for (hsize_t k = 0; k < n; k++) TEST_ASSERT_TRUE_MESSAGE(value[k] == expected[k], message);
     static const struct {

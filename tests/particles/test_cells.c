@@ -63,7 +63,7 @@ static void scatter(bool with_lost)
 
 static int32_t at(enum kind kind, int32_t place)
 {
-    return cells.kind[kind].order ? cells.kind[kind].order[place] : place;
+    return cells.list[kind].order ? cells.list[kind].order[place] : place;
 }
 
 static bool adjacent(int32_t a, int32_t b)
@@ -112,7 +112,7 @@ static void test_a_long_channel_is_sorted(void)
     TEST_ASSERT_TRUE(channel.nx > 1000 && channel.ny < 4);
     int64_t listed = 0;
     for (int32_t cell = 0; cell < channel.nx * channel.ny; cell++)
-        listed += channel.kind[KIND_FLUID].count[cell];
+        listed += channel.list[KIND_FLUID].count[cell];
     TEST_ASSERT_EQUAL_INT64(particles->n, listed);
 }
 
@@ -141,7 +141,7 @@ static void test_no_pair_is_missed(void)
 /* The ranges of the active cells hold every particle once, each in the cell where it lies. */
 static void check_cover(enum kind kind, int64_t inside)
 {
-    const struct cell_list *const list = &cells.kind[kind];
+    const struct cell_list *const list = &cells.list[kind];
     const struct particles *const particles = &kinds[kind];
     int32_t place = 0;
     int64_t total = 0;
@@ -199,7 +199,7 @@ static void test_clusters_of_a_lattice_are_squares(void)
         particles->y[i] = y + 0.01 * (place / 4 - 1.5);
     }
     cells_sort(&cells, KIND_WALL, particles);
-    const struct cell_list *const list = &cells.kind[KIND_WALL];
+    const struct cell_list *const list = &cells.list[KIND_WALL];
     TEST_ASSERT_EQUAL_INT32(1, list->n_active);
     for (int k = 0; k < 16; k++) {
         const int32_t i = list->order[k], first = list->order[k / CLUSTER * CLUSTER];
@@ -264,10 +264,10 @@ static void test_order_is_that_of_the_tree(void)
             expected[i] = i;
         }
         cells_sort(&cells, KIND_WALL, particles);
-        TEST_ASSERT_EQUAL_INT32(1, cells.kind[KIND_WALL].n_active);
+        TEST_ASSERT_EQUAL_INT32(1, cells.list[KIND_WALL].n_active);
         compared = particles;
         tree_by_library(expected, n);
-        TEST_ASSERT_EQUAL_INT32_ARRAY(expected, cells.kind[KIND_WALL].order, n);
+        TEST_ASSERT_EQUAL_INT32_ARRAY(expected, cells.list[KIND_WALL].order, n);
     }
 }
 
@@ -277,7 +277,7 @@ static void test_clusters_are_compact(void)
 {
     scatter(false);
     cells_sort(&cells, KIND_FLUID, &kinds[KIND_FLUID]);
-    const struct cell_list *const list = &cells.kind[KIND_FLUID];
+    const struct cell_list *const list = &cells.list[KIND_FLUID];
     const struct particles *const particles = &kinds[KIND_FLUID];
     double sum = 0;
     int full = 0;
@@ -367,7 +367,7 @@ static void test_resume_rebuilds_the_same_list(void)
         TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&fresh, &arena, lower, upper, dp, reach, stray,
                                                    kinds, &diag));
         cells_rebuild(&fresh, (enum kind)kind, &kinds[kind]);
-        const struct cell_list *const a = &cells.kind[kind], *const b = &fresh.kind[kind];
+        const struct cell_list *const a = &cells.list[kind], *const b = &fresh.list[kind];
         TEST_ASSERT_EQUAL_INT32(a->n_active, b->n_active);
         TEST_ASSERT_EQUAL_INT32_ARRAY(a->active, b->active, a->n_active);
         TEST_ASSERT_EQUAL_INT32_ARRAY(a->count, b->count, cells.nx * cells.ny);

@@ -22,7 +22,7 @@ void tearDown(void) { rig_close(&rig); }
 static bool outgrown(void)
 {
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        cells_measure_overhang(&rig.sim.cells, (enum kind)kind, &rig.sim.kind[kind]);
+        cells_measure_overhang(&rig.sim.cells, (enum kind)kind, &rig.sim.particles[kind]);
     return !(cells_skin_left(&rig.sim.cells, KERNEL_REACH * rig.sim.fluid.k.h) > 0);
 }
 
@@ -44,7 +44,7 @@ static void fill_squares(struct squares *q, double reach)
 {
     memset(q->first, -1, sizeof q->first);
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &rig.sim.kind[kind];
+        const struct particles *const particles = &rig.sim.particles[kind];
         TEST_ASSERT_TRUE(particles->n <= 8192);
         for (int i = 0; i < (int)particles->n; i++) {
             int *const first = &q->first[kind][square_of(particles->y[i], reach) * SQUARES +
@@ -60,7 +60,8 @@ static void fill_squares(struct squares *q, double reach)
 static bool unseen_by(const struct squares *q, int64_t i, int kind, double side, double reach)
 {
     const struct cells *const cells = &rig.sim.cells;
-    const struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
+    const struct particles *const a = &rig.sim.particles[KIND_FLUID], *const b =
+                                                                          &rig.sim.particles[kind];
     const int at = square_of(a->y[i], side) * SQUARES + square_of(a->x[i], side);
     for (int k = 0; k < 9; k++)
         for (int j = q->first[kind][at + (k / 3 - 1) * SQUARES + k % 3 - 1]; j >= 0;
@@ -81,7 +82,7 @@ static bool pair_unseen(void)
     const double side = reach > 0.045 ? reach : 0.045; /* so that they cover the domain */
     fill_squares(&squares, side);
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++)
+        for (int64_t i = 0; i < rig.sim.particles[KIND_FLUID].n; i++)
             if (unseen_by(&squares, i, kind, side, reach)) return true;
     return false;
 }
@@ -98,17 +99,17 @@ static void test_no_pair_is_unseen(void)
         int steps = 0;
         for (; steps < 200; steps++) {
             for (int kind = 0; kind < KIND_COUNT; kind += 2) /* fluid and solid */
-                for (int64_t i = 0; i < rig.sim.kind[kind].n; i++) {
-                    rig.sim.kind[kind].x[i] += step * noise(&seed);
-                    rig.sim.kind[kind].y[i] += step * noise(&seed);
+                for (int64_t i = 0; i < rig.sim.particles[kind].n; i++) {
+                    rig.sim.particles[kind].x[i] += step * noise(&seed);
+                    rig.sim.particles[kind].y[i] += step * noise(&seed);
                 }
             if (outgrown()) break;
             TEST_ASSERT_FALSE(pair_unseen());
         }
         TEST_ASSERT_TRUE(steps > 0 && steps < 200);
         for (int more = 0; more < 3 * steps + 3 && !pair_unseen(); more++)
-            for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++)
-                rig.sim.kind[KIND_FLUID].x[i] += step * noise(&seed);
+            for (int64_t i = 0; i < rig.sim.particles[KIND_FLUID].n; i++)
+                rig.sim.particles[KIND_FLUID].x[i] += step * noise(&seed);
         unseen_after += pair_unseen();
     }
     TEST_ASSERT_TRUE(unseen_after >= 4);
@@ -126,7 +127,7 @@ static void test_common_motion_is_free(void)
                 min2(rig.sim.scene->numerics.skin * h,
                      0.5 * (rig.sim.cells.side[0] - KERNEL_REACH * h)),
                 stray, "stray");
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double way = 0;
     while (!outgrown() && way < 10 * stray) {
         for (int64_t i = 0; i < particles->n; i++) particles->x[i] += 0.1 * stray;
@@ -140,7 +141,7 @@ static void test_common_motion_is_free(void)
 /* Two blobs that jump towards each other over more than a cell. */
 static void test_leap_is_noticed(void)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     TEST_ASSERT_FALSE(outgrown());
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->x[i] < -0.2) particles->x[i] += 0.4;
@@ -176,7 +177,7 @@ static void check_room(const char *scene, const char *integrator, const char *mo
             if (measured) continue;
             const double left = sim->sorting.skin_left;
             for (int kind = 0; kind < KIND_COUNT; kind++)
-                cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
+                cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->particles[kind]);
             const double found = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h);
             assert_at_most(found + 1e-12, left, "skin left");
             const bool looks = step % 20 == 0;
@@ -228,7 +229,8 @@ static void check_midpoints(const char *scene, enum kind kind, bool upright)
         evaluations = 0;
         TEST_ASSERT_EQUAL_INT(ERR_OK,
                               simulation_set_external(&rig.sim, KIND_FLUID, look, NULL, &rig.diag));
-        struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
+        struct particles *const a = &rig.sim.particles[KIND_FLUID], *const b =
+                                                                        &rig.sim.particles[kind];
         double *const from = upright ? a->y : a->x, *const to = upright ? b->y : b->x,
                       *const moved = upright ? b->uy : b->ux;
         int64_t facing = b->n - 1;

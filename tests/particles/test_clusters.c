@@ -36,7 +36,8 @@ static void place_seen(enum kind kind, uint32_t code, int r, double place[2])
 /* Pairs of particle i with others of a kind within reach, straight from the definition. */
 static int within_reach(enum kind kind, int64_t i)
 {
-    const struct particles *const a = &rig.sim.kind[KIND_FLUID], *const b = &rig.sim.kind[kind];
+    const struct particles *const a = &rig.sim.particles[KIND_FLUID], *const b =
+                                                                          &rig.sim.particles[kind];
     const struct cells *const cells = &rig.sim.cells;
     int n = 0;
     for (int64_t j = 0; j < b->n; j++)
@@ -52,7 +53,7 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
     static struct cluster_list near;
     const struct fluid *const fluid = &rig.sim.fluid;
     const struct cells *const cells = &rig.sim.cells;
-    const struct cell_list *const list = &cells->kind[KIND_FLUID];
+    const struct cell_list *const list = &cells->list[KIND_FLUID];
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
         neighbour_clusters_collect(&around, &fluid->packed[kind].boxes, cells, kind, cell,
@@ -86,9 +87,9 @@ static void count_shares(int32_t cells, int *met)
     static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct fluid *const fluid = &rig.sim.fluid;
-    const struct cell_list *const list = &rig.sim.cells.kind[KIND_FLUID];
+    const struct cell_list *const list = &rig.sim.cells.list[KIND_FLUID];
     int64_t *const particle =
-        calloc((size_t)rig.sim.kind[KIND_FLUID].n, CLUSTER * sizeof *particle);
+        calloc((size_t)rig.sim.particles[KIND_FLUID].n, CLUSTER * sizeof *particle);
     TEST_ASSERT_NOT_NULL(particle);
     for (int32_t k = 0; k < list->n_active; k++) /* by place in the clusters */
         for (int32_t m = 0; m < list->count[list->active[k]]; m++)
@@ -131,7 +132,7 @@ static void test_pairs_in_a_share_are_seen_once(void)
     static const int32_t cells[] = {1, 5, 64, 100000};
     uint64_t seed = 5;
     rig_open(&rig, scene, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->x[i] += 0.006 * noise(&seed);
         particles->y[i] += 0.006 * noise(&seed);
@@ -171,7 +172,7 @@ static void test_all_within_reach_are_seen(void)
 {
     uint64_t seed = 3;
     rig_open(&rig, scene, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int turn = 0; turn < 3; turn++) {
         for (int64_t i = 0; i < particles->n; i++) {
             particles->x[i] += 0.004 * noise(&seed);

@@ -21,7 +21,7 @@ static const struct rigid_state *state(void) { return rig.sim.rigid.state; }
 
 static double angular_momentum(void)
 {
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const p = &rig.sim.particles[KIND_SOLID];
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++)
         sum += rig.sim.solid.body[p->body[i]].mass * (p->x[i] * p->vy[i] - p->y[i] * p->vx[i]);

@@ -482,7 +482,7 @@ static void test_bound_and_phase_of_its_own(void)
     TEST_ASSERT_TRUE(sim->dt_solid < 0.99 * sim->dt_lone_solid);
     /* Where the distance is half of the reach the contact is four times as stiff; the next edges,
      * at 1.118 of the reach, are near enough to count as at its beginning. */
-    p = &rig.sim.kind[KIND_SOLID];
+    p = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < p->n; i++) p->ux[i] = p->body[i] ? -0.005 : 0;
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
     assert_near(1e-6 * 5 * 2 * modulus / 0.1, (4 + 1) * 2 * modulus / 0.1, sim->contact.omega2,
@@ -537,7 +537,7 @@ static void test_between(void)
                    "shape = box 0.05, 0, 0.09, 0.04\n[wall w]\nshape = box 0, -0.1, 0.1, -0.05\n"
                    "[contact others]\nenabled = off\n",
                    "all.between=a, b");
-    TEST_ASSERT_TRUE(rig.sim.kind[KIND_WALL].n == 0 && rig.sim.contact.n_walls == 0);
+    TEST_ASSERT_TRUE(rig.sim.particles[KIND_WALL].n == 0 && rig.sim.contact.n_walls == 0);
 }
 
 int main(void)

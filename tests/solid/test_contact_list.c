@@ -36,7 +36,7 @@ static void test_energy_before_the_first_check(void)
 {
     open_case(blocks);
     overlap(true);
-    contact_forget(c, &rig.sim.kind[KIND_WALL]);
+    contact_forget(c, &rig.sim.particles[KIND_WALL]);
     const double energy = contact_energy(c, p, 0);
     TEST_ASSERT_TRUE(energy > 0);
     TEST_ASSERT_EQUAL_DOUBLE(energy, contact_energy(c, p, 0));
@@ -71,7 +71,7 @@ static void test_fast_parts_are_listed_early(void)
 static void test_a_list_that_is_stale(void)
 {
     open_case(legs);
-    contact_forget(c, &rig.sim.kind[KIND_WALL]);
+    contact_forget(c, &rig.sim.particles[KIND_WALL]);
     contact_watch(c, p, 0, 1, 1);
     const int64_t apart = c->n_pairs;
     move_legs(5, 0);
@@ -84,10 +84,10 @@ static void test_margin_covers_the_steps(void)
 {
     open_case(legs);
     move_legs(0, 1);
-    contact_forget(c, &rig.sim.kind[KIND_WALL]);
+    contact_forget(c, &rig.sim.particles[KIND_WALL]);
     timestep_watch_contact(&rig.sim, 0, 1);
     const double one = c->margin;
-    contact_forget(c, &rig.sim.kind[KIND_WALL]);
+    contact_forget(c, &rig.sim.particles[KIND_WALL]);
     timestep_watch_contact(&rig.sim, 0, 41);
     assert_near(1e-12, 40 * 1.5 * rig.sim.dt_lone_solid * 2, c->margin - one, "margin");
 }
@@ -103,7 +103,7 @@ static void test_a_clamp_that_moves_with_its_wall(void)
         "[solid a]\nshape = box 0, -0.03, 0.04, 0.1\nclamp = box 0, -0.03, 0.04, 0\n" RUBBER;
     for (int held = 0; held < 2; held++) {
         rig_open(&rig, post, held ? "a.clamp_motion=m" : NULL, NULL);
-        p = &rig.sim.kind[KIND_SOLID];
+        p = &rig.sim.particles[KIND_SOLID];
         c = &rig.sim.contact;
         TEST_ASSERT_EQUAL_INT(!held, timestep_watch_contact(&rig.sim, 0, 1));
     }
@@ -114,7 +114,7 @@ static void test_walls_that_rest(void)
 {
     open_case("dp = 1 cm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.03, 0.14, 0\n"
               "[solid a]\nshape = box 0, 0.01, 0.04, 0.1\n" RUBBER);
-    const struct particles *const walls = &rig.sim.kind[KIND_WALL];
+    const struct particles *const walls = &rig.sim.particles[KIND_WALL];
     TEST_ASSERT_TRUE(c->n_points > c->n_moving_points);
     double low = 0, high = -1;
     for (int64_t k = c->n_moving_points; k < c->n_points; k++)

@@ -55,9 +55,8 @@ static void test_two_halves_are_one_body(void)
         rig_open(&rig, TWO, "precision=double", sets[k][0], sets[k][1], NULL);
         /* Power iteration from other random numbers: within its one percent. */
         assert_near(0.01, 1, rig.sim.dt_solid / whole.sim.dt_solid, "stable step");
-        struct particles *const particles = &rig.sim.kind[KIND_SOLID], *const q =
-                                                                           &whole.sim
-                                                                                .kind[KIND_SOLID];
+        struct particles *const particles = &rig.sim.particles[KIND_SOLID],
+                                *const q = &whole.sim.particles[KIND_SOLID];
         TEST_ASSERT_EQUAL_INT64(q->n, particles->n);
         disturb(particles);
         disturb(q);
@@ -81,7 +80,7 @@ static void test_two_halves_are_one_body(void)
 static double answer(const char *text)
 {
     rig_open(&rig, text, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->body[i] == 1) particles->ux[i] = 0.003 * sin(100 * particles->Y[i]);
     solid_stress(&rig.sim.solid, particles);
@@ -108,7 +107,7 @@ static void test_momentum_across_the_interface(void)
 {
     rig_open(&rig, TWO, "right.density=2700", "right.young=4e7", "right.artificial_viscosity=0.5",
              "left.viscosity_form=symmetric", "precision=double", NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     disturb(particles);
     solid_stress(&rig.sim.solid, particles);
     solid_forces(&rig.sim.solid, particles);
@@ -134,7 +133,7 @@ static void stretch(const char *dp, double mean[2], double worst[2])
                                "[solid stiff]\nlike = soft\nyoung = 4e6\njoined = soft\n"
                                "shape = box 0.2, 0, 0.4, 0.06\nclamp = box 0.38, 0, 0.4, 0.06\n";
     rig_open(&rig, text, dp, "integrator=symplectic", NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     const double pull = 1e-5, exact = pull / (0.18 / 1e6 + 0.18 / 4e6);
     for (int64_t i = 0; i < particles->n; i++)
         particles->ux[i] = particles->body[i] == 0

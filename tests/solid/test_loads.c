@@ -3,7 +3,7 @@
  * them. */
 #include "output/checkpoint.h"
 #include "coupling/coupling.h"
-#include "solid/solid.h"
+#include "solid/loads.h"
 #include "time/energy.h"
 #include "rig.h"
 #include "unity.h"

@@ -72,7 +72,7 @@ static void test_gain_beside_a_collapse(void)
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_SOLID, 0));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) != region(KIND_FLUID, 2));
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) particles->vx[i] += 0.1 * particles->free[i];
     TEST_ASSERT_TRUE(simulation_ledger(&rig.sim).dissipated > 0); /* of both together */
     TEST_ASSERT_EQUAL_INT(ERR_OK, go_on(rig.sim.state.time + 5e-3));
@@ -140,10 +140,10 @@ static void test_bodies_in_contact_are_one_region(void)
     rig_open(&rig, bodies, NULL);
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
     TEST_ASSERT_TRUE(region(KIND_SOLID, 1) == region(KIND_SOLID, 2));
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->body[i]) particles->ux[i] = -0.032;
-    contact_forget(&rig.sim.contact, &rig.sim.kind[KIND_WALL]);
+    contact_forget(&rig.sim.contact, &rig.sim.particles[KIND_WALL]);
     energy_begin(&rig.sim);
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 1));
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 2));
@@ -207,7 +207,7 @@ static void test_velocities_half_a_step_behind(void)
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(bar, "integrator=verlet", 0.1));
     assert_at_most(1e-5 * account->largest_available, account->most[TERM_SOLID], "gain of the bar");
     const double kinetic = simulation_ledger(&rig.sim).kinetic;
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         particles->vx[i] += 0.02 * particles->Y[i] * particles->free[i];
     const double put = simulation_ledger(&rig.sim).kinetic - kinetic;
@@ -223,7 +223,7 @@ static struct energy_gain gain_of_noise(double fraction)
         "dp = 5 mm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
         "density = 1000\nyoung = 1e5\npoisson = 0.3\n";
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(rest, NULL, 0.01));
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     uint64_t seed = 1;
     for (int64_t i = 0; i < particles->n; i++) particles->ux[i] += 5e-3 * fraction * noise(&seed);
     solid_stress(&rig.sim.solid, particles);
@@ -278,8 +278,8 @@ static double time_to_name(const char *block, const char *integrator, double rat
         e = simulation_step(&rig.sim, time + call, &rig.diag);
         const double dt = rig.sim.state.time - time;
         time += dt;
-        quicken(&rig.sim.kind[KIND_FLUID], 1 + 0.5 * rate * dt);
-        quicken(&rig.sim.kind[KIND_SOLID], 1 + 0.5 * rate * dt);
+        quicken(&rig.sim.particles[KIND_FLUID], 1 + 0.5 * rate * dt);
+        quicken(&rig.sim.particles[KIND_SOLID], 1 + 0.5 * rate * dt);
         if (reached == 0 && rate * (time - start) > 0.01) reached = time;
     }
     TEST_ASSERT_TRUE(reached > 0);

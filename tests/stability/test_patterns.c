@@ -21,7 +21,7 @@ void tearDown(void) { rig_close(&rig); }
  * over the middle of the bar, m. */
 static double pattern(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     double sum = 0;
     int n = 0;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -72,7 +72,7 @@ static const char drawn_water[] =
 
 static double closest(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double least = INFINITY;
     for (int64_t i = 0; i < particles->n; i++)
         for (int64_t j = 0; j < i; j++)
@@ -84,7 +84,7 @@ static double closest(void)
 /* The largest distance of a point of the water from its nearest particle. */
 static double hole(void)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double largest = 0;
     for (double x = 0.01; x < 0.09; x += 0.001)
         for (double y = 0.01; y < 0.09; y += 0.001) {

@@ -68,7 +68,7 @@ static double growth(const struct combination *c, double factor, int steps, cons
     const double dt = factor * rig.sim.solid.stable_step;
     snprintf(step, sizeof step, "numerics.fixed_step=%.17g", dt);
     open_bar(c, step, integrator);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     uint64_t seed = 5;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->vx[i] = 1e-4 * particles->free[i] * noise(&seed);

@@ -30,7 +30,7 @@ static double energy(void)
 {
     const struct ledger row = simulation_ledger(&rig.sim);
     double of_solid = row.elastic + row.hourglass;
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         of_solid += 0.5 * rig.sim.solid.body[0].mass *
                     (particles->vx[i] * particles->vx[i] + particles->vy[i] * particles->vy[i]);
@@ -41,7 +41,7 @@ static double energy(void)
 static double after_pattern(double first, double second)
 {
     rig_open(&rig, beam, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     uint64_t seed = 5;
     for (int64_t i = 0; i < particles->n; i++)
         particles->vy[i] = 1e-4 * particles->free[i] * noise(&seed);

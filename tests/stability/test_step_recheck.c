@@ -46,7 +46,7 @@ static const struct strained strains[] = {
 /* Stretches the body, clamps and all, and shakes it by 0.1 mm/s. */
 static void stretch(const struct strained *c)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     uint64_t seed = 5;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ux[i] = (c->along - 1) * particles->X[i];
@@ -67,7 +67,7 @@ static double total_energy(void)
 static double growth(const struct strained *c, int steps)
 {
     stretch(c);
-    solid_stress(&rig.sim.solid, &rig.sim.kind[KIND_SOLID]);
+    solid_stress(&rig.sim.solid, &rig.sim.particles[KIND_SOLID]);
     timestep_recheck_solid(&rig.sim);
     const double start = total_energy();
     while (rig.sim.state.steps < steps)
@@ -82,7 +82,7 @@ static void step_of(const struct strained *c, bool about_stretched, double facto
     rig_open(&rig, c->scene, c->law, NULL);
     if (about_stretched) {
         stretch(c);
-        solid_stress(&rig.sim.solid, &rig.sim.kind[KIND_SOLID]);
+        solid_stress(&rig.sim.solid, &rig.sim.particles[KIND_SOLID]);
         timestep_recheck_solid(&rig.sim);
     }
     snprintf(step, 64, "numerics.fixed_step=%.17g", factor * rig.sim.dt_solid);
@@ -138,7 +138,7 @@ static void test_nothing_changes_while_deformations_are_small(void)
 static void test_rotation_does_not_count(void)
 {
     rig_open(&rig, bar, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     const double c = -0.5, s = 0.86602540378443865;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->ux[i] = c * particles->X[i] - s * particles->Y[i] - particles->X[i];
@@ -167,7 +167,7 @@ static void test_the_search_leaves_no_trace(void)
 {
     rig_open(&rig, bar, "bar.law=svk", NULL);
     stretch(&strains[0]);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     solid_stress(&rig.sim.solid, particles);
     solid_forces(&rig.sim.solid, particles);
     const uint64_t before = particles_hash(particles, 1);
@@ -185,7 +185,7 @@ static void test_a_restart_keeps_the_step(void)
 {
     rig_open(&rig, frame, "bar.law=svk", NULL);
     stretch(&strains[0]);
-    solid_stress(&rig.sim.solid, &rig.sim.kind[KIND_SOLID]);
+    solid_stress(&rig.sim.solid, &rig.sim.particles[KIND_SOLID]);
     timestep_recheck_solid(&rig.sim);
     rig_steps(&rig, 3, 10);
     TEST_ASSERT_TRUE(rig.sim.state.solid_slowing < 0.9);

@@ -29,7 +29,7 @@ static void moves_with_the_fluid(const char *set)
     TEST_ASSERT_TRUE(rig.sim.effects & FX_MULTIRATE);
     rig_run(&rig, 0.1);
     TEST_ASSERT_TRUE(rig.sim.substeps > 1);
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         TEST_ASSERT_TRUE(hypot(particles->vx[i], particles->vy[i]) < 0.03);
 }

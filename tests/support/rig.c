@@ -86,23 +86,23 @@ void rig_refuses(const char *text, const char *why)
 void rig_sort(struct rig *r)
 {
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        if (r->sim.kind[kind].n)
-            TEST_ASSERT_EQUAL_INT64(0,
-                                    cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
+        if (r->sim.particles[kind].n)
+            TEST_ASSERT_EQUAL_INT64(0, cells_sort(&r->sim.cells, (enum kind)kind,
+                                                  &r->sim.particles[kind]));
     fluid_find_near(&r->sim.fluid, &r->sim.cells);
     r->sim.sorting.skin_left = 0;
 }
 
 double rig_pressure(const struct simulation *sim, int64_t i)
 {
-    return eos_pressure(sim->kind[KIND_FLUID].dens[i], sim->fluid.k.rho0, sim->fluid.k.c0);
+    return eos_pressure(sim->particles[KIND_FLUID].dens[i], sim->fluid.k.rho0, sim->fluid.k.c0);
 }
 
 void rig_evaluate(struct rig *r)
 {
     double seconds[PHASE_COUNT] = {0};
-    fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
-    coupling_find_forces(&r->sim.coupling, r->sim.kind, &r->sim.cells);
+    fluid_evaluate(&r->sim.fluid, r->sim.particles, &r->sim.cells, seconds);
+    coupling_find_forces(&r->sim.coupling, r->sim.particles, &r->sim.cells);
 }
 
 void rig_one_thread(void) { thread_use(1); }

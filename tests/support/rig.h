@@ -26,7 +26,7 @@ void rig_close(struct rig *r);
 #define RIG_OPEN_SOLID(text, ...)                \
     do {                                         \
         rig_open(&rig, text, __VA_ARGS__, NULL); \
-        p = &rig.sim.kind[KIND_SOLID];           \
+        p = &rig.sim.particles[KIND_SOLID];      \
     } while (0)
 
 /* Steps until the time is reached exactly; the test fails if a guard stops the run. */

@@ -48,8 +48,7 @@ static double second_moment(double dp, double h)
     for (int i = -5; i <= 5; i++)
         for (int j = -5; j <= 5; j++) {
             const double r = dp * hypot(i, j), q = r / h;
-            if (q < 2)
-                sum += dp * dp * r * r / 2 * 35 / (4 * M_PI * pow(h, 4)) * pow(1 - q / 2, 3);
+            if (q < 2) sum += dp * dp * r * r / 2 * 35 / (4 * M_PI * pow(h, 4)) * pow(1 - q / 2, 3);
         }
     return sum;
 }
@@ -82,7 +81,7 @@ void twin_copy(struct twin *t, const struct simulation *sim)
         if (scene->domain.periodic & 1 << axis)
             t->period[axis] = scene->domain.upper[axis] - scene->domain.lower[axis];
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const struct particles *const particles = &sim->kind[kind];
+        const struct particles *const particles = &sim->particles[kind];
         t->n[kind] = particles->n;
         t->point[kind] = calloc((size_t)particles->n + 1, sizeof *t->point[kind]);
         TEST_ASSERT_NOT_NULL(t->point[kind]);

@@ -130,7 +130,7 @@ struct twin_mat twin_solid_stress(const struct scene_solid *body, struct twin_ma
 
 void twin_solid_copy(struct twin_solid *t, const struct simulation *sim)
 {
-    const struct particles *const particles = &sim->kind[KIND_SOLID];
+    const struct particles *const particles = &sim->particles[KIND_SOLID];
     *t = (struct twin_solid){.h = sim->scene->numerics.h_over_dp * sim->scene->top.dp,
                              .dp = sim->scene->top.dp,
                              .body = sim->scene->solid,

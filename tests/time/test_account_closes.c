@@ -150,7 +150,7 @@ static void test_repulsion_is_counted(void)
         double held[SCENE_MAX_SECTIONS], most = 0;
         while (rig.sim.state.time < 0.035) {
             go_on(rig.sim.state.time + 1e-3);
-            fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, held);
+            fluid_repulsion_energy(&rig.sim.fluid, rig.sim.particles, &rig.sim.cells, held);
             most = fmax(most, held[0]);
         }
         printf("%s: held %.3f, gained %.2e, of the available energy\n", integrators[k],
@@ -171,11 +171,11 @@ static void test_what_repulsion_holds(void)
         "sound_speed = 10\nwall_repulsion = 0.3\n[wall bed]\nshape = box -0.03, -0.03, 0.04, 0\n"
         "[domain]\nlower = -0.2, -0.2\nupper = 0.2, 0.2\n";
     begin(one, "numerics.h_over_dp=2", NULL, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     double work = 0, before, after, of[SCENE_MAX_SECTIONS];
     const double from = 4e-3, way = 1e-6;
     particles->y[0] = from;
-    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, of);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.particles, &rig.sim.cells, of);
     before = of[0];
     for (; particles->y[0] > -1e-3;) {
         particles->y[0] -= 0.5 * way;
@@ -183,7 +183,7 @@ static void test_what_repulsion_holds(void)
         work += rig.sim.fluid.k.mass * particles->ay[0] * way;
         particles->y[0] -= 0.5 * way;
     }
-    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, of);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.particles, &rig.sim.cells, of);
     after = of[0];
     printf("stored %.6g J/m, work %.6g J/m\n", after - before, work);
     TEST_ASSERT_TRUE(after > 1e-3);
@@ -209,14 +209,14 @@ static void test_what_the_damper_holds(void)
 {
     begin(drop, NULL, NULL, NULL);
     go_on(0.012);
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     const struct fluid_constants *const k = &rig.sim.fluid.k;
     double held = 0;
     for (int64_t i = 0; i < particles->n; i++)
         held += 0.5 * k->mass * square(k->c0 * (particles->dens[i] - particles->dens_slow[i]));
     const struct ledger row = simulation_ledger(&rig.sim);
     double repulsion[SCENE_MAX_SECTIONS];
-    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.kind, &rig.sim.cells, repulsion);
+    fluid_repulsion_energy(&rig.sim.fluid, rig.sim.particles, &rig.sim.cells, repulsion);
     energy_find_gain(&rig.sim);
     const struct energy_account *const a = &rig.sim.state.energy;
     const double all = row.kinetic + row.internal + row.potential + repulsion[0] + held;

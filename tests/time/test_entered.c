@@ -22,7 +22,7 @@ static int64_t found(double dp, const char *periodic, double share)
              "[wall bed]\nshape = box 0, %g, %g, 0\n",
              dp, -5 * dp, 40 * dp, 20 * dp, periodic, 40 * dp, 10 * dp, -5 * dp, 40 * dp);
     rig_open(&rig, text, NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int k = 0; k < 160; k++) {
         const int side = k % 4;
         particles->x[k] = (k / 4 + 0.5 + share * (side == 0) - share * (side == 1)) * dp;
@@ -56,8 +56,8 @@ static void test_fluid_in_a_stretched_body(void)
              "[fluid w]\nshape = box 0.3, 0, 0.4, 0.1\nsound_speed = 20\n"
              "[solid s]\nshape = box 0, 0, 0.1, 0.1\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n",
              NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const s =
-                                                                       &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID],
+                            *const s = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < s->n; i++) {
         s->x[i] = 1.5 * s->X[i];
         s->y[i] = 0.8 * s->Y[i];

@@ -31,7 +31,7 @@ void tearDown(void) { rig_close(&rig); }
 /* All particles have the velocity and the path of a free fall from rest. */
 static void falls(enum kind kind, double tolerance)
 {
-    const struct particles *const particles = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.particles[kind];
     const double t = rig.sim.state.time;
     const double v[2] = {0.6 * sin(5 * t), -9.81 * t + 10 * t * t};
     const double d[2] = {0.12 * (1 - cos(5 * t)), -4.905 * t * t + 10.0 / 3 * t * t * t};
@@ -93,8 +93,8 @@ static void test_what_does_not_vary_keeps_its_bits(void)
                                 hash_after("gravity=1, -9.81 + 0*t", integrators[k]));
 }
 
-#define SHAKE                                                            \
-    "[table gx]\nfile = test_gravity.tmp\ncolumn = 2\n"                   \
+#define SHAKE                                           \
+    "[table gx]\nfile = test_gravity.tmp\ncolumn = 2\n" \
     "[table gy]\nfile = test_gravity.tmp\ncolumn = 3\n"
 
 static void open_with_table(const char *gravity, const char *rows)
@@ -128,7 +128,7 @@ static void test_a_table_is_added(void)
 {
     open_with_table("gravity=gx(t), gy(t) - 1", "# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n");
     rig_run(&rig, 0.1);
-    const struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    const struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         assert_near(2e-4, 0.5 * 0.05 * 0.5 + 0.5 * 0.05, particles->vx[i], "vx");
         assert_near(1e-12, 0, particles->vy[i], "vy");

@@ -50,7 +50,7 @@ static enum err check(void)
 /* The sentence holds the particle's kind and number, its place, the quantity and the time. */
 static void expect(enum kind kind, int64_t at, const char *quantity)
 {
-    const struct particles *const particles = &rig.sim.kind[kind];
+    const struct particles *const particles = &rig.sim.particles[kind];
     char text[128];
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, rig.diag.code);
@@ -71,35 +71,35 @@ static void test_a_sound_state_passes(void)
 
 static void test_nan_velocity_of_the_fluid(void)
 {
-    rig.sim.kind[KIND_FLUID].vy[37] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].vy[37] = (double)NAN;
     expect(KIND_FLUID, 37, "speed");
 }
 
 /* The first particle that is wrong is named, though another was noticed. */
 static void test_nan_position_of_the_fluid(void)
 {
-    rig.sim.kind[KIND_FLUID].vx[50] = (double)NAN;
-    rig.sim.kind[KIND_FLUID].x[3] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].vx[50] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].x[3] = (double)NAN;
     expect(KIND_FLUID, 3, "position (m)");
 }
 
 static void test_infinite_velocity_of_the_fluid(void)
 {
-    rig.sim.kind[KIND_FLUID].vx[99] = -(double)INFINITY;
+    rig.sim.particles[KIND_FLUID].vx[99] = -(double)INFINITY;
     expect(KIND_FLUID, 99, "speed (m/s) = inf");
 }
 
 static void test_speed_of_sound_of_the_fluid(void)
 {
-    rig.sim.kind[KIND_FLUID].vx[12] = 19.9;
+    rig.sim.particles[KIND_FLUID].vx[12] = 19.9;
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
-    rig.sim.kind[KIND_FLUID].vx[12] = 20.1;
+    rig.sim.particles[KIND_FLUID].vx[12] = 20.1;
     expect(KIND_FLUID, 12, "speed (m/s) = 20.1, beyond the limit of 20:");
 }
 
 static void test_density_of_the_fluid(void)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     particles->dens[5] = 0.29;
     particles->dens[6] = -0.29;
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
@@ -111,21 +111,21 @@ static void test_density_of_the_fluid(void)
 
 static void test_tension_and_nan_of_the_density(void)
 {
-    rig.sim.kind[KIND_FLUID].dens[50] = -0.31;
+    rig.sim.particles[KIND_FLUID].dens[50] = -0.31;
     expect(KIND_FLUID, 50, "rho/rho0 - 1 = -0.31");
     rig.diag = (struct diag){0};
     rig.sim.guard.warned_entered = true; /* then that is the likely cause */
     expect(KIND_FLUID, 50, "fluid particles entered a wall or solid earlier");
     rig.diag = (struct diag){0};
-    rig.sim.kind[KIND_FLUID].dens[50] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].dens[50] = (double)NAN;
     expect(KIND_FLUID, 50, "rho/rho0 - 1");
 }
 
 static void test_velocity_of_the_solid(void)
 {
-    rig.sim.kind[KIND_SOLID].vx[20] = (double)NAN;
+    rig.sim.particles[KIND_SOLID].vx[20] = (double)NAN;
     expect(KIND_SOLID, 20, "speed");
-    rig.sim.kind[KIND_SOLID].vx[20] = 11 * rig.sim.solid.body[0].sound_speed;
+    rig.sim.particles[KIND_SOLID].vx[20] = 11 * rig.sim.solid.body[0].sound_speed;
     rig.diag = (struct diag){0};
     expect(KIND_SOLID, 20, "speed");
 }
@@ -133,7 +133,7 @@ static void test_velocity_of_the_solid(void)
 /* A body as a whole may be as fast as it will. */
 static void test_velocity_of_a_body(void)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) {
         particles->vx[i] = 30 * rig.sim.solid.body[0].sound_speed;
         particles->vy[i] = -particles->vx[i];
@@ -145,7 +145,7 @@ static void test_velocity_of_a_body(void)
  * where the gradient is checked_at at, and in a lone solid after every batch. */
 static void test_inverted_solid(void)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     int64_t at = 0;
     for (int64_t i = 0; i < particles->n; i++)
         if (hypot(particles->X[i] - 0.115, particles->Y[i] - 0.055) < 1e-6) at = i;
@@ -166,7 +166,7 @@ static void test_lone_solid_is_judged_as_it_is(void)
              "clamp = box 0, 0, 0.02, 0.05\ndensity = 1100\nyoung = 1e6\npoisson = 0.3\n"
              "velocity = -4 s^-1*x, 0\n",
              NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     double lowest = 1;
     for (int step = 0; step < 20; step++) {
         rig_steps(&rig, 1, 1);
@@ -186,7 +186,7 @@ static void test_lone_solid_turned_inside_out(void)
              "dp = 1 cm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
              "density = 1000\nyoung = 1e6\npoisson = 0.3\nlaw = svk\n",
              NULL);
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++) particles->ux[i] = -1.9 * particles->X[i];
     const enum err e = simulation_step(&rig.sim, 1e-9, &rig.diag);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
@@ -207,7 +207,7 @@ static void test_collapsed_step(void)
 /* Beyond 0.3 c0 one warning, not one a step. */
 static void test_one_warning_for_fast_fluid(void)
 {
-    rig.sim.kind[KIND_FLUID].vx[12] = 6.5;
+    rig.sim.particles[KIND_FLUID].vx[12] = 6.5;
     for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     TEST_ASSERT_EQUAL_INT(1, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "6.5"), warning);
@@ -217,8 +217,8 @@ static void test_one_warning_for_fast_fluid(void)
  * end. In the solid as well, where it has moved. */
 static void test_fluid_inside_of_bodies(void)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_FLUID], *const solid =
-                                                                       &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_FLUID],
+                            *const solid = &rig.sim.particles[KIND_SOLID];
     for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
     rig.sim.state.steps = 64;
     rig_sort(&rig);
@@ -365,7 +365,7 @@ static void advises(const char *text, const char *what, const char *set, const c
     rig_steps(&rig, 1, rig.sim.state.time + 1e-9); /* a short step before an output says nothing */
     simulation_refresh(&rig.sim);
     energy_begin(&rig.sim);
-    rig.sim.kind[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
+    rig.sim.particles[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
     rig.diag = (struct diag){.warn = note};
     simulation_refresh(&rig.sim);
     rig.sim.gain = energy_find_gain(&rig.sim);
@@ -411,8 +411,8 @@ static void test_what_may_help_is_said(void)
 /* Warnings that come before the limits, once each. */
 static void test_warnings_before_the_end(void)
 {
-    rig.sim.kind[KIND_FLUID].dens[50] = 0.15;
-    rig.sim.kind[KIND_SOLID].Uxx[7] = -0.9;
+    rig.sim.particles[KIND_FLUID].dens[50] = 0.15;
+    rig.sim.particles[KIND_SOLID].Uxx[7] = -0.9;
     rig.sim.state.steps = 64;
     for (int k = 0; k < BOUND_COUNT; k++) rig.sim.dt_bound[k] = (double)INFINITY;
     rig.sim.dt_bound[2] = 50 * rig.sim.guard.step_limit;
@@ -447,7 +447,7 @@ static void test_voids_in_a_full_channel(void)
         rig_open(&rig, text, NULL);
         rig_steps(&rig, 1, 1);
         rig.diag = (struct diag){.warn = note};
-        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        struct particles *const particles = &rig.sim.particles[KIND_FLUID];
         const int64_t n = particles->n;
         for (int k = 0; k < 3; k++) {
             particles->n = k == 0 ? n - n / 50 : n - n / 10; /* a row of the buffers is no void */
@@ -474,7 +474,7 @@ static void test_beams_warn_of_both(void)
     rig.diag = (struct diag){.warn = note};
     rig.sim.state.steps = 16;
     rig.sim.beams.crowded = true;
-    rig.sim.kind[KIND_SOLID].y[0] = 0.2;
+    rig.sim.particles[KIND_SOLID].y[0] = 0.2;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, check(), rig.diag.text);
     TEST_ASSERT_EQUAL_INT(2, warnings);
 }
@@ -521,7 +521,7 @@ static void test_a_load_that_is_not_finite(void)
 /* In a run: a velocity that is not a number is found by the step that meets it. */
 static void test_a_run_stops_at_once(void)
 {
-    rig.sim.kind[KIND_FLUID].vx[40] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].vx[40] = (double)NAN;
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, simulation_step(&rig.sim, 1, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "fluid particle"), rig.diag.text);
 }

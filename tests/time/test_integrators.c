@@ -37,8 +37,8 @@ static void open(const char *integrator, const char *rate)
     rig_open(&rig, gate, integrator, rate, NULL);
     rig.sim.coupling.impedance = 0;
     rig.sim.solid.apply_kick = solid_free_kick;
-    fluid = &rig.sim.kind[KIND_FLUID];
-    solid = &rig.sim.kind[KIND_SOLID];
+    fluid = &rig.sim.particles[KIND_FLUID];
+    solid = &rig.sim.particles[KIND_SOLID];
     TEST_ASSERT_TRUE(fluid->n <= MOST && solid->n <= MOST);
     uint64_t seed = 31;
     for (int64_t i = 0; i < fluid->n; i++) {
@@ -313,7 +313,7 @@ static void test_a_lone_solid_as_a_program_sees_it(void)
                  "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.06, 0.04\n"
                  "density = 1100\nyoung = 1e6\npoisson = 0.4\nvelocity = 3, -2\n",
                  integrators[k], NULL);
-        solid = &rig.sim.kind[KIND_SOLID];
+        solid = &rig.sim.particles[KIND_SOLID];
         TEST_ASSERT_EQUAL(ERR_OK, simulation_set_external(&rig.sim, KIND_SOLID, look_at_places,
                                                           NULL, &rig.diag));
         for (int step = 0; step < 3; step++) {
@@ -494,8 +494,8 @@ static void test_least_lag_of_what_the_fluid_sees(void)
 {
     open("integrator=leapfrog", "numerics.multirate=on");
     const double lag = 0.0135 / 20, brief = 1e-5;
-    assert_near(1e-15, lag - 0.5 * brief,
-                brief / motion_weight(&rig.sim.coupling, brief) - brief, "a short step");
+    assert_near(1e-15, lag - 0.5 * brief, brief / motion_weight(&rig.sim.coupling, brief) - brief,
+                "a short step");
     assert_near(1e-15, lag / 4, 2 * lag / motion_weight(&rig.sim.coupling, 2 * lag) - 2 * lag,
                 "a long one");
 }
@@ -511,7 +511,7 @@ static void test_free_fall_with_uneven_steps(void)
                                               "integrator=leapfrog"};
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         rig_open(&rig, drop, integrators[k], NULL);
-        fluid = &rig.sim.kind[KIND_FLUID];
+        fluid = &rig.sim.particles[KIND_FLUID];
         for (double t = 0.0007; t < 0.02; t += 0.00085) {
             rig_run(&rig, t);
             rig_run(&rig, t + 0.00015);
@@ -541,7 +541,7 @@ static void test_the_damper_follows_once_a_step(void)
                  "[domain]\nlower = 0, 0\nupper = 0.2, 0.2\nperiodic = xy\n",
                  integrators[k], NULL);
         const struct fluid_constants *const c = &rig.sim.fluid.k;
-        struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+        struct particles *const particles = &rig.sim.particles[KIND_FLUID];
         for (int64_t i = 0; i < particles->n; i++) particles->dens[i] = 0.01;
         rig_steps(&rig, 4, 1);
         const double tau = 4 * c->h / c->c0, kept = tau / (tau + 1e-4);

@@ -26,14 +26,14 @@ void setUp(void)
 void tearDown(void) { rig_close(&rig); }
 
 /* A little water at rest in the middle of a domain of 1 m, no weight. */
-#define WATER                                                                        \
-    "dp = 2 cm\nend_time = 10\n[fluid w]\nshape = box -0.06, -0.06, 0.06, 0.06\n"    \
+#define WATER                                                                     \
+    "dp = 2 cm\nend_time = 10\n[fluid w]\nshape = box -0.06, -0.06, 0.06, 0.06\n" \
     "sound_speed = 10\n[domain]\nlower = -0.5, -0.5\nupper = 0.5, 0.5\n"
 #define RIGID(v) "[rigid b]\nshape = box 0.2, 0.2, 0.3, 0.3\nmass = 1\nvelocity = " v "\n"
-#define SOLID(v)                                                                     \
-    "[solid b]\nshape = box 0.2, 0.2, 0.3, 0.3\ndensity = 1000\nyoung = 1e5\n"      \
+#define SOLID(v)                                                               \
+    "[solid b]\nshape = box 0.2, 0.2, 0.3, 0.3\ndensity = 1000\nyoung = 1e5\n" \
     "poisson = 0.3\nvelocity = " v "\n"
-#define BEAM(rest)                                                                   \
+#define BEAM(rest)                                                                    \
     "[beam b]\nshape = polyline: 0.2, 0.2; 0.4, 0.2\nyoung = 1e8\nthickness = 5 mm\n" \
     "density = 1000\n" rest
 
@@ -83,7 +83,7 @@ static void test_a_body_that_comes_back_is_in_cells(void)
                             "stiffness = 100\n",
         0.15);
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    const struct particles *const p = &rig.sim.kind[KIND_WALL];
+    const struct particles *const p = &rig.sim.particles[KIND_WALL];
     TEST_ASSERT_EQUAL_INT(-1, p->cell[0]);
     rig_run(&rig, 0.31);
     for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_GREATER_OR_EQUAL_INT(0, p->cell[i]);

@@ -53,7 +53,7 @@ static uint64_t hash_of(const char *scene, const char *set, const char *another)
     rig_steps(&rig, 12, 1);
     uint64_t h = HASH_START;
     const struct particles *const particles =
-        &rig.sim.kind[scene == fluid ? KIND_FLUID : KIND_SOLID];
+        &rig.sim.particles[scene == fluid ? KIND_FLUID : KIND_SOLID];
     const double *const fields[] = {particles->x, particles->y, particles->vx, particles->vy};
     for (size_t f = 0; f < COUNT_OF(fields); f++)
         for (int64_t i = 0; i < particles->n; i++) {

@@ -135,11 +135,11 @@ static void test_beside_fluid_the_search_has_its_own_clock(void)
         TEST_ASSERT_TRUE(rig.sim.state.seeks_rest && rig.sim.state.time > 0);
         TEST_ASSERT_EQUAL_INT64(20, rig.sim.state.steps);
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-            for (int64_t i = 0; i < rig.sim.kind[kind].n; i++)
-                if (kind == KIND_WALL || rig.sim.kind[kind].free[i] == 0) {
-                    TEST_ASSERT_TRUE(rig.sim.kind[kind].vx[i] == 0);
+            for (int64_t i = 0; i < rig.sim.particles[kind].n; i++)
+                if (kind == KIND_WALL || rig.sim.particles[kind].free[i] == 0) {
+                    TEST_ASSERT_TRUE(rig.sim.particles[kind].vx[i] == 0);
                 }
-        hash[k] = particles_hash(&rig.sim.kind[KIND_FLUID], HASH_START);
+        hash[k] = particles_hash(&rig.sim.particles[KIND_FLUID], HASH_START);
     }
     TEST_ASSERT_EQUAL_HEX64(hash[0], hash[1]);
 }
@@ -190,7 +190,7 @@ static void test_guards_say_the_time_of_the_search(void)
 {
     rig_open(&rig, dam, NULL);
     TEST_ASSERT_EQUAL_INT(ERR_OK, relax_step(&rig.sim, &rig.diag));
-    rig.sim.kind[KIND_FLUID].vx[7] = (double)NAN;
+    rig.sim.particles[KIND_FLUID].vx[7] = (double)NAN;
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_step(&rig.sim, &rig.diag));
     TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("while rest is sought, after 0.0", rig.diag.text, 31,
                                          rig.diag.text);

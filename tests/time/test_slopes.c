@@ -22,7 +22,7 @@ void tearDown(void) { rig_close(&rig); }
 /* Those of one particle, wherever it is sorted to. */
 static double slope_of(int64_t id)
 {
-    const struct particles *const particles = &rig.sim.kind[KIND_FLUID];
+    const struct particles *const particles = &rig.sim.particles[KIND_FLUID];
     for (int64_t i = 0; i < particles->n; i++)
         if (particles->id[i] == id) return particles->slope_x[i] + 2 * particles->slope_y[i];
     TEST_FAIL_MESSAGE("the particle is gone");
@@ -34,7 +34,7 @@ static double slope_of(int64_t id)
 static int found_again(const char *integrator, double *longest, double *last)
 {
     rig_open(&rig, tank, integrator, NULL);
-    const int64_t id = rig.sim.kind[KIND_FLUID].id[70];
+    const int64_t id = rig.sim.particles[KIND_FLUID].id[70];
     double before = 0, since = 0;
     int times = 0;
     *longest = 0;

@@ -24,7 +24,7 @@ static struct particles *fluid;
 void setUp(void)
 {
     rig_open(&rig, scene, NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
 }
 
 void tearDown(void) { rig_close(&rig); }
@@ -62,7 +62,7 @@ static void test_who_is_a_drop(void)
 static void test_verlet_forgets_as_well(void)
 {
     rig_open(&rig, scene, "integrator=verlet", NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     const int64_t drop = at(41.5e-3, 40.5e-3);
     fluid->dens_old[drop] = -0.19;
     assert_near(0, 0, after(drop, -0.2), "dens");
@@ -73,7 +73,7 @@ static void test_verlet_forgets_as_well(void)
 static void test_leapfrog_forgets_its_rates(void)
 {
     rig_open(&rig, scene, "integrator=leapfrog", NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     rig_steps(&rig, 6, 1);
     const int64_t drop = at(41.5e-3, 40.5e-3);
     fluid->ddens_old[drop] = fluid->ddens_older[drop] = -500;
@@ -97,7 +97,7 @@ static void test_limit_follows_the_sound_factor(void)
                {"numerics.sound_factor=4", -0.199, -0.201}};
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         rig_open(&rig, scene, row[k].factor, "water.sound_speed=0", "water.max_speed=1", NULL);
-        fluid = &rig.sim.kind[KIND_FLUID];
+        fluid = &rig.sim.particles[KIND_FLUID];
         const int64_t drop = at(41.5e-3, 40.5e-3);
         assert_near(0, row[k].above, after(drop, row[k].above), row[k].factor);
         assert_near(0, 0, after(drop, row[k].below), row[k].factor);
@@ -128,7 +128,7 @@ static void test_a_clump_does_not_end_a_run(void)
 static void open_drop(const char *integrator, const char *cfl)
 {
     rig_open(&rig, scene, integrator, cfl, NULL);
-    fluid = &rig.sim.kind[KIND_FLUID];
+    fluid = &rig.sim.particles[KIND_FLUID];
     for (int k = 0; k < 3; k++) {
         const int64_t i = at((40.5 + k) * 1e-3, 40.5e-3);
         fluid->vx[i] = 6.0 * (k - 1);

@@ -137,8 +137,7 @@ static void test_viscous_bound_by_hand(void)
     TEST_ASSERT_TRUE(isinf(rig.sim.dt_bound[BOUND_viscous]));
     rig_open(&rig, gate, "water.laminar_viscosity=1e-2", NULL);
     timestep_choose(&rig.sim, 10, &hits);
-    assert_near(1e-15, 2.2390106890714137e-3, rig.sim.dt_bound[BOUND_viscous],
-                "0.125 M h^2/nu");
+    assert_near(1e-15, 2.2390106890714137e-3, rig.sim.dt_bound[BOUND_viscous], "0.125 M h^2/nu");
     rig_open(&rig, gate, "water.laminar_viscosity=10", NULL);
     assert_near(1e-18, 2.239010689071414e-6, timestep_fluid_limit(&rig.sim), "largest step");
     /* T-35g, a quarter of 0.9/gamma: 0.225 * 0.0135^2 M/(8.6 * 1e-2) s at the fluid's density. */
@@ -254,8 +253,8 @@ static void run_through_times(const char *integrator, const char *rate)
     TEST_ASSERT_EQUAL_INT64(steps, st->steps);
     TEST_ASSERT_EQUAL_INT64(substeps, st->solid_substeps);
     TEST_ASSERT_TRUE(st->dt_min == dt_min && st->dt_max == dt_max);
-    TEST_ASSERT_EQUAL_INT64(steps * (rig.sim.kind[KIND_FLUID].n + rig.sim.kind[KIND_SOLID].n),
-                            st->particle_steps);
+    const struct particles *const all = rig.sim.particles;
+    TEST_ASSERT_EQUAL_INT64(steps * (all[KIND_FLUID].n + all[KIND_SOLID].n), st->particle_steps);
     for (int b = 0; b < BOUND_COUNT; b++) booked += st->bound_steps[b];
     TEST_ASSERT_EQUAL_INT64(steps, booked);
     assert_near(1e-15, times[4], sum, "sum of the steps");
@@ -296,7 +295,7 @@ static void test_a_lone_solid_hits_its_times_in_batches(void)
  * infinity if a guard stops it. */
 static double energy_after(int steps, double *start)
 {
-    struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+    struct particles *const particles = &rig.sim.particles[KIND_SOLID];
     uint64_t seed = 5;
     for (int64_t i = 0; i < particles->n; i++) {
         particles->vx[i] = 0.01 * noise(&seed);
@@ -395,7 +394,7 @@ static void test_bound_of_a_stretched_block(void)
 {
     for (int much = 0; much < 2; much++) {
         rig_open(&rig, block, "block.law=svk", NULL);
-        struct particles *const particles = &rig.sim.kind[KIND_SOLID];
+        struct particles *const particles = &rig.sim.particles[KIND_SOLID];
         const double share = much ? 0.2 : 0.01, before = rig.sim.solid.omega_max;
         for (int64_t i = 0; i < particles->n; i++) {
             particles->ux[i] = share * particles->X[i];
