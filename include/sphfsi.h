@@ -191,7 +191,7 @@ SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_k
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 
-/** Name of the k-th field (from 0) that particles of a kind have in this scene; NULL behind the
+/** Name of the k-th field (from 0) that particles of a kind have in this scene; NULL after the
  * last. */
 SPHFSI_API const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                          int k);
@@ -204,7 +204,7 @@ SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const ch
                                            double values[SPHFSI_PROBE_COLUMNS]);
 
 /** Name of the k-th probe of the case (from 0), and of the c-th of its columns, such as M1_dx_m;
- * NULL behind the last. */
+ * NULL after the last. */
 SPHFSI_API const char *sphfsi_probe_name(const struct sphfsi_simulation *s, int k);
 SPHFSI_API const char *sphfsi_probe_column(struct sphfsi_simulation *s, int k, int c);
 
@@ -276,7 +276,7 @@ SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 SPHFSI_API enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options);
 
 /** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has
- * this name. sphfsi_template_name: the k-th name; NULL behind the last. */
+ * this name. sphfsi_template_name: the k-th name; NULL after the last. */
 SPHFSI_API const char *sphfsi_template(const char *name);
 SPHFSI_API const char *sphfsi_template_name(int k);
 

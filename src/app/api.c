@@ -235,7 +235,7 @@ static bool has_file_field(const struct simulation *sim, enum kind kind, enum da
     }
 }
 
-/* The name of the k-th field of a kind, first the arrays of particles; NULL behind the last. */
+/* The name of the k-th field of a kind, first the arrays of particles; NULL after the last. */
 static const char *field_name(const struct simulation *sim, enum kind kind, int k)
 {
     if (sim->particles[kind].capacity == 0) return NULL;

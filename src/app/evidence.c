@@ -78,7 +78,7 @@ static void say_error(const struct scene *scene, enum kind kind, int body, const
 
 void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
 {
-    /* The study runs the paper's scheme at accuracy = standard only. */
+    /* The study runs the article's scheme at accuracy = standard only. */
     const bool paper = scene->n_fluid && scene->top.scheme == SCHEME_PAPER;
     const struct choice_name chosen =
         param_choice(param_find(SECTION_top, "accuracy"), scene->top.accuracy);

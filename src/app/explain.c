@@ -116,7 +116,7 @@ static void say_bounds(const struct simulation *sim, const struct sphfsi_options
         session_say(o,
                     "  sub-steps alone: %.0f in each fluid step; an implicit step costs as much as "
                     "%.0f sub-steps for bodies %.3g particles across (T-94)",
-                    ceil(timestep_fluid_limit(sim) / sim->dt_solid * (1 - 1e-9)),
+                    whole_parts(timestep_fluid_limit(sim) / sim->dt_solid),
                     implicit_pays_from(&sim->solid, &sim->particles[KIND_SOLID]),
                     implicit_across(&sim->solid, &sim->particles[KIND_SOLID]));
     if (sim->solid.implicit && sim->effects & FX_CONTACT)

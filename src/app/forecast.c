@@ -296,7 +296,7 @@ enum err forecast_run(struct forecast *f, struct session *session, const struct 
     extend(f, &run, &trial, session, o);
     thread_use(threads);
     f->dt = end / run.amount[STEPS];
-    f->steps = ceil(run.amount[STEPS] * (1 - 1e-9));
+    f->steps = whole_parts(run.amount[STEPS]);
     f->substeps = n_solid > 0 ? max2(f->steps, run.amount[SUBSTEPS]) : 0;
     f->rows = run.amount[PHASE_output];
     TRY(measure_files(f, sim, d));

@@ -29,7 +29,7 @@ struct scene_open scene_open_at(const struct scene *scene, int k)
     o.length = elementary_hypot(o.along[0], o.along[1]);
     /* Whole spacings: the kernel's reach; one particle that has left and is not yet part of the
      * buffer; one of the buffer that has entered and is not yet relabelled. */
-    o.depth = ceil((2 * scene->numerics.h_over_dp + 1) * (1 - 1e-9)) * scene->top.dp;
+    o.depth = whole_parts(2 * scene->numerics.h_over_dp + 1) * scene->top.dp;
     o.along[0] /= o.length;
     o.along[1] /= o.length;
     o.inward[0] = -sense * o.along[1];

@@ -110,7 +110,7 @@ void case_apply_presets(struct reader *r)
 }
 
 /* Defaults that depend on the case. `cfl`: the largest step at which the integrator is accurate;
- * leapfrog is stable at twice the step of the paper's (docs/performance.md). */
+ * leapfrog is stable at twice the step of the article's (docs/performance.md). */
 void case_apply_defaults(struct scene *scene)
 {
     static const double cfl[] = {

@@ -27,7 +27,7 @@ int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, c
                      const double b[2])
 {
     const double size = beam->element > 0 ? beam->element : scene->top.dp;
-    const double parts = ceil(elementary_hypot(b[0] - a[0], b[1] - a[1]) / size * (1 - 1e-9));
+    const double parts = whole_parts(elementary_hypot(b[0] - a[0], b[1] - a[1]) / size);
     return (int)max2(1, min2(parts, 1e6));
 }
 

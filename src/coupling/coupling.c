@@ -41,17 +41,18 @@ void coupling_find_wall_forces(const struct coupling *coupling, struct particles
 }
 
 /* T-36a: the pressure's part of the force that the fluid gets for `rates_time`. */
-static void extrapolate_forces(struct coupling *coupling, double dt, double rates_time, bool first)
+static void extrapolate_forces(struct coupling *coupling, double dt, double rates_time,
+                               bool first_step)
 {
     struct particles *const particles = coupling->particles;
     const struct force_weights weights =
-        force_weights(rates_time / dt, coupling->lead / dt, particles->interface_pressure_next);
+        force_weights(rates_time / dt, coupling->lead / dt, coupling->alternates);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double fx = particles->fx[i], fy = particles->fy[i];
-        particles->fx[i] = extrapolated_force(&weights, fx, fx - particles->drag_x[i], first,
+        particles->fx[i] = extrapolated_force(&weights, fx, fx - particles->drag_x[i], first_step,
                                               &particles->mean_fx[i]);
-        particles->fy[i] = extrapolated_force(&weights, fy, fy - particles->drag_y[i], first,
+        particles->fy[i] = extrapolated_force(&weights, fy, fy - particles->drag_y[i], first_step,
                                               &particles->mean_fy[i]);
     }
 }
@@ -118,15 +119,16 @@ void coupling_predict(struct coupling *coupling, double dt)
     predict_motion(coupling, coupling->stage * dt);
 }
 
-double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time, bool first)
+double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time,
+                        bool first_step)
 {
     struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, rates_time);
-    if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* no predictor */
+    if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* not predicted */
     const double middle = 0.5 * (coupling->solid->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->stage * dt;
-    if (particles->mean_fx) extrapolate_forces(coupling, dt, rates_time, first);
+    if (particles->mean_fx) extrapolate_forces(coupling, dt, rates_time, first_step);
         /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {

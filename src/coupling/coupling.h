@@ -20,8 +20,9 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool multirate;              /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    double stage; /* of the integrator: of the rates that advance the fluid, in steps */
-    double lead;  /* s: from the last evaluation to the middle of the structure's kicks */
+    double stage;    /* of the integrator: when its rates are taken, in steps after the start */
+    bool alternates; /* of the integrator: two solutions, which share forces and impulses */
+    double lead;     /* s: from the last evaluation to the middle of the structure's kicks */
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
     double *exchange_time;
 };
@@ -45,8 +46,10 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 void coupling_predict(struct coupling *coupling, double dt);
 
 /* After the evaluation, whose rates act for `rates_time`: n sub-steps of the structure.
- * `first`: no step was before. Returns the largest displacement of a particle, m. */
-double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time, bool first);
+ * `first_step`: the run has taken no step yet. Returns the largest displacement of a particle, m.
+ */
+double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time,
+                        bool first_step);
 
 /* --- velocity and acceleration of a structure for the fluid (T-14, T-35) --- */
 
@@ -86,8 +89,8 @@ void motion_at_single_rate(struct coupling *coupling, double weight);
 
 /* --- impulse.c: impedance of the fluid in sub-steps, and the impulse (T-35a to T-35e) --- */
 
-/* Before sub-steps of dt, 0: an implicit step of any length: the wetted normals. Afterwards: the
- * impulse of the sub-steps, and the pressure that gives it to the fluid. */
+/* impulse_begin finds the wetted normals for sub-steps of dt; 0: for an implicit step. impulse_end
+ * finds the impulse of the sub-steps, and the pressure that gives it to the fluid. */
 void impulse_begin(struct coupling *coupling, double dt);
 void impulse_end(struct coupling *coupling);
 

@@ -12,8 +12,8 @@ SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS],
                              const double *volume, double *fx, double *fy)
 {
     real x[GROUPS], y[GROUPS];
-    total(sum_x, x);
-    total(sum_y, y);
+    sum_lanes(sum_x, x);
+    sum_lanes(sum_y, y);
     for (int g = 0; g < GROUPS; g++) {
         fx[g] += factor * volume[g] * (double)x[g];
         fy[g] += factor * volume[g] * (double)y[g];

@@ -43,7 +43,7 @@ static bool fail(struct compiler *c, const char *format, ...)
 static bool parse_sum(struct compiler *c, struct dim *dim);
 static bool parse_factor(struct compiler *c, struct dim *dim);
 
-/* The next character behind blanks; 0 at the end. */
+/* The next character after blanks; 0 at the end. */
 static int peek(struct compiler *c)
 {
     c->rest = slice_trimmed(c->rest);

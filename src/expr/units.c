@@ -52,7 +52,7 @@ static const struct unit *find_unit(struct slice name)
 
 bool unit_known(const char *name) { return find_unit(slice_of(name)) != NULL; }
 
-/* The number behind ^, or 1 if there is no ^. */
+/* The number after ^, or 1 if there is no ^. */
 static bool read_power(struct slice *text, double *power, char why[EXPR_WHY])
 {
     *power = 1;

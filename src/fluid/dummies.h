@@ -2,6 +2,16 @@
  * Walls and structures in the fluid's sweeps: pressures and mirrored velocities from the
  * fluid around them. Included by fluid/sweep.h, once for each precision. */
 
+/* Sum of the kernel over the fluid within reach of a dummy, below which there is none. */
+#define LEAST_WEIGHT 1e-12
+
+/* The kernel without its factor alpha_D, at distances of q h. */
+SPHFSI_INLINE vreal kernel_of(vreal q)
+{
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1))), t2 = t * t;
+    return t2 * t2 * vfma(vset(2), q, vset(1));
+}
+
 /* Sums over the fluid within reach of wall or solid particles: of the kernel, and times it of the
  * pressure and of rho/rho0 times the vector from the fluid. */
 struct sums_around {
@@ -23,10 +33,10 @@ SPHFSI_INLINE void sum_around(const struct neighbours *neighbours, const struct 
         sum_x[part] = vfma(mass, d.x, sum_x[part]);
         sum_y[part] = vfma(mass, d.y, sum_y[part]);
     }
-    total(sum_w, &sum->w[r]);
-    total(sum_p, &sum->p[r]);
-    total(sum_x, &sum->x[r]);
-    total(sum_y, &sum->y[r]);
+    sum_lanes(sum_w, &sum->w[r]);
+    sum_lanes(sum_p, &sum->p[r]);
+    sum_lanes(sum_x, &sum->x[r]);
+    sum_lanes(sum_y, &sum->y[r]);
 }
 
 /* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with
@@ -61,9 +71,9 @@ SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const 
         sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
     }
     real weight[GROUPS], fluid_u[GROUPS], fluid_v[GROUPS];
-    total(sum_w, weight);
-    total(sum_u, fluid_u);
-    total(sum_v, fluid_v);
+    sum_lanes(sum_w, weight);
+    sum_lanes(sum_u, fluid_u);
+    sum_lanes(sum_v, fluid_v);
     for (int g = 0; g < GROUPS; g++) {
         if (!((double)weight[g] > LEAST_WEIGHT)) continue;
         u[g] = 2 * u[g] - (double)fluid_u[g] / (double)weight[g];
@@ -194,7 +204,7 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
             const vreal volume = lane(b, PACKED_VOLUME);
             sum[part] = vfma(volume, weight_seen(&s, &at, kernel_of(at.length)), sum[part]);
         }
-        total(sum, &filled[r]);
+        sum_lanes(sum, &filled[r]);
     }
     for (int r = 0; r < d->count; r++) {
         const int32_t line = fluid_line_of(fluid, d->kind, d->at[r]);

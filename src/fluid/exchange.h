@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Laws of the exchange between fluid and structure that solids, rigid bodies and beams share
- * (coupling/README.md). */
+ * Laws of the exchange between fluid and structure (coupling/README.md): T-35e of solids, beams and
+ * rigid bodies; T-35c and T-36a of solids and beams. Rigid bodies have T-98 instead. */
 #pragma once
 
 #include "base/base.h"

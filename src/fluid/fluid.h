@@ -77,9 +77,9 @@ enum packed_field {
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of law_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
-    /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0;
-     * the share phi of its place that fluid fills, and the direction in which fluid slides along
-     * it, times the root of phi (T-110c). */
+    /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0; the
+     * share phi of its place that fluid fills. The direction in which fluid slides along it, times
+     * the root of phi (T-110c). */
     PACKED_LINE = PACKED_REPULSION_FIELDS,
     PACKED_FILLED,
     PACKED_ALONG_X,
@@ -176,8 +176,8 @@ struct neighbour_scratch {
 
 struct fluid {
     struct fluid_constants k;
-    effect_set effects; /* of the simulation: a copy, since sweeps test them for each cluster */
-    bool never_skip;    /* visit dry walls, place resting ones; set by tests */
+    effect_set effects;                  /* of the simulation, which this layer does not know */
+    bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
     double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
     bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
@@ -189,7 +189,7 @@ struct fluid {
     int32_t n_near_fluid[KIND_COUNT];
     struct lines lines; /* thin lines; unused without any */
     /* s: the sweeps pack the state predicted by so much (Eqs. 22, 24a), of which the particles keep
-     * only dens, as dens0; 0: the present one. */
+     * only dens, as dens_half; 0: the present one. */
     double predict_by;
     bool keeps_slopes; /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool walls_placed; /* packed positions of walls at rest are valid */

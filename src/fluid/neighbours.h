@@ -43,7 +43,7 @@ struct neighbours {
              part++)
 
 /* The sums of the receivers over all candidates. */
-SPHFSI_INLINE void total(const vreal sum[PARTS], real out[GROUPS])
+SPHFSI_INLINE void sum_lanes(const vreal sum[PARTS], real out[GROUPS])
 {
     vsum_four(PARTS == 1 ? sum[0] : sum[0] + sum[PARTS - 1], out);
 }
@@ -165,7 +165,7 @@ struct receiver {
     vreal specific;       /* of PACKED_SPECIFIC, with artificial viscosity */
     vreal line, filled;   /* of a dummy: the line that has to lie between, or 0; and the share phi
                              of its place that fluid of its own side fills (T-110c) */
-    int n_pieces; /* of thin lines near its cell */
+    int n_pieces;         /* of thin lines near its cell */
     const struct near_piece *piece; /* NULL: the scene has no thin lines */
 };
 
@@ -221,7 +221,8 @@ SPHFSI_INLINE vreal vpick(vmask mask, vreal yes, vreal no)
     return (vreal)(((vmask)yes & mask) | ((vmask)no & ~mask));
 }
 
-/* T-110, T-110e: how much of a pair with the separation (x, y) is seen. `line`, `filled`: of the
+/* T-110, T-110b, T-110e, for vectors; `lines_seen` has them for one connection in double precision.
+ * How much of a pair with the separation (x, y) is seen. `line`, `filled`: of the
  * dummy that is one of it. `opaque`: lines are so beside their tips, too. */
 SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal line, vreal filled,
                             bool opaque)
@@ -257,8 +258,8 @@ SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal li
 
 /* Vector from candidates to receivers, in units of h; and how much of these is seen, if there are
  * lines. What is hidden is out of reach for all laws. */
-SPHFSI_INLINE void separate(const struct receiver *a, uint32_t code, const real *b,
-                            vreal line, vreal filled, bool opaque, vreal *x, vreal *y, vreal *seen)
+SPHFSI_INLINE void separate(const struct receiver *a, uint32_t code, const real *b, vreal line,
+                            vreal filled, bool opaque, vreal *x, vreal *y, vreal *seen)
 {
     *x = a->x[neighbour_column(code)] - lane(b, PACKED_X);
     *y = a->y[neighbour_row(code)] - lane(b, PACKED_Y);

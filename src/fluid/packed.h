@@ -102,7 +102,7 @@ SPHFSI_INLINE void pack_cluster(const struct packing *packing, const struct part
         u = u + packing->predict_by * FOUR(particles->ax, i); /* Eq. 22b */
         v = v + packing->predict_by * FOUR(particles->ay, i);
         dens = dens + packing->predict_by * FOUR(particles->ddens, i); /* Eq. 24a */
-        store_four(particles->dens0 + i, dens, count);
+        store_four(particles->dens_half + i, dens, count);
     }
     put_four(out, PACKED_X, (x - centre[0]) * packing->inv_h);
     put_four(out, PACKED_Y, (y - centre[1]) * packing->inv_h);
@@ -178,7 +178,7 @@ SPHFSI_INLINE void sum_slopes(const struct neighbours *neighbours, const struct 
         sum[SLOPE_X][part] = vfma(step, d.x, sum[SLOPE_X][part]);
         sum[SLOPE_Y][part] = vfma(step, d.y, sum[SLOPE_Y][part]);
     }
-    for (int k = 0; k < SLOPE_SUMS; k++) total(sum[k], &out[k][r]);
+    for (int k = 0; k < SLOPE_SUMS; k++) sum_lanes(sum[k], &out[k][r]);
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,

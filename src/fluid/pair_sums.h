@@ -164,7 +164,7 @@ SPHFSI_INLINE four_double own_sum(const struct cluster_sums *s, enum pair_sum wh
     for (int row = 0; row < ROWS; row++) {
         vreal parts[PARTS];
         for (int part = 0; part < PARTS; part++) parts[part] = s->of[row][part][which];
-        total(parts, sum + row * GROUPS);
+        sum_lanes(parts, sum + row * GROUPS);
     }
     return four_widen(FOUR_REAL(sum));
 }

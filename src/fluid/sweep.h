@@ -11,17 +11,6 @@
 /* After the definitions that they need. */
 #include "fluid/pair_laws.h"
 #include "fluid/packed.h"
-
-/* The kernel without its factor alpha_D, at distances of q h. */
-SPHFSI_INLINE vreal kernel_of(vreal q)
-{
-    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1))), t2 = t * t;
-    return t2 * t2 * vfma(vset(2), q, vset(1));
-}
-
-/* Sum of the kernel over the fluid within reach of a dummy, below which there is none. */
-#define LEAST_WEIGHT 1e-12
-
 #include "fluid/dummies.h"
 
 /* A range of the fluid that a thread processes at a time. */
@@ -57,7 +46,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                                const struct vector_constants *k, struct pair_set effects,
                                struct chunk_totals *largest)
 {
-    four_double full = 1 + FOUR(fluid->predict_by > 0 ? particles->dens0 : particles->dens, i);
+    four_double full = 1 + FOUR(fluid->predict_by > 0 ? particles->dens_half : particles->dens, i);
     four_double factor = k->acceleration + 0 * full;
     four_double rate = full * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(effects, MASSES)) { /* all sums contain the volume of the particle itself */

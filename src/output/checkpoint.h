@@ -10,7 +10,7 @@
 struct image {
     unsigned char *bytes;
     size_t size, capacity;
-    /* Captured beside the state: snapshots missed so far; 1: there is a snapshot of this state only
+    /* Captured with the state: snapshots missed so far; 1: there is a snapshot of this state only
      * because the run ended with it. */
     int64_t snapshots_missed, snapshot_of_end;
 };

@@ -408,7 +408,7 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
 static void evaluate(const struct probe *probe, struct simulation *sim, double *row, double *rate)
 {
     struct particles *const solid = &sim->particles[KIND_SOLID];
-    struct solid_forces_now now;
+    struct held_forces now;
     double at[2] = {0};
     if (probe->beam >= 0 && probe->target != TARGET_BODY) {
         evaluate_beam(probe, sim, row, rate);
@@ -429,7 +429,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
         }
         break;
     case PROBE_ACCELERATION:
-        now = solid_forces_now(&sim->solid, solid, sim->state.time);
+        now = solid_held_forces(&sim->solid, solid, sim->state.time);
         weighted_sum(probe, now.ax, now.ay, row);
         break;
     case PROBE_REACTION:
@@ -437,7 +437,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
             rigid_reaction(probe, sim, row);
             break;
         }
-        now = solid_forces_now(&sim->solid, solid, sim->state.time);
+        now = solid_held_forces(&sim->solid, solid, sim->state.time);
         row[0] = row[1] = row[2] = 0;
         add_forces(probe, solid, probe->body, now.held_x, now.held_y, row);
         break;

@@ -13,7 +13,7 @@ struct curve {
     double *t, *value;
 };
 
-/* Reads the complete rows of a column; behind the values are `spare` times as many zeros. */
+/* Reads the complete rows of a column; after the values are `spare` times as many zeros. */
 enum err curve_read(struct curve *curve, const char *path, int column, size_t spare, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -59,7 +59,7 @@ struct rows {
     int file;       /* of probes; -1: the ledger */
     int columns;    /* with the time */
     double window;  /* s: the longest `average` of its probes */
-    struct due due; /* of the rows behind the first */
+    struct due due; /* of the rows after the first */
     double next;    /* s: time of the next row */
     bool *angle;    /* [columns]: rad, from -pi to pi */
     double *before, *before_rate, *now, *now_rate;
@@ -83,7 +83,7 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
 /* Creates the files, whose first row will be of the time; or continues those of an earlier run
- * behind the time, and reads the first row of the ledger. */
+ * after the time, and reads the first row of the ledger. */
 enum err rows_start(struct row_files *r, const char *folder, double time, struct diag *d)
     SPHFSI_CHECKED;
 enum err rows_resume(struct row_files *r, const char *folder, double time, struct ledger *first,

@@ -96,9 +96,8 @@ int32_t cells_fullest(const struct cells *cells);
 /* Measures the present overhang of a kind. */
 void cells_measure_overhang(struct cells *cells, enum kind kind, const struct particles *particles);
 
-/* How far, m, a fluid particle and another may move, both together, from where they were
- * measured, until they can come within `reach` without being in neighbouring cells. 0 or less:
- * sort now. */
+/* How far, m, a fluid particle and another may move, both together, from where they were measured.
+ * Then they can be within `reach` without being in neighbouring cells. 0 or less: sort now. */
 double cells_skin_left(const struct cells *cells, double reach);
 
 SPHFSI_INLINE int cell_x(const struct cells *cells, int32_t cell) { return cell % cells->nx; }

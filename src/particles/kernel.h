@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The smoothing kernel: Wendland C2 in two dimensions (Wendland 1995; [39] of the paper),
+ * The smoothing kernel: Wendland C2 in two dimensions (Wendland 1995; [39] of the article),
  *   W(q) = alpha_D (1 - q/2)^4 (2q + 1),  0 <= q = r/h <= 2,  alpha_D = 7/(4 pi h^2),
  *   grad_a W_ab = -(5 alpha_D/h^2) (1 - q/2)^3 x_ab,
  * so the gradient needs no division by r. */

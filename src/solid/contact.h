@@ -30,7 +30,7 @@ enum { MAX_LOADS = 4 };
 /* A particle at a surface. */
 struct contact_point {
     int32_t index;           /* among the particles of its kind */
-    int32_t body;            /* walls behind solids */
+    int32_t body;            /* walls after solids */
     int32_t group;           /* the same for bonded solids, and for walls that move together */
     int32_t edge;            /* one of those that end here */
     double X[2], x[2], v[2]; /* initial position; present position and velocity */
@@ -66,7 +66,7 @@ struct contact_pair {
 struct contact_depth {
     double overlap; /* in spacings */
     double x, y;
-    int body, other; /* walls behind solids */
+    int body, other; /* walls after solids */
 };
 
 struct contact {

@@ -21,8 +21,8 @@ SPHFSI_INLINE struct vtensor2 right_stretch(struct vtensor2 U)
                              2.0 * E.yx * per_sum, (2.0 * E.yy + excess) * per_sum};
 }
 
-/* T-41a: the work of the paper's law, which has no potential, on the straight path from rest to the
- * right stretch: the integral of P : dS by four points of Gauss. */
+/* T-41a: the work of the article's law, which has no potential, on the straight path from rest to
+ * the right stretch: the integral of P : dS by four points of Gauss. */
 SPHFSI_INLINE vdouble straight_work(const struct solid_body *b, struct vtensor2 U)
 {
     static const double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,

@@ -159,9 +159,9 @@ SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct soli
     *ey = vfma(F.yx, q->X, vfma(F.yy, q->Y, -(q->u.y + q->u.y)));
 }
 
-/* With the energy E = sum over pairs of k_ab |e_ab|^2/2 (T-28): over the mass of a
- * the sum of k_ab e_ab is -dE/du_a, opposite to the bit for b; and as e_ab depends on F_a too,
- * dE/dF_a/V_a, the sum of k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
+/* The energy E is the sum over pairs of k_ab |e_ab|^2/2 (T-28). The sum of k_ab e_ab over the mass
+ * of a is -dE/du_a, opposite to the bit for b. Since e_ab depends on F_a too, P_a gains
+ * dE/dF_a/V_a, the sum of k_ab e_ab X_ab^T/(2 V_a). */
 SPHFSI_INLINE void hourglass_variational(const struct solid_pair *q, const struct solid_receiver *a,
                                          struct solid_sums *s)
 {

@@ -24,7 +24,7 @@ static void forces_without_clamps(struct solid *solid, struct particles *particl
 }
 
 /* What a clamp gives particle i: its prescribed acceleration, and the force that this takes
- * beside the others (T-74). */
+ * besides the others (T-74). */
 static void hold(const struct solid *solid, const struct particles *particles, int64_t i,
                  const double to[2])
 {
@@ -36,8 +36,7 @@ static void hold(const struct solid *solid, const struct particles *particles, i
     now[1][i] = to[1];
 }
 
-struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
-                                         double time)
+struct held_forces solid_held_forces(struct solid *solid, struct particles *particles, double time)
 {
     static const double rest[2] = {0, 0};
     const size_t bytes = (size_t)particles->n * sizeof *particles->sx;
@@ -61,5 +60,5 @@ struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *
         hold(solid, particles, i, loads_motion(solid->loads, particles, i).a);
     }
     if (solid->hinges) hinges_hold(solid->hinges, now, &now[2], time);
-    return (struct solid_forces_now){now[0], now[1], now[2], now[3]};
+    return (struct held_forces){now[0], now[1], now[2], now[3]};
 }

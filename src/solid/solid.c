@@ -122,13 +122,14 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     solid->coupled = particles->groups & G_COUPLED;
     solid->apply_kick = solid_free_kick;
     TRY(arena_array(a, &solid->body, solid->n_bodies, "bodies", d));
-    solid->paper_step = INFINITY;
+    solid->acoustic_step = INFINITY;
     for (int k = 0; k < solid->n_bodies; k++) {
         solid->body[k] = body_of(scene, k);
         solid->variational |= solid->body[k].variational;
         solid->kelvin_voigt |= solid->body[k].damping_time > 0;
-        solid->paper_step = min2(solid->paper_step,
-                                 0.6 * solid->body[k].h / solid->body[k].sound_speed); /* Eq. 29 */
+        solid->acoustic_step =
+            min2(solid->acoustic_step,
+                 0.6 * solid->body[k].h / solid->body[k].sound_speed); /* Eq. 29 */
         solid->dp = min2(solid->dp, solid->body[k].dp);
     }
     join_bodies(solid, scene);
@@ -320,7 +321,7 @@ void solid_gradient(const struct solid *solid, struct particles *particles)
     }
 }
 
-void solid_forces_within(const struct solid *solid, struct particles *particles, double time)
+void solid_forces_at(const struct solid *solid, struct particles *particles, double time)
 {
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     {
@@ -332,7 +333,7 @@ void solid_forces_within(const struct solid *solid, struct particles *particles,
     }
 }
 
-void solid_operator(struct solid *solid, struct particles *particles, bool displaced)
+void solid_pair_forces(struct solid *solid, struct particles *particles, bool displaced)
 {
 #pragma omp parallel num_threads(solid->threads)
     {

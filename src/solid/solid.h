@@ -117,18 +117,18 @@ struct solid {
     const struct solid_sweeps *sweeps;
     void *packed[SOLID_PACKED_FIELDS]; /* each [n] */
     struct solid_pack *pack;
-    void *weight;       /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
-    int64_t *offset;    /* [n_slots] */
-    bool coupled;       /* meets fluid */
-    bool centred;       /* kicks in the middle of drifts (T-30, T-36), else before them (T-32) */
-    bool variational;   /* some body has its hourglass force from an energy */
-    bool kelvin_voigt;  /* some body has a damping_time */
-    double omega_max;   /* largest frequency of the linearised operator, 1/s */
-    double damping_max; /* largest rate of its viscous part, 1/s */
-    double stable_step; /* the largest stable step that follows from both, s */
-    double paper_step;  /* Eq. 29, s */
-    double *scratch[6]; /* memory for the search of the step */
-    double time;        /* of the displacements, s: contact uses walls at their positions then */
+    void *weight;         /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
+    int64_t *offset;      /* [n_slots] */
+    bool coupled;         /* meets fluid */
+    bool centred;         /* kicks in the middle of drifts (T-30, T-36), else before them (T-32) */
+    bool variational;     /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;    /* some body has a damping_time */
+    double omega_max;     /* largest frequency of the linearised operator, 1/s */
+    double damping_max;   /* largest rate of its viscous part, 1/s */
+    double stable_step;   /* the largest stable step that follows from both, s */
+    double acoustic_step; /* Eq. 29, s */
+    double *scratch[6];   /* memory for the search of the step */
+    double time;          /* of the displacements, s: contact uses walls at their positions then */
     /* Actions from outside, each NULL if there is none; contact: if none is near. */
     struct contact *contact;
     struct loads *loads;
@@ -191,21 +191,20 @@ void solid_gradient(const struct solid *solid, struct particles *particles);
 
 /* Stress and acceleration for the present displacements and velocities, with actions from outside
  * at a time. */
-void solid_forces_within(const struct solid *solid, struct particles *particles, double time);
+void solid_forces_at(const struct solid *solid, struct particles *particles, double time);
 
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
  * other results only the packed fields are updated. displaced: not only velocities have changed
  * since the last call. */
-void solid_operator(struct solid *solid, struct particles *particles, bool displaced);
+void solid_pair_forces(struct solid *solid, struct particles *particles, bool displaced);
 
 /* Accelerations now, m/s^2, and forces of clamps and hinges, N/m (0 where none acts), from
  * what solid_stress has found. They stay in the scratch of the solid until that is used again. The
  * particles keep theirs. */
-struct solid_forces_now {
+struct held_forces {
     const double *ax, *ay, *held_x, *held_y;
 };
-struct solid_forces_now solid_forces_now(struct solid *solid, struct particles *particles,
-                                         double time);
+struct held_forces solid_held_forces(struct solid *solid, struct particles *particles, double time);
 
 /* n explicit sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
  * drift. With `centred`: half drift, kick, half drift, second order in time. Gradients, stresses,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the paper
+ * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the article
  * contains the speed of sound only; the hourglass springs are stiffer than the material and limit
  * the step. */
 
@@ -55,7 +55,7 @@ static void operator_at(struct solid *solid, struct particles *particles, const 
     for (int c = 0; c < 2; c++)
         for (int64_t i = 0; i < particles->n; i++)
             v->field[c][i] = v->base[c][i] + factor * direction[c][i];
-    solid_operator(solid, particles, !v->both_signs);
+    solid_pair_forces(solid, particles, !v->both_signs);
 }
 
 /* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to the
@@ -126,7 +126,7 @@ double solid_stable_step(struct solid *solid, struct particles *particles, doubl
     keep(rates, s, n);
     keep(kept, v.field, n);
     clear(v.field, n);
-    solid_operator(solid, particles, true);
+    solid_pair_forces(solid, particles, true);
     keep(u.rest, s, n);
     keep(u.base, u.field, n);
     *omega = sqrt(largest_factor(solid, particles, &u));
@@ -141,7 +141,7 @@ double solid_stable_step(struct solid *solid, struct particles *particles, doubl
         solid->body[k].damping_time *= 0.5; /* linear: it acts on both signs, half of it on each */
     }
     if (damped) {
-        solid_operator(solid, particles, true);
+        solid_pair_forces(solid, particles, true);
         v.amplitude = u.amplitude * *omega;
         *damping = largest_factor(solid, particles, &v);
     }

@@ -84,9 +84,9 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
 }
 
 /* Moment matrix of a particle with the weight |grad W|/r. Its linear block is L of Eq. 13c: two
- * rows give the paper's corrected gradient, all five one that is exact for quadratic fields (moving
- * least squares). If the neighbours cannot determine a quadratic field, as across two particles,
- * the gradient stays linear. false: not even linear. */
+ * rows give the article's corrected gradient, all five one that is exact for quadratic fields
+ * (moving least squares). If the neighbours cannot determine a quadratic field, as across two
+ * particles, the gradient stays linear. false: not even linear. */
 static bool find_moments(const struct solid *solid, const struct particles *particles, int64_t i,
                          const int32_t *found, int n, struct gradient_moments *m)
 {
@@ -202,7 +202,7 @@ struct slot_sets {
     size_t size;   /* a power of two */
 };
 
-/* Finds a set equal to the n slots behind those stored, or stores these. */
+/* Finds a set equal to the n slots after those stored, or stores these. */
 static void reuse_slots(struct solid *solid, const struct slot_sets *sets, int32_t pack_index,
                         int n)
 {

@@ -88,8 +88,8 @@ SPHFSI_INLINE void add_gradient(struct vtensor2 *sum, const real *slot, struct v
 }
 
 /* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
-static void stress(const struct solid *solid, struct particles *particles, int64_t first,
-                   int64_t last)
+static void stress_of_packs(const struct solid *solid, struct particles *particles, int64_t first,
+                            int64_t last)
 {
     (void)particles;
     for (int64_t k = first; k < last; k++) {
@@ -105,7 +105,7 @@ static void stress(const struct solid *solid, struct particles *particles, int64
     }
 }
 
-/* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C :
+/* Kelvin and Voigt: a viscous second Piola-Kirchhoff stress is added to the elastic one, tau C :
  * dE/dt with the tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a)
  * G_ab^T. P gains F times it. */
 static void damping_of_pack(const struct solid *solid, const struct solid_pack *pack)
@@ -124,8 +124,8 @@ static void damping_of_pack(const struct solid *solid, const struct solid_pack *
                vtensor2_mul(F, hooke(strain_rate, -tau * plane_lambda(body), -tau * body->mu)));
 }
 
-static void damping(const struct solid *solid, struct particles *particles, int64_t first,
-                    int64_t last)
+static void damping_of_packs(const struct solid *solid, struct particles *particles, int64_t first,
+                             int64_t last)
 {
     (void)particles;
     for (int64_t k = first; k < last; k++)
@@ -211,8 +211,8 @@ static void pairs_of_pack(const struct solid *solid, const struct solid_pack *pa
                                    P.yx + sums.pull.yx * half, P.yy + sums.pull.yy * half});
 }
 
-static void pairs(const struct solid *solid, struct particles *particles, int64_t first,
-                  int64_t last)
+static void pairs_of_packs(const struct solid *solid, struct particles *particles, int64_t first,
+                           int64_t last)
 {
     (void)particles;
     for (int64_t k = first; k < last; k++)
@@ -257,7 +257,7 @@ SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *solid,
     struct slot_laws laws = pair_laws(body);
     laws.stress = true;
     struct solid_sums sums;
-    /* The paper's combination has a specialised loop. */
+    /* The article's combination has a specialised loop. */
     if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
         sums =
             sum_slots(solid, pack, &a, (struct slot_laws){true, true, false, false, true, false});
@@ -266,8 +266,8 @@ SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *solid,
     return total_acceleration(solid, pack, &sums, pairs_acceleration(body, &a, &sums));
 }
 
-static void forces(const struct solid *solid, struct particles *particles, int64_t first,
-                   int64_t last)
+static void forces_of_packs(const struct solid *solid, struct particles *particles, int64_t first,
+                            int64_t last)
 {
     for (int64_t k = first; k < last; k++) {
         const struct solid_pack *const pack = &solid->pack[k];
@@ -323,10 +323,10 @@ const struct solid_sweeps SWEEP(solid_sweeps) = {
     .lanes = LANES,
     .size = sizeof(real),
     .pack_motion = pack_motion,
-    .stress = stress,
-    .pairs = pairs,
-    .damping = damping,
-    .forces = forces,
+    .stress = stress_of_packs,
+    .pairs = pairs_of_packs,
+    .damping = damping_of_packs,
+    .forces = forces_of_packs,
     .write_stress = write_stress,
     .hourglass = hourglass,
 };

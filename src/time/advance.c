@@ -112,6 +112,7 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
     integrator->update(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, rates_time);
+    /* Solids get Verlet's force for dt (T-35b), rigid bodies and beams over the mean step. */
     if (sim->effects & FX_COUPLING)
         advance_solids(sim, dt, integrator->alternates ? dt : rates_time);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, rates_time);

@@ -46,8 +46,8 @@ void advance_fluid(struct simulation *sim, advance_range *range, const void *par
  * fluid for `rates_time`. */
 void advance_solids(struct simulation *sim, double dt, double rates_time);
 
-/* The step of rigid bodies from a time on, in the same way: before that of solids, which may push
- * them, and after it. */
+/* The step of rigid bodies from a time on. begin_rigid: before the sub-steps of solids, which may
+ * push bodies. advance_rigid: after them. */
 void begin_rigid(struct simulation *sim, double time, double dt, double rates_time);
 void advance_rigid(struct simulation *sim, double time, double dt, double rates_time);
 

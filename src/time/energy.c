@@ -191,8 +191,8 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
     entry_of(sim, kind, section)->supplied_before += work;
 }
 
-/* Work in dt by the last evaluation: on the fluid by a program, by the constraint at open
- * boundaries and by moving walls; on structures by the fluid's force, at the velocity that the
+/* Work in dt by the last evaluation. On the fluid: by a program, by the constraint at open
+ * boundaries and by moving walls. On structures: by the fluid's force, at the velocity that the
  * fluid uses. */
 void energy_book_evaluation(struct simulation *sim, double dt)
 {
@@ -512,9 +512,9 @@ void energy_book_step(struct simulation *sim, double dt)
 
 /* --- what is said of a gain, and when the run stops --- */
 
-/* Fraction of its available energy that a region may gain without a warning; the time for which a
- * gain below a tenth lasts before it counts, s: while a run starts, little energy is available
- * (docs/theory/guards.md). */
+/* Fraction of its available energy that a region may gain without a warning. A gain above a tenth
+ * counts immediately, a smaller one after it has lasted a time, s: while a run starts, little
+ * energy is available (docs/theory/guards.md). */
 #define GAIN_WARNING 0.01
 #define GAIN_COUNTS_NOW 0.1
 #define GAIN_LASTS 2.5e-3

@@ -5,25 +5,25 @@
 #include "time/state.h"
 
 /* The columns of ledger.csv with their units, in order: LEDGER(name, unit, meaning). Per depth. */
-#define LEDGER_COLUMNS(LEDGER)                                                                   \
-    LEDGER(time, "s", "simulated time")                                                          \
-    LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                              \
-    LEDGER(potential, "J_per_m",                                                                 \
-           "in gravity at t = 0, relative to the origin; and of springs with a `force`")         \
-    LEDGER(internal, "J_per_m", "compression energy of the fluid")                               \
-    LEDGER(elastic, "J_per_m", "strain energy of solids and beams, and of springs")              \
-    LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                \
-    LEDGER(contact, "J_per_m", "energy of the contact forces")                                   \
-    LEDGER(dissipated, "J_per_m",                                                                \
-           "energy at the start plus external work, minus all of the above")                     \
-    LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                             \
-    LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                             \
-    LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                          \
-    LEDGER(dens_extreme, "1", "current largest |rho/rho0 - 1| of the fluid")                     \
-    LEDGER(det_low, "1", "current smallest det F")                                               \
-    LEDGER(dt, "s", "last time step")                                                            \
-    LEDGER(newton_steps, "1", "corrections of Newton's method in the last implicit step")        \
-    LEDGER(newton_residual, "1", "its residual, over the largest force of a particle")           \
+#define LEDGER_COLUMNS(LEDGER)                                                            \
+    LEDGER(time, "s", "simulated time")                                                   \
+    LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                       \
+    LEDGER(potential, "J_per_m",                                                          \
+           "in gravity at t = 0, relative to the origin; and of springs with a `force`")  \
+    LEDGER(internal, "J_per_m", "compression energy of the fluid")                        \
+    LEDGER(elastic, "J_per_m", "strain energy of solids and beams, and of springs")       \
+    LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                         \
+    LEDGER(contact, "J_per_m", "energy of the contact forces")                            \
+    LEDGER(dissipated, "J_per_m",                                                         \
+           "energy at the start plus external work, minus all of the above")              \
+    LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                      \
+    LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                      \
+    LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                   \
+    LEDGER(dens_extreme, "1", "current largest |rho/rho0 - 1| of the fluid")              \
+    LEDGER(det_low, "1", "current smallest det F")                                        \
+    LEDGER(dt, "s", "last time step")                                                     \
+    LEDGER(newton_steps, "1", "corrections of Newton's method in the last implicit step") \
+    LEDGER(newton_residual, "1", "its residual, over the largest force of a particle")    \
     LEDGER(damped, "J_per_m", "the part of `dissipated` that [damping] zones have taken")
 
 struct ledger {
@@ -46,7 +46,7 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 
 /* energy_book_evaluation adds, after an evaluation, the work of its forces over dt.
  * energy_book_step adds, before a step of dt, that work for half of the last step and half of this
- * one; if a test for gains is due, it is between the two. */
+ * one. Between the two it tests for gains if that is due. */
 void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 

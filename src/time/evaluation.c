@@ -52,8 +52,8 @@ static bool keeps_slopes(const struct simulation *sim, double time)
     const double interval = KERNEL_REACH * sim->fluid.k.h / sim->fluid.k.c0;
     if (sim->integrator->alternates) return false;
     if (time != st->time) return true; /* symplectic: the predictor's */
-    /* Not after the evaluation before: time - dt has errors of round-off, and may have passed
-     * a multiple of the interval that the step before had not reached. */
+    /* Rounded down: time - dt could otherwise fall into this interval although the last evaluation
+     * was in the one before it. */
     const double before = time - st->dt - 2 * DBL_EPSILON * time;
     return st->steps > 0 && floor(time / interval) <= floor(before / interval);
 }

@@ -233,11 +233,14 @@ static enum err check_step(struct simulation *sim, struct diag *d)
             time_text(sim).text, sim->dt_solid, sim->substeps);
     if (dt > STEP_WARNING * limit) return ERR_OK;
     if (dt < limit)
-        return diag_fail(d, ERR_GUARD, "%s: the time step has fallen to %.3g s, limited by %s; %s",
+        return diag_fail(d, ERR_GUARD,
+                         "%s: the time step has fallen to %.3g s, limited by the bound `%s`; %s",
                          time_text(sim).text, dt, bound_table[bound].name, step_remedy(sim, bound));
-    warn_once(sim, &sim->guard.warned_step, d,
-              "the time step has fallen to %.3g s, limited by %s, and the run stops at %.3g s; %s",
-              dt, bound_table[bound].name, limit, step_remedy(sim, bound));
+    warn_once(
+        sim, &sim->guard.warned_step, d,
+        "the time step has fallen to %.3g s, limited by the bound `%s`; the run stops at %.3g s; "
+        "%s",
+        dt, bound_table[bound].name, limit, step_remedy(sim, bound));
     return ERR_OK;
 }
 
@@ -294,11 +297,11 @@ static void check_voids(struct simulation *sim, struct diag *d)
 /* --- rigid bodies inside walls and each other --- */
 
 /* Distance from a particle of another body, in spacings, below which a particle of a rigid body is
- * inside: no place of a square lattice is further than 0.71 from its particles, and bodies that
- * touch are one spacing apart. */
+ * inside. No place of a square lattice is further than 0.71 from its particles. Bodies that touch
+ * are one spacing apart. */
 #define RIGID_INSIDE 0.75
 
-/* A particle of a wall, or of a rigid body behind body k, inside of rigid body k; -1: none. */
+/* A particle of a wall, or of a rigid body numbered above k, inside of rigid body k; -1: none. */
 static int64_t find_entered(const struct simulation *sim, int k)
 {
     const struct particles *const p = &sim->particles[KIND_WALL];

@@ -212,6 +212,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .solid = &sim->solid,
         .particles = &sim->particles[KIND_SOLID],
         .stage = sim->integrator->stage,
+        .alternates = sim->integrator->alternates,
         .exchange_time = &sim->state.exchange_time,
     };
     if (sim->effects & FX_SOLID) TRY(create_solids(sim, d));

@@ -14,8 +14,7 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     struct solid *const solid = &sim->solid;
     sim->substeps = 1;
     if (solid->implicit && solid->contact)
-        sim->substeps =
-            (int)max2(1, min2(ceil(dt / sim->dt_solid * (1 - 1e-9)), SUBSTEPS_MOST + 1));
+        sim->substeps = (int)max2(1, min2(whole_parts(dt / sim->dt_solid), SUBSTEPS_MOST + 1));
     const int all = n * sim->substeps;
     sim->state.solid_substeps += all;
     if (!(sim->effects & FX_SOLID)) return;

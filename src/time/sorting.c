@@ -24,9 +24,9 @@ void forget_fluid(struct particles *particles)
     for (size_t k = 0; k < COUNT_OF(sums); k++) particles_clear(sums[k], particles->n);
 }
 
-/* Sets the cells' skin from a new measurement. The next evaluation uses the present state; the
- * predictor's second one is half a step of the present velocities later: two particles approach by
- * a step of the largest, and 1.1 leaves a margin for accelerations (T-30). */
+/* Sets the cells' skin from a new measurement. The next evaluation uses the present state. The
+ * predictor's second one is half a step later, in which two particles approach by a step of the
+ * largest velocity; 1.1 leaves a margin for accelerations (T-30). */
 void find_skin_left(struct simulation *sim)
 {
     const bool predicts = sim->integrator->stage > 0;

@@ -62,7 +62,8 @@ struct extremes {
 /* What the next sorting of particles into cells depends on. */
 struct sorting {
     double speed2;     /* of the fastest particle of any kind, squared, (m/s)^2 */
-    double solid_move; /* largest of a solid particle in the last step, m; symplectic measures */
+    double solid_move; /* largest of a solid particle in the last step, m; not at a single rate of
+                        * `symplectic`, where sorting_due measures */
     double shifted;    /* largest shift of a fluid particle in the last step, m; 0: no shifting */
     double skin_left;  /* distance that two particles may move until a sorting is due, m */
 };
@@ -78,7 +79,7 @@ struct integrator {
     double largest_cfl; /* up to it the fluid is stable */
     /* T-33b: a decay of density or velocity at a rate m is followed up to m dt of these. */
     double density_decay, velocity_decay;
-    unsigned fluid_groups; /* fields that it needs beside those of its effect */
+    unsigned fluid_groups; /* fields that it needs besides those of its effect */
     double stage;    /* of the rates that advance the fluid, in steps after the start of the step */
     bool centred;    /* `centred` of the solid's explicit steps (solid.h) */
     bool alternates; /* carries on two solutions, by turns */

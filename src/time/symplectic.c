@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Symplectic predictor-corrector (Eqs. 22-24) of the paper: two evaluations a step. With solid
+ * Symplectic predictor-corrector (Eqs. 22-24) of the article: two evaluations a step. With solid
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
 #include "time/advance.h"
@@ -19,7 +19,7 @@ static void swap_states(struct particles *particles)
     swap_fields(&particles->y, &particles->y0);
     swap_fields(&particles->vx, &particles->vx0);
     swap_fields(&particles->vy, &particles->vy0);
-    swap_fields(&particles->dens, &particles->dens0);
+    swap_fields(&particles->dens, &particles->dens_half);
 }
 
 /* Writes the predicted state to the particles' fields. Only some effects read them; otherwise the
@@ -33,11 +33,11 @@ static void predict_fields(struct particles *particles, double half)
         particles->y[i] = particles->y0[i] + half * particles->vy0[i];
         particles->vx[i] = particles->vx0[i] + half * particles->ax[i]; /* Eq. 22b */
         particles->vy[i] = particles->vy0[i] + half * particles->ay[i];
-        particles->dens[i] = particles->dens0[i] + half * particles->ddens[i]; /* Eq. 24a */
+        particles->dens[i] = particles->dens_half[i] + half * particles->ddens[i]; /* Eq. 24a */
     }
 }
 
-/* From the start of the step to its end; dens0 is predicted. */
+/* From the start of the step to its end; dens_half is predicted. */
 static void correct_range(struct particles *particles, const void *parameters, int64_t from,
                           int64_t end)
 {
@@ -50,7 +50,7 @@ static void correct_range(struct particles *particles, const void *parameters, i
         particles->x[i] += 0.5 * dt * (particles->vx[i] + vx); /* Eq. 23b */
         particles->y[i] += 0.5 * dt * (particles->vy[i] + vy);
         /* Eq. 24b, less 1, without cancellation. */
-        const double eps = -particles->ddens[i] / (1 + particles->dens0[i]) * dt;
+        const double eps = -particles->ddens[i] / (1 + particles->dens_half[i]) * dt;
         particles->dens[i] = dens - (1 + dens) * 2 * eps / (2 + eps);
     }
 }
@@ -146,8 +146,10 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     if (needs_fields) swap_states(&sim->particles[KIND_FLUID]);
     advance_fluid(sim, correct_range, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
+    clock = phase_add(sim, PHASE_update, clock);
     if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
     if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
+    clock = phase_add(sim, PHASE_solid, clock);
     timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);
 }

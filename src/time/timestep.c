@@ -144,7 +144,7 @@ double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
 {
     const double dt = timestep_bound(sim);
     /* A step that rounding of the times leaves before the limit is none. */
-    const double left = t_limit - sim->state.time, steps = ceil(left / dt * (1 - 1e-9));
+    const double left = t_limit - sim->state.time, steps = whole_parts(left / dt);
     *hits = steps <= 1;
     return steps <= 2 ? left / max2(1, steps) : dt;
 }
@@ -166,7 +166,7 @@ int timestep_substeps(struct simulation *sim, double dt)
     struct state *const st = &sim->state;
     if (!(sim->effects & FX_MULTIRATE) || implicit_is_next(&sim->solid)) return 1;
     /* Enough for the longest step so far: shorter steps do not change the number. */
-    const double most = ceil(max2(st->dt_max, dt) / sim->dt_solid * (1 - 1e-9));
+    const double most = whole_parts(max2(st->dt_max, dt) / sim->dt_solid);
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
     if (needed >= held) st->short_steps_needed_at = st->time;
     if (needed > held || (needed < held && longer_is_safe(sim, needed / held)))
@@ -184,7 +184,7 @@ void timestep_set_solid(struct simulation *sim)
     /* A fully clamped body has no bound, but a moving body may hit it. */
     const bool bounded = sim->effects & FX_FLUID || isfinite(step);
     sim->dt_solid = sim->dt_lone_solid =
-        sim->scene->numerics.solid_safety * (bounded ? step : sim->solid.paper_step);
+        sim->scene->numerics.solid_safety * (bounded ? step : sim->solid.acoustic_step);
     if (sim->effects & FX_FLUID || !sim->solid.implicit) return;
     if (isfinite(sim->solid.implicit->period))
         sim->dt_solid = sim->dt_lone_solid = sim->solid.implicit->period / IMPLICIT_PARTS;

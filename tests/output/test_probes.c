@@ -467,8 +467,7 @@ static void reaction_balances(const char *set)
     TEST_ASSERT_TRUE(before == simulation_hash(&rig.sim));
     struct particles *particles = &rig.sim.particles[KIND_SOLID];
     const double mass = rig.sim.solid.body[0].mass;
-    const struct solid_forces_now now =
-        solid_forces_now(&rig.sim.solid, particles, rig.sim.state.time);
+    const struct held_forces now = solid_held_forces(&rig.sim.solid, particles, rig.sim.state.time);
     double x = -3, y = -1;
     for (int64_t i = 0; i < particles->n; i++) {
         x += mass * now.ax[i] - particles->fx[i];

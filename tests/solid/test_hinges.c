@@ -177,7 +177,7 @@ static void test_hinge_on_a_moving_wall(void)
         const struct ledger row = simulation_ledger(&rig.sim);
         TEST_ASSERT_TRUE(rig.sim.state.wall_work > 0.1);
         assert_at_most(2e-3 * rig.sim.state.wall_work, fabs(row.dissipated), "missing energy");
-        const struct solid_forces_now now = solid_forces_now(&rig.sim.solid, p, 0.2);
+        const struct held_forces now = solid_held_forces(&rig.sim.solid, p, 0.2);
         for (int64_t i = 0; i < p->n; i++) {
             const double m = rig.sim.solid.body[0].mass;
             force[0] += now.held_x[i];

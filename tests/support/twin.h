@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The fluid's equations of the paper a second time: plain double loops over all pairs, written from
- * the article (with Eq. 19 as in Adami et al. 2012) and not from the code under test. */
+ * The fluid's equations of the article a second time: plain double loops over all pairs, written
+ * from the article (with Eq. 19 as in Adami et al. 2012) and not from the code under test. */
 #ifndef TWIN_H
 #define TWIN_H
 

@@ -420,7 +420,7 @@ static void test_warnings_before_the_end(void)
     TEST_ASSERT_EQUAL_INT(3, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has fallen"), warning);
     char text[64];
-    snprintf(text, sizeof text, "limited by %s", bound_table[2].name);
+    snprintf(text, sizeof text, "limited by the bound `%s`", bound_table[2].name);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
     /* Neither cfl nor sound_speed changes the step of a solid. */
@@ -428,7 +428,7 @@ static void test_warnings_before_the_end(void)
     rig.sim.dt_bound[BOUND_contact] = 50 * rig.sim.guard.step_limit;
     rig.sim.guard.warned_step = false;
     TEST_ASSERT_EQUAL_INT(ERR_OK, check());
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "limited by contact"), warning);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "limited by the bound `contact`"), warning);
     TEST_ASSERT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
 }
 

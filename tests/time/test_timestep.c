@@ -364,7 +364,7 @@ static void test_bound_knows_the_hourglass_springs(void)
     double last = INFINITY;
     for (int k = 0; k < 3; k++) {
         rig_open(&rig, block, kappas[k], NULL);
-        assert_near(1e-16, 4.86e-5, rig.sim.solid.paper_step, "Eq. 29");
+        assert_near(1e-16, 4.86e-5, rig.sim.solid.acoustic_step, "Eq. 29");
         TEST_ASSERT_TRUE(rig.sim.solid.stable_step < last);
         TEST_ASSERT_TRUE(rig.sim.dt_solid == 0.9 * rig.sim.solid.stable_step);
         last = rig.sim.solid.stable_step;
