@@ -41,8 +41,7 @@ struct sphfsi_simulation {
 
 /* --- a call --- */
 
-/* Begins a call of a function that takes the whole simulation; `end` ends it, unless this has
- * failed. */
+/* Begins a call that takes the whole simulation; `end` ends it, unless this has failed. */
 static enum err begin(struct sphfsi_simulation *handle, const char *name, struct diag *d)
 {
     *d = (struct diag){.code = ERR_OK};

@@ -89,8 +89,7 @@ static enum err take_first_steps(struct simulation *sim, struct diag *d)
 
 /* Steps until a time, for some seconds at most. Steps on trial with another number of threads, of
  * which a run has fewer, are left out of the time. Shares of phases are by the wall clock. Beside
- * other programs a team of threads waits for each other, so that only an idle machine gives its
- * time. */
+ * other programs a team of threads waits for each other: only an idle machine gives its time. */
 static enum err measure(struct stretch *s, struct simulation *sim, double until, double seconds,
                         struct diag *d)
 {
@@ -213,12 +212,11 @@ static double run_trial(struct stretch *first, struct stretch *whole, double r, 
 /* The amounts of the run by those of the trial. A step takes longer by the factor by which it does
  * in a run of the same scene at a coarser spacing, which sees the whole of it: water that spreads,
  * bodies that touch. With r times the spacing there are 1/r^2 of the particles and 1/r of the
- * steps, so that r is the cube root of the time of the run over that of the coarse one.
- * Sorts and contact are too rare for a factor. Sorts take the part of the time that they take in
- * the coarse run; contact takes 1/r of its part of a solid's time, since a surface has 1/r of the
- * particles. The step of a solid alone is known from the trial. Springs of contact, which may come
- * later, are as stiff per depth at any spacing, so that 1/r of the steps are taken while surfaces
- * are near. */
+ * steps, so that r is the cube root of the time of the run over that of the coarse one. Sorts and
+ * contact are too rare for a factor. Sorts take the part of the time that they take in the coarse
+ * run; contact takes 1/r of its part of a solid's time, since a surface has 1/r of the particles.
+ * The step of a solid alone is known from the trial. Springs of contact, which may come later, are
+ * as stiff per depth at any spacing: 1/r of the steps are taken near surfaces. */
 static void extend(struct forecast *f, struct stretch *run, const struct stretch *trial,
                    const struct session *session, const struct sphfsi_options *o)
 {
@@ -261,8 +259,7 @@ static void extend(struct forecast *f, struct stretch *run, const struct stretch
 
 /* --- the run --- */
 
-/* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run.
- */
+/* Bytes of rows, two checkpoints, and uncompressed snapshots twice, as during the run. */
 static double disk_bytes(const struct simulation *sim)
 {
     enum { BYTES_OF_SNAPSHOT = 140, BYTES_OF_ROW = 18 }; /* a particle; a number */

@@ -93,8 +93,7 @@ static void install_signals(void)
     struct sigaction inherited;
     if (sigaction(SIGHUP, NULL, &inherited) == 0 && inherited.sa_handler != SIG_IGN)
         sigaction(SIGHUP, &again, NULL);
-    /* A file that may not grow further is a failed write, which is reported; so is a closed pipe.
-     */
+    /* A file that may not grow is a failed write, which is reported; so is a closed pipe. */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
 }
@@ -126,8 +125,7 @@ static void text_of_remaining(double seconds, char text[32])
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
-/* One line that is updated on a terminal; elsewhere one for each tenth of the run or half a minute.
- */
+/* A line, updated on a terminal; elsewhere one for each tenth of the run or half a minute. */
 static void on_progress(void *context, const struct sphfsi_progress *p)
 {
     struct command *c = context;
@@ -360,8 +358,7 @@ static int execute(struct command *c)
 }
 
 /* A result file must not get the number of a standard stream that the caller has closed, or it
- * would receive messages. /dev/null is opened for reading, so that writing to the stream still
- * fails. */
+ * would receive messages. /dev/null is open for reading only: writing still fails. */
 static void fill_standard_streams(void)
 {
     int fd;

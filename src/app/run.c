@@ -111,8 +111,7 @@ static enum err write_checkpoint(struct run *r)
 }
 
 /* Writes what is due at the first state at or after its time; at the end of the run, all that was
- * not written of this state. The checkpoint is the last: a restart relies on all others having been
- * written. */
+ * not written of this state. The checkpoint is the last: a restart relies on all others. */
 static enum err write_due(struct run *r)
 {
     const bool at_end = r->sim->state.time >= r->session.scene.top.end_time;
@@ -408,8 +407,7 @@ static enum err load_checkpoint(struct run *r)
     return ERR_OK;
 }
 
-/* Prepares all files. A restart changes files of the run only after its checkpoint has been
- * checked. */
+/* Prepares all files. A restart changes files only after its checkpoint has been checked. */
 static enum err begin_run(struct run *r)
 {
     char part[PATH_BYTES];

@@ -174,8 +174,7 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
 }
 
 /* The largest number of threads for a scene: what the options or OMP_NUM_THREADS ask for, reduced
- * with a warning to what the scene can use. Without either: `offered`, or fewer for few particles.
- */
+ * with a warning to what the scene can use. Without either: at most `offered`. */
 static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                           struct diag *d)
 {

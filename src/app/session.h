@@ -77,8 +77,7 @@ enum err case_change_check(const char *old, const char *now, bool fork, struct d
 /* evidence.c: prints the error that the accuracy study lets expect of each body. */
 void evidence_say(const struct scene *scene, const struct sphfsi_options *o);
 
-/* manual.c: writes the example of a key to `text`: from src/app/data/key_examples.cfg, or its
- * default; "". */
+/* manual.c: the example of a key: from src/app/data/key_examples.cfg, or its default, or "". */
 struct param;
 void manual_example(const struct param *param, char *text, size_t size);
 
@@ -101,7 +100,6 @@ struct forecast {
 };
 
 /* Takes trial steps for 0.3 s, with the rows of a run, measures its files in memory, and runs the
- * scene that `o` describes once more, at a coarser spacing. Leaves the simulation in a state of no
- * meaning. */
+ * scene that `o` describes once more, at a coarser spacing. The simulation is of no use then. */
 enum err forecast_run(struct forecast *f, struct session *session, const struct sphfsi_options *o,
                       struct diag *d) SPHFSI_CHECKED;

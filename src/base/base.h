@@ -58,8 +58,7 @@ struct diag {
     char more[8192]; /* further failures of the same input, a sentence a line */
 };
 
-/* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO,
- * ...)`. */
+/* Records a failure unless d holds one; returns `code`: `return diag_fail(d, ERR_IO, ...)`. */
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
 /* As diag_fail, but where d holds a failure already, the sentence is added to `more`. */
 enum err diag_add(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
@@ -94,9 +93,8 @@ struct arena {
     size_t limit;  /* largest allowed `bytes`; 0: no limit */
 };
 
-/* Allocates `count` zeroed items of `size` bytes; NULL, with the sizes in d, if that fails.
- * Never NULL for count == 0. A vector load or store may cross either end of the array by up to
- * ARENA_MARGIN bytes. */
+/* Allocates `count` zeroed items of `size` bytes; NULL, with the sizes in d, if that fails. Never
+ * NULL for count == 0. A vector load or store may cross either end by ARENA_MARGIN bytes. */
 void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
     SPHFSI_CHECKED;
 /* As arena_alloc, for the pointer that `to` points at. */
@@ -193,6 +191,5 @@ struct host {
 /* Puts settings in effect for this thread; returns those that were. */
 struct host host_use(struct host settings);
 
-/* Puts the locale "C" in effect and, unless it is 0, a number of threads; what was goes to
- * *before. */
+/* Sets the locale "C" and, unless it is 0, a number of threads; what was goes to *before. */
 enum err host_enter(struct host *before, int threads, struct diag *d) SPHFSI_CHECKED;

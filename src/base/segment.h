@@ -4,8 +4,7 @@
 
 #include "base/base.h"
 
-/* A place on a segment: 0 to 1 from its start to its end, and the vector from there to the point.
- */
+/* A place on a segment: 0 to 1 from start to end, and the vector from there to the point. */
 struct segment_foot {
     double part, offset[2], distance;
 };

@@ -164,8 +164,7 @@ static double along_pair(const struct beams *beams, const struct beam_pair *t)
     return sum;
 }
 
-/* Adds a pair at a place of a wall, -1: of a beam, if the first guess brings it nearer than a
- * tenth of a spacing. */
+/* Adds a pair at a place of a wall (-1: of a beam) that the first guess brings within 0.1 dp. */
 static void add_pair(struct beams *beams, struct beam_pair *t, int wall, const double at[2])
 {
     struct beam_contact *const contact = beams->contact;

@@ -6,8 +6,7 @@
 
 #include <float.h>
 
-/* Newton's method ends at this residual over the largest force. Round-off over the largest
- * stiffness. */
+/* Newton's method ends at this residual over the largest force; round-off over that stiffness. */
 #define TOLERANCE 1e-9
 #define ROUNDING (64 * DBL_EPSILON)
 
@@ -328,8 +327,7 @@ static int64_t count_free(const struct beams *beams)
     return n;
 }
 
-/* Frequencies below omega, of beams as they are at the start (Sylvester), with springs or without.
- */
+/* Frequencies below omega, of beams as at the start (Sylvester), with springs or without. */
 static int64_t count_below(struct beams *beams, double omega2, bool springs)
 {
     struct largest most = {0};

@@ -137,8 +137,7 @@ void case_apply_defaults(struct scene *scene);
 /* case/spring.c */
 enum err case_check_spring(struct reader *r, const void *section) SPHFSI_CHECKED;
 
-/* case/rigid.c: rigid bodies as walls with a motion, beams as walls; sections of a kind without
- * these. */
+/* case/rigid.c: rigid bodies as walls with a motion, beams as walls; sections without these. */
 enum err case_place_bodies(struct reader *r) SPHFSI_CHECKED;
 int case_given_count(const struct scene *scene, enum section_id id);
 

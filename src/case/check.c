@@ -179,8 +179,7 @@ static bool moves_freely(const struct scene *scene, const char *name)
     return wall < 0 || wall >= scene_rigid_wall(scene, 0);
 }
 
-/* Two bodies, of which one is no wall; a larger gap contains fluid particles of its own.
- */
+/* Two bodies, of which one is no wall; a larger gap has fluid particles of its own. */
 static enum err check_contact(struct reader *r, const void *section)
 {
     const struct scene *const scene = r->scene;
@@ -291,8 +290,7 @@ static bool is_held(const struct scene *scene, const char *name)
     return of->hinge.n > 0 || of->guide[0] != 0 || of->guide[1] != 0 || !of->turns;
 }
 
-/* Each body once: a force that counts twice is a mistake. A reaction is that of clamps
- * and hinges. */
+/* Each body once: a force that counts twice is a mistake. Clamps and hinges react. */
 static enum err check_body(struct reader *r, const struct scene_probe *p)
 {
     char name[SCENE_TEXT], other[SCENE_TEXT];

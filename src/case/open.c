@@ -112,8 +112,7 @@ struct scene_open_range scene_open_range(const struct scene *scene, const struct
     return range;
 }
 
-/* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow at some
- * time. */
+/* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow once. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
     const struct scene_open_range range = scene_open_range(r->scene, o);

@@ -77,8 +77,7 @@ bool scene_scheme_sets(const struct scene *scene, enum section_id section, const
     return scheme_sets((enum scheme)scene->top.scheme, scene->kind, section, key, value);
 }
 
-/* The value of a choice at the top of the file, before it is read; the reader reports an invalid
- * word. */
+/* The value of a choice at the top of the file before it is read, which reports an invalid word. */
 static int top_choice(const struct reader *r, const char *key)
 {
     const struct param *const param = param_find(SECTION_top, key);

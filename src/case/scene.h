@@ -231,8 +231,7 @@ struct scene {
 /* Reads and checks a case, from text in memory or NULL: the file; messages use `path`, and file
  * names are relative to it. geometry/load.h also samples its points. `sets` are the --set arguments
  * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
- * "gate.young=1e6"). After success the caller frees with scene_free; after a failure there is
- * nothing to free. */
+ * "gate.young=1e6"). After success scene_free is due. */
 enum err scene_read(struct scene *scene, const char *text, const char *path, int n_sets,
                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *scene);
@@ -259,8 +258,7 @@ struct scene_open {
 /* The section number k, those of [inflow] first. */
 struct scene_open scene_open_at(const struct scene *scene, int k);
 int scene_open_count(const struct scene *scene);
-/* Distance of a point from the line on the side of the fluid, and its coordinate along the line,
- * m. */
+/* Distance of a point from the line, on the fluid's side, and its coordinate along it, m. */
 SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2], double *in,
                                     double *along)
 {
@@ -373,8 +371,7 @@ const struct scene_contact *scene_contact_of(const struct scene *scene, int a, i
  * scheme. */
 double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 
-/* Name k of a list with commas between them, or word k of one with blanks or commas; false: there
- * are fewer. */
+/* Name k of a list with commas, or word k of one with blanks or commas; false: there are fewer. */
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */

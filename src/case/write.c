@@ -60,8 +60,7 @@ static void write_shape(FILE *out, const char *key, const struct shape *s)
     fprintf(out, "\n");
 }
 
-/* The folder of a path with all links resolved and a / at its end; false: it cannot be
- * determined. */
+/* The folder of a path with all links resolved and a / at its end; false: it cannot be found. */
 static bool real_directory(const char *path, char folder[PATH_MAX])
 {
     char head[PATH_MAX];

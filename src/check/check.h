@@ -50,14 +50,12 @@ struct body body_at(const struct scene *scene, int k);
 enum err list_points(struct check *check) SPHFSI_CHECKED;
 /* The region of walls or solids that covers a place as drawn, or -1. */
 int drawn_at(const struct check *check, double x, double y);
-/* The first point of these kinds within a distance of a place, through periodic sides too; -1:
- * none. */
+/* The first point of these kinds near a place, through periodic sides too; -1: none. */
 int64_t point_at(const struct check *check, const double at[2], double within, int kinds);
 /* The point of these kinds that is next to point k in a direction, or -1. */
 int64_t point_beside(const struct check *check, int64_t k, const double toward[2], double within,
                      int kinds);
-/* Extent of a section's points along a vector times its length, without those of buffers; 0:
- * none. */
+/* Extent of a section's points along a vector times its length, without buffers; 0: none. */
 double extent_along(const struct scene *scene, enum kind kind, int section, const double along[2]);
 /* The largest initial velocity of a section's points, m/s. */
 double start_speed(const struct scene *scene, enum kind kind, int section,

@@ -132,8 +132,7 @@ static bool stands(const struct check *check, int fluid, const double down[2])
     return false;
 }
 
-/* Water that begins without the pressure of its weight, or with that of a floor that it does not
- * have. */
+/* Water that begins without the pressure of its weight, or with that above a missing bottom. */
 static void warn_of_weight(struct check *check, int fluid)
 {
     const struct scene *const scene = check->scene;
@@ -263,8 +262,7 @@ static void warn_of_end(struct check *check, const struct scene_open *o, bool la
                      end[0], end[1], o->depth);
 }
 
-/* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of
- * it. */
+/* Without a level the buffer fills the whole line, also above the fluid within 2 dp of it. */
 static void warn_of_level(struct check *check, const struct scene_open *o)
 {
     const struct points *const p = &check->points;

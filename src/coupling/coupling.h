@@ -35,9 +35,8 @@ void coupling_find_forces(const struct coupling *coupling, struct particles kind
 void coupling_find_wall_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                                const struct cells *cells);
 
-/* Sets whether there are sub-steps and an impedance; `effects` has what the bounds of the step
- * have decided. The exchange time begins with the fluid's longest step, or with that of a
- * checkpoint. */
+/* Sets whether there are sub-steps and an impedance; `effects` has what the bounds of the step have
+ * decided. The exchange time begins with the fluid's longest step, or a checkpoint's. */
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest);
 
 /* --- a step of dt of the fluid --- */

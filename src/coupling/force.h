@@ -72,8 +72,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
     if (wetted) add_force(wet_x, wet_y, 2 * PAIR_SLOPE * fluid->k.h, volume, wet[0], wet[1]);
 }
 
-/* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed
- * fields. */
+/* The forces on the `count` particles at `index` of a cluster with the packed fields `own`. */
 SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles *particles,
                                     const int32_t *index, int count, const real *own,
                                     const struct neighbours *neighbours,

@@ -160,8 +160,7 @@ void fluid_follow_density(const struct fluid *fluid, struct particles *particles
         particles->dens_slow[i] += fraction * (particles->dens[i] - particles->dens_slow[i]);
 }
 
-/* Marks the nine cells around a cell of walls or structures; returns whether any of them contains
- * fluid. */
+/* Marks the nine cells around a cell of walls or structures; returns whether any has fluid. */
 static bool mark_around(const struct cells *cells, int32_t cell, bool *near_dummies)
 {
     const int cx = cell_x(cells, cell), cy = cell_y(cells, cell);

@@ -63,9 +63,8 @@ enum packed_field {
     PACKED_P,
     PACKED_DENS,
     PACKED_FIELDS,
-    /* Of walls and solids, where fluid sticks to some of them: the mirrored velocity (Adami et
-     * al. 2012, Eq. 23) and its weight: 1 or 2 (L-6b) where it acts, 0 where the surface is
-     * free-slip. */
+    /* Of walls and solids, where fluid sticks to some of them: the mirrored velocity (Adami et al.
+     * 2012, Eq. 23) and its weight: 1 or 2 (L-6b), or 0 where it slips. */
     PACKED_MIRROR_U = PACKED_FIELDS,
     PACKED_MIRROR_V,
     PACKED_STICKS,

@@ -74,8 +74,7 @@ SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighb
     return neighbours_of(&fluid->packed[kind], near);
 }
 
-/* The neighbours of the next cluster of a fluid cell: fluid outside its chunk and fluid ahead in
- * it. */
+/* Neighbours of the next cluster of a fluid cell: fluid outside its chunk and ahead in it. */
 SPHFSI_INLINE struct neighbours gather_clusters_ahead(struct neighbour_scratch *neighbour_scratch,
                                                       const struct fluid *fluid)
 {

@@ -3,9 +3,8 @@
  * and the sums of what has come in. */
 #include "fluid/open.h"
 
-/* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this
- * far in front of it is relabelled without delay. Fluid that oscillates about the line by less
- * creates no copies. */
+/* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this far
+ * in front of it is relabelled without delay. Smaller oscillations create no copies. */
 #define BAND 0.5
 
 int64_t open_places(const struct scene *scene)
@@ -121,8 +120,7 @@ static enum err make_copy(struct open *o, int64_t i, double in, struct diag *d)
 }
 
 /* T-54: fills the strip behind a particle that enters, but not above the level. Compressed fluid
- * has smaller distances: the inflow is its density times its velocity. Particles from `fresh` on
- * are new. */
+ * has smaller distances: density times velocity flows in. Particles from `fresh` on are new. */
 static enum err fill_strip(struct open *o, int64_t i, int64_t fresh, struct diag *d)
 {
     const struct particles *const particles = o->particles;

@@ -9,8 +9,7 @@
 #include "fluid/fluid.h"
 
 /* Mass, momentum and energy that have entered through a boundary, less those that have left:
- * carried from step to step. The mean flow is out of the fluid, m/s; NAN before the first
- * evaluation. */
+ * carried from step to step. The mean flow is outward, m/s; NAN before the first evaluation. */
 enum open_sum { OPEN_MOMENTUM_X, OPEN_MOMENTUM_Y, OPEN_ENERGY, OPEN_MEAN_FLOW, OPEN_SUMS };
 /* Particles that were created and removed. */
 enum open_count { OPEN_ENTERED, OPEN_LEFT, OPEN_COUNTS };

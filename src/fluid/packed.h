@@ -183,8 +183,7 @@ SPHFSI_INLINE void sum_slopes(const struct neighbours *neighbours, const struct 
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
  * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
- * neighbours span no plane (a determinant below a thousandth of the trace squared) the inverse
- * is taken as 0. */
+ * neighbours span no plane (determinant below trace squared/1000) the inverse is 0. */
 SPHFSI_INLINE void slopes_from(real sum[SLOPE_SUMS][CLUSTER], four_double slope[2])
 {
     four_double s[SLOPE_SUMS];

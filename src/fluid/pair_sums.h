@@ -37,8 +37,7 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
     return q;
 }
 
-/* Contributions of pairs of receivers and candidates; in specialised sweeps the effects are a
- * constant. */
+/* Contributions of pairs of receivers and candidates; specialised sweeps have constant effects. */
 SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t code,
                                               const real *b, const struct vector_constants *k,
                                               struct pair_set effects, vreal *approach)
@@ -93,8 +92,7 @@ SPHFSI_INLINE void defer_pair_terms(real *at, const struct pair_terms *e, struct
     for (int k = 0; k < pair_sum_count(effects.bits); k++) vstore(DEFERRED(at, k), sum[k]);
 }
 
-/* Sums over neighbouring fluid. Candidates that are not ahead in the chunk add to the discard
- * slot. */
+/* Sums over neighbouring fluid. Candidates not ahead in the chunk add to the discard slot. */
 SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
                              const struct vector_constants *k, struct pair_set effects,
                              const struct chunk *chunk, struct cluster_sums *sums)
@@ -112,8 +110,7 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
     }
 }
 
-/* With walls and structures: pressure and continuity, and laminar viscosity where the fluid
- * sticks. */
+/* With walls and structures: pressure, continuity, and laminar viscosity where the fluid sticks. */
 SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t code,
                                               const real *b, const struct vector_constants *k,
                                               struct pair_set effects, vreal *approach)

@@ -27,8 +27,7 @@ struct chunk_totals {
 
 #include "fluid/pair_sums.h"
 
-/* A sum of a cluster as receivers, less (odd) or plus (even) what was deferred for it as
- * candidates. */
+/* A sum of a cluster as receivers, less (odd) or plus (even) what was deferred for it. */
 SPHFSI_INLINE four_double odd_sum(const struct cluster_sums *s, real *deferred, enum pair_sum which)
 {
     return own_sum(s, which) - take_deferred(DEFERRED(deferred, which));
@@ -39,8 +38,7 @@ SPHFSI_INLINE four_double even_sum(const struct cluster_sums *s, real *deferred,
     return own_sum(s, which) + take_deferred(DEFERRED(deferred, which));
 }
 
-/* Writes the rates of `count` particles from i on, from their sums and the factors not included in
- * them. */
+/* Writes the rates of `count` particles from i on: their sums times the factors that these lack. */
 SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *particles, int32_t i,
                                int count, const struct cluster_sums *s, real *deferred,
                                const struct vector_constants *k, struct pair_set effects,

@@ -49,8 +49,7 @@ static void default_domain(struct scene *scene)
     }
 }
 
-/* The two sides of a periodic domain coincide: a point on the upper one is moved to the lower
- * one. */
+/* The sides of a periodic domain coincide: a point on the upper one moves to the lower one. */
 static bool in_domain(const struct scene *scene, int axis, double x)
 {
     const double upper = scene->domain_upper[axis];

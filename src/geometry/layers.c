@@ -30,8 +30,7 @@ struct layers {
 
 /* --- choice of pieces --- */
 
-/* Whether all edges of a shape are along the lattice. The joints between a polyline's segments are
- * ignored. */
+/* Whether all edges of a shape are along the lattice, but the joints of a polyline's segments. */
 static bool along_lattice(const struct shape *shape, const struct region *region)
 {
     const double c = region->lattice.turn[0], s = region->lattice.turn[1],

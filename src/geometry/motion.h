@@ -4,8 +4,7 @@
 
 #include "case/scene.h"
 
-/* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given. top.gravity itself is
- * the value at t = 0. */
+/* Gravity at a time, m/s^2: top.gravity, the value at t = 0, or its expressions in t if given. */
 void scene_gravity_at(const struct scene *scene, double t, double g[2]);
 bool scene_gravity_varies(const struct scene *scene);
 

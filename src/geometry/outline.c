@@ -75,8 +75,7 @@ static enum err check_ends(const struct scene *scene, const struct shape *p, str
     return ERR_OK;
 }
 
-/* The point opposite to point k on the far side, on the bisector of its two segments; false: too
- * sharp. */
+/* The point opposite to point k, on the bisector of its two segments; false: too sharp. */
 static bool mitre(const struct scene *scene, const struct shape *p, int k, double far[2])
 {
     const int last = p->n - 2; /* segment */

@@ -20,8 +20,7 @@ static const double beside_line = 1e-3;
 static const double shift_factor = 0.2, longest = 0.1, still = 1e-4;
 static const int max_shifts = 1000;
 
-/* The cells that slanted edges of a region cut, in the order of the edges; in cells of the
- * lattice. */
+/* The cells that slanted edges of a region cut, in the order of the edges; in lattice cells. */
 struct cut_cells {
     const struct region *region;
     struct point_grid grid; /* their centres */
@@ -31,8 +30,7 @@ struct cut_cells {
 
 /* --- cells --- */
 
-/* Adds the cell of a point of an edge with this normal, unless the shape is on both of its
- * sides. */
+/* Adds the cell of a point of an edge with this normal, unless both sides are in the shape. */
 static enum err visit(struct cut_cells *c, struct sampler *sampler, const double at[2],
                       const double normal[2])
 {
@@ -87,8 +85,7 @@ static enum err visit_outlines(struct cut_cells *c, struct sampler *sampler,
     return ERR_OK;
 }
 
-/* Share of the cell with this centre, and the middle of it. `line` and `scratch` as for
- * outlines_union. */
+/* Share of the cell with this centre, and its middle. `line` and `scratch`: see outlines_union. */
 static double share_of(const struct region *r, const double centre[2], double middle[2],
                        double *line, double *scratch)
 {
@@ -254,8 +251,7 @@ static void add_point(struct settling *s, double x, double y, double volume)
     s->volume[s->n++] = volume;
 }
 
-/* The points that take part: fluid within the kernel's reach of a cut cell moves, all else
- * stays. */
+/* The points that take part: fluid within the kernel's reach of a cut cell, which alone moves. */
 static enum err gather(struct settling *s)
 {
     struct sampler *const sampler = s->sampler;

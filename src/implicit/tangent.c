@@ -64,8 +64,7 @@ static void add_particle(const struct implicit *implicit, int64_t i, double volu
     }
 }
 
-/* The matrix of T-92 without inertia: of the stress at the present gradients, and of the springs.
- */
+/* The matrix of T-92 without inertia: of the stress at the present gradients and of springs. */
 static void add_stiffness(struct solid *solid, const struct particles *particles, double dt)
 {
     struct implicit *const implicit = solid->implicit;

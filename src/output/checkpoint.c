@@ -261,8 +261,7 @@ static void name_file(char name[NAME_TEXT], int64_t steps)
     snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
 }
 
-/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the
- * number. */
+/* Steps in the name of a checkpoint; -1: of other files, and other spellings of the number. */
 static int64_t steps_of(const struct dirent *entry)
 {
     char name[NAME_TEXT];
@@ -274,8 +273,7 @@ static int64_t steps_of(const struct dirent *entry)
     return strcmp(entry->d_name, name) == 0 ? steps : -1;
 }
 
-/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1.
- */
+/* Replaces *steps by the next smaller number of steps of the folder's checkpoints, or by -1. */
 static enum err next_file(const char *folder, int64_t *steps, struct diag *d)
 {
     const int64_t limit = *steps;

@@ -41,8 +41,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
 /* Writes the checksum of an image; checkpoint_store calls it. */
 void checkpoint_seal(struct image *m);
 
-/* Checks every length and the checksum; `name` names the image in messages. ERR_IO: it is damaged.
- */
+/* Checks all lengths and the checksum; `name` is for messages. ERR_IO: it is damaged. */
 enum err checkpoint_check(const struct image *m, const char *name, struct diag *d) SPHFSI_CHECKED;
 
 /* Reads a file and checks it. */
@@ -79,8 +78,7 @@ bool checkpoint_block(const struct image *m, size_t *at, struct block *b);
 enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Whether each particle is in the cell that it was loaded with, or near it. ERR_INPUT: the grid is
- * another one. */
+/* Whether each particle is in or near the cell that it was loaded with. ERR_INPUT: another grid. */
 enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Loads a valid image into a simulation of the same case from simulation_create, and recomputes

@@ -74,10 +74,9 @@ static double wetness(const struct simulation *sim, double x, double y)
     return at.fill / max2(1 - at.occupied, 0.05);
 }
 
-/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above
- * has the volume of that within reach. Unlike the height of half wetness it does not move when
- * rows near the surface do, while their mean height stays. `y` is the last wet height below
- * the surface. */
+/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above has
+ * the volume of that within reach. Unlike the height of half wetness it does not move when rows
+ * near the surface do, while their mean height stays. `y` is the last wet height. */
 static double dividing_surface(const struct simulation *sim, double x, double y, double step)
 {
     const int reach = (int)(KERNEL_REACH * sim->fluid.k.h / step);

@@ -13,8 +13,7 @@ static double offset(const struct probe *probe, const struct particles *particle
 }
 
 /* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of
- * the plane fitted to the particles. Particles on one line determine no plane: then the weighted
- * mean. */
+ * the plane fitted to the particles. Particles on one line have the weighted mean. */
 static void find_weights(struct probe *probe, const struct particles *particles, double reach)
 {
     double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, x, y;
@@ -160,8 +159,7 @@ bool probe_column(const struct scene_probe *sp, int column, char *name, size_t s
     return length > 0;
 }
 
-/* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`.
- */
+/* Defines a file: of all probes without an interval (only = -1), or of probe `only`. */
 static enum err create_file(struct probes *probes, const struct scene *scene, int only,
                             struct arena *a, struct diag *d)
 {

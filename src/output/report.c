@@ -64,8 +64,7 @@ static void write_section(struct json *j, enum section_id id, const void *sectio
             write_value(j, &param_table[k], (const char *)section + param_table[k].offset);
 }
 
-/* Keys of the top of the case first; then sections by word, and named ones by name below their
- * word. */
+/* Keys of the top of the case first; then sections by word, named ones by name below it. */
 void report_parameters(struct json *j, const struct scene *scene)
 {
     json_open(j, "parameters", '{');
@@ -224,8 +223,7 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
     json_integer(j, "memory_bytes", (int64_t)sim->arena.bytes);
 }
 
-/* Mass, momentum and energy that open boundaries have brought in, less what has left through
- * them. */
+/* Mass, momentum and energy that open boundaries have brought in, less what has left there. */
 static void write_open(struct json *j, const struct simulation *sim)
 {
     const struct open *const o = &sim->open;

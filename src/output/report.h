@@ -44,15 +44,13 @@ struct references {
 };
 
 /* Reads the files of the scene's references, and finds the column of each in the headers of the n
- * files of probes. ERR_INPUT: a file is missing or malformed, or no such column exists. The arena
- * owns the memory. */
+ * files of probes. ERR_INPUT: a file is missing or malformed, or no such column exists. */
 enum err references_open(struct references *r, const struct scene *scene, int n,
                          const struct probe_file *files, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
 
 /* Compares the file of probes that has its column with a reference. One with several rows is
- * compared at its times, the probe being interpolated linearly; a constant or a formula at the
- * times of the probe. */
+ * compared at its times, the probe being linear between its own; others at those. */
 enum err reference_score(struct reference *r, const char *probes_csv, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -43,8 +43,7 @@ static void read_state(const struct row_files *r, struct rows *f, struct simulat
         probes_sample(r->probes, sim, f->file, !whole, f->now, f->now_rate);
 }
 
-/* T-76a: a column between both states, by the cubic of Hermite where its rate is known, else by a
- * straight line. */
+/* T-76a: a column between both states, by Hermite's cubic where its rate is known, else linear. */
 static double between(const struct rows *f, int c, double time)
 {
     const double turn = 2 * PI, from = f->before[c], dt = f->now[0] - f->before[0];
@@ -62,8 +61,7 @@ static double between(const struct rows *f, int c, double time)
 
 /* --- means --- */
 
-/* T-76: adds the part of the last step, between both readings, that the mean of the next row
- * covers. */
+/* T-76: adds the part of the step between both readings that the next row's mean covers. */
 static void add_to_mean(const struct rows *f, const struct probe *probe)
 {
     struct probe_mean *const m = probe->mean;

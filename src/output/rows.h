@@ -77,8 +77,7 @@ struct row_files {
 };
 
 /* Lists the files, or without `ledger` only what the means of probes need. What a restart needs of
- * them becomes the simulation's `carried`. Rows of files that are not started are formatted only.
- */
+ * them becomes the simulation's `carried`. Rows of other files are only formatted. */
 enum err rows_create(struct row_files *r, struct probes *p, struct simulation *sim, bool ledger,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 

@@ -92,8 +92,7 @@ static bool sync_file(const char *path)
 }
 
 /* Swaps the names of both files. The spare is synced before and the folder after the swap, so that
- * a power failure leaves a complete file. On a file system without hard links the old file is
- * deleted. */
+ * a power failure leaves a complete file. Without hard links the old file is deleted. */
 static enum err swap_with_spare(const struct snapshots *w, struct diag *d)
 {
     char old[PATH_BYTES];

@@ -6,8 +6,7 @@
 #include "output/snapshot_file.h"
 
 /* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the
- * spare file, then the two swap names. The spare is one snapshot older and is brought up to date
- * first. */
+ * spare file, then the two swap names. The spare, one snapshot older, is completed first. */
 struct snapshots {
     char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;

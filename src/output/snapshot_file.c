@@ -9,8 +9,7 @@ enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
 enum number_type { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
 
-/* The datasets. In memory their values are double (floating types) or int64; HDF5
- * converts. */
+/* The datasets. In memory their values are double or int64; HDF5 converts. */
 static const struct column {
     const char *name;
     enum growth growth;
@@ -96,8 +95,7 @@ static int64_t integer_value(enum data what, const struct simulation *sim, enum 
     }
 }
 
-/* The values of one column, double or int64_t; rows are the particles of all kinds, in the order of
- * the kinds. */
+/* The values of one column, double or int64_t; rows are the particles, kind by kind. */
 static void values_of(const struct source *source, enum data what, int column, int64_t n,
                       void *values)
 {
@@ -131,9 +129,8 @@ static void values_of(const struct source *source, enum data what, int column, i
 /* --- one dataset --- */
 
 /* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds
- * POINT_CHUNK_MOST. Chunks that two snapshots share would be compressed twice, so a number of parts
- * that divides the rows is sought.
- */
+ * POINT_CHUNK_MOST. Chunks that two snapshots share would be compressed twice: parts should divide
+ * the rows. */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;
@@ -340,8 +337,7 @@ bool snapshot_file_append(hid_t file, const struct snapshot_layout *layout,
     of.points_before = before[D_POINTS];
     for (int k = 0; k < KIND_COUNT; k++) of.n += sim->particles[k].n;
     /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits
-     * below carry no information, and would take as long to compress as all other fields together.
-     */
+     * below carry no information, and take as long to compress as all other fields. */
     of.unit = layout->doubles ? 0 : ldexp(1, ilogb(sim->scene->top.dp) - 20);
     void *const values = malloc((size_t)(of.n + 1) * sizeof(double));
     const hid_t how = H5Pcreate(H5P_DATASET_XFER);

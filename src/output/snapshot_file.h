@@ -15,8 +15,7 @@ struct snapshot_layout {
 struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
 /* Creates the groups and empty datasets of a new file for snapshots of about n points. Chunks and
- * filters are those of the file `like`, so that its chunks can be copied; negative: no such file.
- */
+ * filters are those of the file `like`, so that its chunks can be copied; negative: none. */
 bool snapshot_file_create(hid_t file, const struct scene *scene, const char *version, int64_t n,
                           hid_t like);
 

@@ -26,8 +26,7 @@ SPHFSI_INLINE uint32_t morton_key(uint32_t cx, uint32_t cy)
 /* --- cells --- */
 
 /* Most particles of one kind in a cell. Some twenty are normal, some 370 of a solid at a quarter of
- * the fluid's spacing. If there are more, particles have collapsed onto each other, and a guard
- * stops the run. */
+ * the fluid's spacing. With more, particles have collapsed, and a guard stops the run. */
 enum { CELL_CAPACITY = 480 };
 
 /* Particles that sweeps process together. */
@@ -67,8 +66,7 @@ struct cells {
 };
 
 /* Creates the grid over [lower, upper) for interactions within `reach` of particles `dp` apart, and
- * allocates lists for the capacities of the kinds. `skin` is reduced where cells are too narrow for
- * it. */
+ * allocates lists for the capacities of the kinds. `skin` is less where cells are narrow. */
 enum err cells_create(struct cells *cells, struct arena *a, const double lower[2],
                       const double upper[2], double dp, double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;

@@ -97,8 +97,7 @@ static void order_cell(uint64_t *pair, int n, const struct particles *particles)
     for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | particle[point[k]];
 }
 
-/* For particles outside the grid, and for a cell above its capacity, at which a guard stops the
- * run. */
+/* For particles outside the grid, and cells above their capacity: a guard then stops the run. */
 static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
 {
     for (int64_t k = 1; k < n; k++) {
@@ -117,8 +116,7 @@ static int64_t end_of_cell(const uint64_t *pair, int64_t n, int64_t k)
     return end;
 }
 
-/* Each thread orders whole cells. Where its range starts is found first, since ordering changes
- * `pair`. */
+/* Each thread orders whole cells. Their start is found first, since ordering changes `pair`. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *particles, int threads)
 {
     int64_t first[CELLS_SORT_THREADS + 1] = {0};

@@ -68,8 +68,7 @@ struct cluster_list {
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The cells that hold clusters, of 3 x 3: the code of the first cluster of each, and their number.
- */
+/* The cells with clusters, of 3 x 3: the code of the first cluster of each, and their number. */
 struct cells_around {
     uint32_t code[10];
     uint8_t count[10], n;

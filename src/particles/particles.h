@@ -37,8 +37,7 @@ enum keep { KEEP_STATE, KEEP_DERIVED };
 enum kind { KIND_FLUID, KIND_WALL, KIND_SOLID, KIND_COUNT };
 extern const char *const kind_names[KIND_COUNT];
 
-/* The particles of one kind. A pointer is NULL while its group is off. The arena owns the
- * memory. */
+/* The particles of a kind. A pointer is NULL while its group is off. The arena owns all. */
 struct particles {
     int64_t n;        /* particles now */
     int64_t capacity; /* items of each array; vector loads may cross its end (ARENA_MARGIN) */

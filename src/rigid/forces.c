@@ -300,8 +300,7 @@ static struct spring_end end_at(const struct rigid *rigid, const struct rigid_sp
     return e;
 }
 
-/* A spring now: its ends, the direction from one to the other, its elongation and that one's rate.
- */
+/* A spring now: its ends, the direction between them, its elongation and the rate of that. */
 struct spring_now {
     struct spring_end end[2];
     double along[2], longer, rate, tension;

@@ -23,8 +23,7 @@ void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[
  * and of the places. */
 enum rigid_stage { RIGID_IMPACT, RIGID_STEP, RIGID_PUSH, RIGID_STAGES };
 
-/* T-96 of a body: what acts on it for the step, the mass of fluid that resists, and the solution.
- */
+/* T-96 of a body: what acts on it in the step, the mass of fluid that resists, the solution. */
 struct rigid_equations {
     double impulse[3], fluid[3][3];
     double from_fluid[3];             /* the fluid's part of the impulse */

@@ -27,8 +27,7 @@ struct rigid_body {
     const struct hinge_point *fixed; /* a hinge in place or on a wall; NULL: none */
     int hinge_motion;                /* of this wall; -1: in place */
     double mean[3];                  /* velocity over the last step, m/s and 1/s */
-    /* Contact with solids and beams: the force now, its impulse, and what it moves in the coming
-     * step. */
+    /* Contact with solids and beams: force now, its impulse, what it moves in the next step. */
     double push[3], pushed[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
     double received, driven, passed;
@@ -82,8 +81,7 @@ double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only, i
  * bodies, as stiff as they are now or after a step of dt: at least the largest of these bodies. */
 double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping);
 
-/* Gives the scene the motion of the bodies at a time, after a step of dt: motion_at continues it.
- */
+/* Gives the scene the motion of bodies at a time, after a step of dt: motion_at continues it. */
 void rigid_publish(const struct rigid *rigid, double time, double dt);
 
 /* Where a body with a displacement and an angle is, without velocities. */

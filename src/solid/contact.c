@@ -34,8 +34,7 @@ static void relative_velocity(const struct contact_closest *closest, double v[2]
 /* --- forces of a pair --- */
 
 /* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach
- * `reach`, with the relative velocity v. The dashpot may reduce the repulsion but not turn it
- * into attraction. */
+ * `reach`, with the relative velocity v. The dashpot does not make it attract. */
 static void point_force(const struct contact_constants *q, const struct contact_closest *closest,
                         const double offset[2], double reach, const double v[2], double f[2])
 {
@@ -202,8 +201,7 @@ static double moves_freely(const struct contact *contact, const struct particles
     return point->body < contact->n_solids ? particles->free[point->index] : 0;
 }
 
-/* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
- * step. */
+/* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its place after the step. */
 static void add_rows(struct contact *contact, const struct particles *particles,
                      const struct contact_pair *pair, const struct contact_closest *closest,
                      double left)

@@ -120,8 +120,7 @@ enum err contact_create(struct contact *contact, struct arena *a, const struct s
 bool contact_watch(struct contact *contact, const struct particles *particles, double time,
                    double longest, double span);
 
-/* The state has been replaced, and walls at rest may be elsewhere: discards all that is known of
- * it. */
+/* The state has been replaced, and walls at rest may be elsewhere: discards what is known. */
 void contact_forget(struct contact *contact, const struct particles *walls);
 
 /* Adds the accelerations of contact to sx, sy, with walls at their positions at `time`. Inside a
@@ -147,8 +146,7 @@ enum err contact_surface_create(struct contact *contact, struct arena *a,
 
 /* --- contact_pair.c: distance and law of a point and an edge (T-61, T-62) --- */
 
-/* A place on an edge: 0 to 1 from a to b, the vector from there to the point, and the reach
- * there. */
+/* A place on an edge: 0 to 1 from a to b, the vector from there to the point, the reach. */
 struct contact_closest {
     const struct contact_law *law;
     const struct contact_point *point, *a, *b;

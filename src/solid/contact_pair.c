@@ -63,8 +63,7 @@ static bool joined_by_clamp(const struct contact *contact, const struct contact_
 
 /* The distance at which a pair begins, if it is to keep that in place of its reach; else infinite.
  * 0: they do not interact. The material keeps points apart that were initially within each other's
- * kernel in one body. A clamp does so for its particles and the wall, a hinge for what begins
- * within its kernel. */
+ * kernel in one body. So does a clamp for the wall, a hinge for what begins in its kernel. */
 static double initial_distance(const struct contact *contact, const struct contact_point *point,
                                const struct contact_point *const end[2])
 {

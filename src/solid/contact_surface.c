@@ -44,8 +44,7 @@ static bool empty_circle(const struct around *at, double x, double y, int32_t ot
     return true;
 }
 
-/* Links of a particle to neighbours with higher numbers and a free side: edges between particles.
- */
+/* Links of a particle to neighbours with higher numbers and a free side: edges of particles. */
 static int64_t links_of(const struct around *at, struct contact_edge *link, int64_t n)
 {
     const struct cloud *const of = at->of;
@@ -66,8 +65,7 @@ static int64_t links_of(const struct around *at, struct contact_edge *link, int6
     return n;
 }
 
-/* A grid of the points without `skip`, NULL: of all, which visits those of a cell in ascending
- * order. */
+/* A grid of the points without `skip` (NULL: of all), which visits a cell in ascending order. */
 static enum err grid_of(struct point_grid *g, double side, int64_t n, double *x, double *y,
                         const double *skip, struct arena *temp, struct diag *d)
 {
@@ -244,8 +242,7 @@ static bool inside(const struct outline_search *n, double x, double y)
     return false;
 }
 
-/* Takes a place of a piece if it is nearer and on the outline of the union: just beyond it is
- * outside. */
+/* Takes a place of a piece if it is nearer and on the union's outline: just beyond is outside. */
 static void try_place(struct outline_search *n, double dx, double dy)
 {
     const double distance = elementary_hypot(dx, dy);
@@ -272,8 +269,7 @@ static void try_piece(struct outline_search *n, const struct outline *o)
     }
 }
 
-/* Distance to the outline less half a spacing. On a lattice that fits it is zero, but for
- * round-off. */
+/* Distance to the outline less half a spacing: zero on a lattice that fits, but for round-off. */
 static double inset_of(struct outline_search n, double dp)
 {
     n.distance = dp;

@@ -67,8 +67,7 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
     return l->spacing[row.high[1] - row.low[1] > row.high[0] - row.low[0]];
 }
 
-/* Each particle's part of the force, or the traction times the length of surface that it
- * represents. */
+/* Each particle's part of the force, or the traction times its length of surface. */
 static void set_forces(struct loads *v, const struct load_region *load,
                        const struct particles *particles, double time)
 {

@@ -36,8 +36,7 @@ SPHFSI_INLINE struct placed placed_at(const struct solid *solid, int64_t i)
     return at;
 }
 
-/* u_ab: the two parts are subtracted separately, since near neighbours have equal leading
- * digits. */
+/* u_ab: both parts are subtracted separately, since neighbours have equal leading digits. */
 SPHFSI_INLINE struct vvector2 displacement_between(const struct solid *solid,
                                                    const struct placed *a, int64_t j)
 {

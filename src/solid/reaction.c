@@ -5,8 +5,7 @@
 #include "solid/hinges.h"
 #include "solid/loads.h"
 
-/* All forces but those of clamps and hinges, as accelerations into sx, sy, with every particle
- * free. */
+/* All forces but those of clamps and hinges, as accelerations in sx, sy; all particles free. */
 static void forces_without_clamps(struct solid *solid, struct particles *particles, double time)
 {
     struct contact *const contact = solid->contact;

@@ -240,8 +240,7 @@ static void vary_gravity(const struct solid *solid, struct particles *particles,
     }
 }
 
-/* Whether prescribed motion may call a function of the program, which belongs to the calling
- * thread. */
+/* Whether a motion may call a function of the program, which belongs to the calling thread. */
 SPHFSI_INLINE bool calls_program(const struct solid *solid)
 {
     return solid->calls_out && (solid->contact || solid->loads || solid->hinges);

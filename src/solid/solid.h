@@ -178,8 +178,7 @@ enum err solid_stencil_create(struct solid *solid, struct arena *a,
                               const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). In the
- * variational form hourglass control adds to the stress; then also the viscous and the hourglass
- * force. */
+ * variational form hourglass control adds to the stress; then also the pair forces. */
 void solid_stress(struct solid *solid, struct particles *particles);
 
 /* Total acceleration (Eq. 21b) to sx, sy, from the results of solid_stress for the same

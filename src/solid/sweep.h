@@ -173,8 +173,7 @@ static struct slot_laws pair_laws(const struct solid_body *body)
                               .variational = body->variational};
 }
 
-/* Acceleration by the forces of pairs: the viscous force multiplied by J F^-T, and that of
- * hourglass control. */
+/* Acceleration by pairs: the viscous force multiplied by J F^-T, and that of hourglass control. */
 SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
                                                  const struct solid_receiver *a,
                                                  const struct solid_sums *s)

@@ -17,8 +17,7 @@ enum err initial_state(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 void evaluate_rates(struct simulation *sim, double time);
 
 /* Evaluates the state at the start of a step. Not repeated if output has just evaluated it. The
- * acoustic damper's density then follows, once a step (T-9b); an evaluation for output changes
- * nothing. */
+ * acoustic damper's density then follows, once a step (T-9b), not for output. */
 void evaluate_start(struct simulation *sim);
 
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
@@ -57,8 +56,7 @@ void advance_beams(struct simulation *sim, double time, double dt, double rates_
 /* A step with one evaluation at its start, in which the integrator updates the fluid. */
 void step_of_one_stage(struct simulation *sim, double t_limit);
 
-/* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
- * any kind. */
+/* Finds the extremes of the fluid's present state; and the speed of the fastest particle. */
 void update_extremes(struct simulation *sim);
 void find_speed(struct simulation *sim);
 
@@ -85,8 +83,7 @@ void forget_fluid(struct particles *particles);
  * neighbours. To be called after a step, while cells are valid. */
 void limit_isolated_tension(struct simulation *sim);
 
-/* Particles within the kernel's reach of a point, of the first `kinds` kinds: fluid, walls,
- * solids. */
+/* Particles within the kernel's reach of a point, of the first `kinds` kinds. */
 int particles_near(const struct simulation *sim, double x, double y, int kinds);
 
 /* --- solid_steps.c --- */

@@ -518,14 +518,12 @@ void energy_book_step(struct simulation *sim, double dt)
 #define GAIN_WARNING 0.01
 #define GAIN_COUNTS_NOW 0.1
 #define GAIN_LASTS 2.5e-3
-/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy
- * and is stable; four fifths of what it shows count as gain. An unstable run exceeds any such
- * fraction. */
+/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy and
+ * is stable; four fifths of what it shows count as gain. An unstable run exceeds any. */
 #define GAIN_LIMIT 0.9
 enum { TEXT = 320 };
 
-/* What may help. The work of dummies does not depend on the step: fluid that is resolved better
- * makes it less. */
+/* What may help. The work of dummies does not depend on the step: finer fluid makes it less. */
 static void write_remedy(const struct simulation *sim, enum energy_term term, char text[TEXT])
 {
     double half;

@@ -244,8 +244,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* No fluid would interact with walls at positions that are not numbers, and no message would say
- * so. */
+/* No fluid interacts with walls at places that are not numbers, and no other message says so. */
 static enum err check_motion(struct simulation *sim, struct diag *d)
 {
     for (int k = 0; k < sim->wall_motion.n; k++) {
@@ -271,8 +270,7 @@ static enum err check_motion(struct simulation *sim, struct diag *d)
 enum { VOIDS_INTERVAL = 256 };
 #define VOIDS_SHARE 0.01
 
-/* In a full channel fluid is missing only where its pressure has fallen below zero, which opens
- * voids. */
+/* In a full channel fluid is missing only where its pressure has fallen below zero: voids. */
 static void check_voids(struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
@@ -506,8 +504,7 @@ void guards_warn_of_leaving(struct simulation *sim, struct diag *d)
 /* --- fluid inside a wall or a solid: at the places of the body's own particles --- */
 
 /* Distance from a particle of a body, in spacings, below which a fluid particle is inside. Fluid at
- * rest is one spacing from the particles at the surface; under high pressure it comes as close as a
- * half. */
+ * rest is one spacing from the particles at the surface; under high pressure half of that. */
 #define TAKEN 0.35
 
 /* Whether a place is that close to a particle, in spacings of a solid's reference configuration:

@@ -4,9 +4,8 @@
 
 #include "time/state.h"
 
-/* Steps of the fluid between two checks of the solid's deformation, which need a pass of their
- * own. At a tenth of the speed of sound, neighbours approach by a third of their distance in
- * that time. */
+/* Steps of the fluid between two checks of the solid's deformation, which need a pass of their own.
+ * At 0.1 of the speed of sound neighbours approach by a third meanwhile. */
 enum { CHECK_INTERVAL = 16 };
 
 /* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
@@ -16,8 +15,7 @@ int64_t guards_count_entered(const struct simulation *sim, int64_t *first);
  * there are more than stray particles. */
 enum err guards_check_entered(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
- * cell. */
+/* Says that fluid has left the domain: the particles from `first` on, which are in no cell. */
 void guards_warn_of_loss(const struct simulation *sim, int64_t first, struct diag *d);
 /* After a sorting: of bodies of which no particle is in a cell. */
 void guards_warn_of_leaving(struct simulation *sim, struct diag *d);

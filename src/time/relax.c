@@ -91,8 +91,7 @@ static void test_for_rest(struct simulation *sim)
 }
 
 /* T-78: what has moved further than the size of the domain since the last peak, by its mean
- * velocity now and an even acceleration, meets nothing that could hold it; nor does fluid that has
- * left. */
+ * velocity now and an even acceleration, meets nothing; nor does fluid that has left. */
 static enum err check_held(const struct simulation *sim, const struct particles *particles,
                            int body, const struct scene_section_common *common, struct diag *d)
 {

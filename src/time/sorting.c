@@ -4,8 +4,7 @@
 #include "time/guards.h"
 #include "time/timestep.h"
 
-/* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
- * one. */
+/* Energy that gravity adds to fluid that passes from a periodic side to the opposite one. */
 static void add_crossings(struct simulation *sim)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -78,8 +77,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* For the fluid: the larger of its speeds before and after, half a step of its acceleration,
- * and its shift. */
+/* For the fluid: the larger of both speeds, half a step of its acceleration, and its shift. */
 void use_skin_left(struct simulation *sim, double speed2_before)
 {
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
@@ -132,8 +130,7 @@ void limit_isolated_tension(struct simulation *sim)
     const double lowest = max2(-1 / factor, -2.0 / 3 * sim->guard.dens_limit);
     if (!(sim->extremes.dens_low < lowest)) return;
     struct particles *const particles = &sim->particles[KIND_FLUID];
-    /* Particles within reach: a third of the number inside the fluid, fewer than a corner of
-     * it has. */
+    /* Particles within reach: a third of those inside the fluid, fewer than at a corner of it. */
     const double reach = KERNEL_REACH * sim->fluid.k.h / sim->scene->top.dp;
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < particles->n; i++) {

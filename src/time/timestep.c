@@ -3,15 +3,13 @@
 #include "time/timestep.h"
 #include "time/advance.h"
 
-/* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven
- * lattices. */
+/* T-33b: decay at a rate m is followed up to m dt = limit, less a tenth for uneven lattices. */
 static double bound_decay(const struct simulation *sim, double limit, double rate)
 {
     return 0.9 * limit * sim->fluid.k.h / (rate * sim->fluid.k.c0);
 }
 
-/* Without fluid the step is that of the bodies, which springs of a changing stiffness may shorten.
- */
+/* Without fluid the step is the bodies', which springs of a changing stiffness may shorten. */
 static double bound_solid(const struct simulation *sim)
 {
     int stiffest;
@@ -23,8 +21,7 @@ static double bound_solid(const struct simulation *sim)
     return step;
 }
 
-/* What bound k of time/bounds.def allows, from the fluid's extremes `now`, which are zero at rest.
- */
+/* What bound k of time/bounds.def allows by the fluid's extremes `now`, zero at rest. */
 static double bound_value(const struct simulation *sim, enum bound k,
                           const struct fluid_extremes *now)
 {
@@ -174,8 +171,7 @@ int timestep_substeps(struct simulation *sim, double dt)
     return (int)st->substeps_held;
 }
 
-/* Steps in the longest period of solids alone: by the midpoint rule it is longer by (2 pi/100)^2/12
- * = 0.03 %. */
+/* Steps in the longest period of solids alone: the midpoint rule adds (2 pi/100)^2/12 = 0.03 %. */
 enum { IMPLICIT_PARTS = 100 };
 
 void timestep_set_solid(struct simulation *sim)
