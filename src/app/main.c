@@ -321,8 +321,7 @@ static enum sphfsi_status carry_out(struct command *c)
     return SPHFSI_OK;
 }
 
-/* Whether all of the output has reached the standard output. The results of a run are in its files,
- * so what it lost is only said. */
+/* Whether all output has reached the standard output. A run only says what it lost. */
 static int output_is_out(int run)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return 1;

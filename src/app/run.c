@@ -133,8 +133,7 @@ static enum err write_due(struct run *r)
 
 /* --- time loop --- */
 
-/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark
- * follows. */
+/* Seconds since a mark, which follows when the clock of a virtual machine steps back. */
 static double since(double *mark)
 {
     const double now = wall_clock();
@@ -366,8 +365,7 @@ static enum err start_restart(struct run *r)
     return rows_resume(&r->rows, r->dir.path, time, &r->record.first, r->diag);
 }
 
-/* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in
- * a folder. */
+/* Reads the checkpoint: the given one, or the newest of the run; of a fork that of a folder. */
 static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
@@ -423,8 +421,7 @@ static enum err begin_run(struct run *r)
     const double time = simulation_time(r->sim);
     r->due[OUT_SNAPSHOT].interval = r->session.scene.output.snapshot_interval;
     r->due[OUT_CHECKPOINT].interval = r->session.scene.output.checkpoint_interval;
-    /* A run begins with a snapshot, and without a checkpoint: that state is the case, or the
-     * checkpoint of the fork. */
+    /* A run begins with a snapshot, without a checkpoint: its case or that of the fork is it. */
     if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
     due_pass(&r->due[OUT_CHECKPOINT], time);
     r->record.version = SPHFSI_VERSION;

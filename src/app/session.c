@@ -148,8 +148,7 @@ const char *session_name(const struct sphfsi_options *o, int *length)
     return name;
 }
 
-/* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes
- * the same rows as the whole one. */
+/* Default intervals depend on end_time of the case, not on --until: rows stay the same. */
 static void set_default_times(struct scene *scene, double until)
 {
     struct scene_output *out = &scene->output;
@@ -247,8 +246,7 @@ static enum err check_counts(const struct scene *scene, double step, struct diag
                    end / step, step, end, max_count, max_count * step);
 }
 
-/* Puts the name of the case before a message from code that does not know it, such as that of the
- * cells of the domain. */
+/* Puts the name of the case before a message from code that does not know it. */
 static void name_case(const struct scene *scene, struct diag *d)
 {
     const struct scene_place at = scene_place(scene, LINE_NONE);

@@ -60,8 +60,7 @@ enum err session_json(const struct sphfsi_options *o, json_writer *write, void *
 typedef enum err case_action(struct session *session, const struct sphfsi_options *o,
                              struct diag *d);
 
-/* A whole call of the public header that does something with a case: with its scene, or with the
- * simulation at time zero. */
+/* A whole call of the public header with the scene of a case, or the simulation at time zero. */
 enum sphfsi_status call_of_case(const char *name, const struct sphfsi_options *given,
                                 bool simulation, case_action *act);
 

@@ -16,9 +16,8 @@ enum { BLOCK_HEADER = ARENA_ALIGN };
 _Static_assert(sizeof(struct arena_block) <= BLOCK_HEADER && ARENA_MARGIN % ARENA_ALIGN == 0,
                "arrays are aligned");
 
-/* malloc starts large arrays at the same offset in a page. Loops over many arrays would then use
- * the same sets of the first-level cache and evict each other. Each array starts STAGGER_STEP
- * bytes later instead. */
+/* malloc starts large arrays at the same offset in a page. Loops over many arrays would then evict
+ * each other from the first-level cache. Each array starts STAGGER_STEP bytes later instead. */
 enum { STAGGER_STEP = 3 * ARENA_ALIGN, STAGGER_RANGE = 4096 };
 
 enum { LARGE_PAGE = 1 << 21 };

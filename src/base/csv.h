@@ -11,8 +11,7 @@ const char *csv_next_line(const char *at);
 enum { NUMBER_TEXT = 32 };
 int number_text(char text[NUMBER_TEXT], double value);
 
-/* Field k of the line, without the quotes around it; NULL: there are fewer. A comma in quotes does
- * not end a field. */
+/* Field k of a line, without its quotes; NULL: there are fewer. A comma in quotes ends none. */
 const char *csv_field(const char *line, int k, size_t *length);
 
 /* A table of numbers with a comma, a semicolon or blanks between them. What follows a # is a

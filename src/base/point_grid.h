@@ -12,8 +12,7 @@ struct point_grid {
     int32_t *head, *next; /* index + 1; 0: none */
 };
 
-/* An empty grid for n points whose positions belong to the caller. Set `side` before points are
- * inserted. */
+/* An empty grid for n points, whose positions the caller has; `side` is set before insertions. */
 enum err point_grid_create(struct point_grid *g, double side, int64_t n, double *x, double *y,
                            struct arena *a, struct diag *d) SPHFSI_CHECKED;
 void point_grid_clear(struct point_grid *g);
@@ -36,8 +35,7 @@ SPHFSI_INLINE void point_grid_insert(struct point_grid *g, int64_t k)
 }
 
 /* The points nearer to a place than `reach`, each once: for (struct point_visit v =
- * point_grid_visit(g, x, y, reach); point_grid_next(g, &v);) ... v.k ... Cells are visited row by
- * row. */
+ * point_grid_visit(g, x, y, reach); point_grid_next(g, &v);) ... v.k ... Row by row. */
 struct point_visit {
     double x, y, reach;
     int64_t i0, i1, j1, i, j; /* cells: bounds, and the present one */

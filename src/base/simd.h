@@ -156,8 +156,7 @@ SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #elif defined SIMD_WASM
-/* relaxed_madd rounds once or twice, as the machine does: a program tests that before it relies
- * on it (web/exports.c). */
+/* relaxed_madd rounds once or twice, as the machine does: test that before (web/exports.c). */
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
     return (vfloat)wasm_f32x4_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);

@@ -38,8 +38,7 @@ void beam_force(const struct beam_element *e, const struct beam_start *start,
                 const double *const d[2], const double *const w[2], double dt, double force[2][3],
                 double matrix[6][6]);
 
-/* What a run carries from step to step, for each node: x, y and angle each. Doubles only: saved as
- * such. */
+/* What a run carries from step to step for a node: x, y, angle. Only doubles: saved as such. */
 struct beam_state {
     double x[3];       /* displacement, m, and counter-clockwise rotation, rad */
     double v[3];       /* velocity, m/s and 1/s */
@@ -214,8 +213,7 @@ bool beams_correct_pairs(struct beams *beams);
 /* After a part of the step: the work of walls that push, and the impulses on rigid bodies. */
 void beams_finish_pairs(struct beams *beams, double dt);
 
-/* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. Solids and
- * beams have no contact. */
+/* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. */
 int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,
                          int *beam);
 
@@ -300,8 +298,7 @@ void beam_row_kick(const struct beams *beams, const struct beam_row *row, double
  * derivative to the matrix. Raises `rounding` to the largest stiffness times a length, N/m. */
 void beams_add_springs(struct beams *beams, double dt, double *rounding);
 
-/* Adds half of their stiffnesses to the matrix, as beams and springs are at the start; lines that
- * only pull as if they were taut. */
+/* Adds half of their stiffnesses at the start to the matrix; lines that only pull count as taut. */
 void beams_stiffen(struct beams *beams);
 
 /* Sets what the longest step takes into account of a spring: its stiffness at the start, or the
@@ -330,6 +327,5 @@ double beams_place(struct beams *beams, double since);
 /* T-105: the fluid's force on the nodes and its resistance, for a step. */
 void beams_find_fluid(struct beams *beams, const struct beam_times *times);
 
-/* After the step: the impulse and pressure that the fluid has still to receive, the motion that it
- * uses, and its work. */
+/* After the step: what the fluid has still to receive, the motion that it uses, and the work. */
 void beams_return_impulse(struct beams *beams, const struct beam_times *times);

@@ -8,8 +8,7 @@
 /* A distance that counts as kept, over the particle spacing. */
 #define KEPT 1e-9
 
-/* A piece of the outline of a wall or rigid body at the start: a segment, or a circle if `radius`
- * is above 0. */
+/* A piece of a wall's or rigid body's outline at the start: a segment; a circle with a `radius`. */
 struct beam_piece {
     int wall;
     double from[2], to[2], radius;

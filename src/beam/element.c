@@ -91,8 +91,7 @@ static void find_matrix(const struct beam_element *e, const struct middle *m, co
         }
 }
 
-/* T-104d: with this part of the stiffness motions that the step does not resolve decay fastest, to
- * -1/3 of themselves in a step. */
+/* T-104d: with this share of the stiffness, unresolved motions decay fastest, to -1/3 a step. */
 #define FADES (1.0 / 16)
 
 void beam_force(const struct beam_element *e, const struct beam_start *start,

@@ -110,8 +110,7 @@ void beams_return_joints(struct beams *beams, double dt)
 
 /* --- a part of the step --- */
 
-/* T-107c: impulses by which nodes have the velocities of their bodies. Returns the largest change
- * of one. */
+/* T-107c: impulses that give nodes the velocities of their bodies. Returns the largest change. */
 static double meet(struct beams *beams)
 {
     double largest = 0;
@@ -187,8 +186,7 @@ static void close_open(const struct beams *beams, double *vector)
     const struct beam_joints *const joints = beams->joints;
     const int n = joints->n;
     memcpy(joints->factors, joints->yields, (size_t)(n * n) * sizeof *joints->factors);
-    /* Not positive far from a solution: more corrections follow while joints are open
-     * (beams_stay_joined). */
+    /* Not positive far from a solution: more corrections follow while joints are open. */
     (void)cholesky_solve(joints->factors, n, n, 0, joints->open);
     for (int k = 0; k < n; k++)
         for (int64_t r = 0; r < beams->size; r++)

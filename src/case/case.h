@@ -122,8 +122,7 @@ enum err case_number(struct reader *r, struct slice text, const char *unit, doub
     SPHFSI_CHECKED;
 enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit) SPHFSI_CHECKED;
 
-/* case/values.c: an entry's text to its value in a section; case/shapes.c: adds a shape or a hinge;
- * words by enum shape_kind. */
+/* case/values.c: an entry's text to its value; case/shapes.c: adds a shape or a hinge; words. */
 enum err case_value(struct reader *r, const struct param *param, void *section) SPHFSI_CHECKED;
 enum err case_shape(struct reader *r, struct shape_list *list) SPHFSI_CHECKED;
 enum err case_hinge(struct reader *r, struct hinge_list *list) SPHFSI_CHECKED;
@@ -146,8 +145,7 @@ int case_given_count(const struct scene *scene, enum section_id id);
 enum err case_check_names(struct reader *r) SPHFSI_CHECKED;
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 enum err case_check_rigid(struct reader *r, const void *section) SPHFSI_CHECKED;
-/* Whether one of the first walls, `held` itself left out, has the name; if not, `near` has the
- * nearest of theirs. */
+/* Whether a first wall other than `held` has the name; else `near` has the nearest of theirs. */
 bool case_may_hold(const struct scene *scene, const struct scene_section_common *held, int walls,
                    const char *name, struct nearest *near);
 /* The thin line of a beam's wall: its points are the beam's nodes (case/beam.c). */
@@ -160,7 +158,6 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
  * diag of `csv`; the caller closes it, also after a failure. */
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name) SPHFSI_CHECKED;
-/* The functions of all [table] sections; problems are stored. Then a function by its name: `table`
- * of struct expr_names. */
+/* The functions of all [table] sections. Then one by its name: `table` of struct expr_names. */
 enum err case_load_functions(struct reader *r) SPHFSI_CHECKED;
 const struct expr_table *case_function(void *context, const char *name, char why[EXPR_WHY]);

@@ -84,8 +84,7 @@ static double sound_speed(const struct scene *scene, const struct scene_fluid *f
     return f->sound_speed > 0 ? f->sound_speed : scene->numerics.sound_factor * largest_speed(f);
 }
 
-/* This section and another that must have the same value of a key; sound_speed: that of Eq. 3 if it
- * is not given. */
+/* Two sections that must have one value of a key; sound_speed: of Eq. 3 if it is not given. */
 static enum err same_value(struct reader *r, const void *its, const char *key, const char *all)
 {
     const struct scene_section_common *const common = its;

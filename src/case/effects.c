@@ -20,8 +20,7 @@ static bool called_by(struct effect_caller *caller, enum section_id section, con
     return true;
 }
 
-/* Whether a section has a value above 0, a choice other than its first, or a text; with `choice` at
- * least 0: that choice. */
+/* Whether a section has a value above 0, a text, or a choice: `choice`, below 0: not the first. */
 static bool has_set(const struct scene *scene, struct effect_caller *caller, enum section_id id,
                     const char *key, int choice)
 {
@@ -157,8 +156,7 @@ const struct phase_info phase_table[PHASE_COUNT] = {
 
 /* --- checks --- */
 
-/* What goes together and what does not: the one calls for the other, which the case must name, or
- * not both. */
+/* What goes together and what does not: the one needs the other in the case, or excludes it. */
 static const struct rule {
     enum effect effect;
     enum { NEEDS, EXCLUDES } verb;

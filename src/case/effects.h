@@ -17,8 +17,7 @@ _Static_assert(EFFECT_COUNT <= 64, "a set of effects has 64 bits");
 #define EFFECT_BIT(effect) ((effect_set)1 << (effect))
 
 /* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP excludes effects from the program: their bits become 0,
- * and the compiler removes their code. Used to prove that an effect costs nothing while it is off
- * (tests/agree/test_absence.py). */
+ * and the compiler removes their code. For tests/agree/test_absence.py. */
 enum {
 #define EFFECT(name, ...) OUT_##name = (uint64_t)1 << EFFECT_##name,
 #include "case/effects.def"

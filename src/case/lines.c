@@ -188,8 +188,7 @@ static const char *name_of(const struct case_section *s)
     return *s->name ? s->name : section_table[s->id].word;
 }
 
-/* A key of --set that no section meant by the prefix has: what it may be, or where it belongs.
- * `id`: of one of these sections. */
+/* A key of --set that no section of this prefix has: what it may be, or where it belongs. */
 static enum err unknown_in_set(struct reader *r, const char *prefix, int id)
 {
     const struct entry *const e = r->entry;

@@ -75,8 +75,7 @@ enum {
 };
 extern const struct param param_table[PARAM_COUNT];
 
-/* Number of sections of a kind in the scene; the index-th struct of them, which begins with its
- * struct scene_section_common. */
+/* Number of sections of a kind; the index-th of them, which begins with scene_section_common. */
 int section_count(const struct scene *scene, enum section_id id);
 void *section_at(const struct scene *scene, enum section_id id, int index);
 /* The index of a named section, or -1. */

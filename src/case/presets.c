@@ -23,8 +23,7 @@ enum {
     WET = FLUID | STREAM | COUPLED
 };
 
-/* A value that replaces a default. A key that the case gives itself wins; where both set a key,
- * `accuracy` does. */
+/* A value in place of a default. A key of the case wins; where both set one, `accuracy` does. */
 static const struct preset {
     bool of_scheme; /* chosen by `scheme`, not by `accuracy` */
     unsigned kinds; /* of scenes: bits by enum scene_kind */

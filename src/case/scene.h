@@ -5,8 +5,7 @@
 
 #include "expr/expr.h"
 
-/* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0,
- * and |rho/rho0 - 1|. */
+/* Limits of weak compressibility, of which it is warned: speed over c0, and |rho/rho0 - 1|. */
 #define SPEED_WARNING 0.3
 #define DENS_WARNING 0.1
 
@@ -190,8 +189,7 @@ struct test_switches {
     bool never_skip;      /* visit dry walls, place and sort walls at rest */
 };
 
-/* A scene: every section, every value in effect. Unnamed sections are single structs, named ones
- * arrays. */
+/* A scene: all sections and values in effect. Unnamed sections are structs, named ones arrays. */
 struct scene {
     char path[4096];    /* of the case file */
     struct arena arena; /* owns everything below */
@@ -281,12 +279,10 @@ struct scene_open_range scene_open_range(const struct scene *scene, const struct
 /* The flow that a given velocity brings into the fluid at a time, per depth, m^2/s. */
 double scene_open_flow(const struct scene_open *o, double time);
 
-/* Writes the effective case, with all values and defaults in SI units; parsing it again gives an
- * equal scene. */
+/* Writes the effective case, all values in SI units; reading it again gives an equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Energy and momentum of a rigid body or beam, per depth; `undelivered`: the work that the fluid
- * has still to receive. */
+/* Energy and momentum of a rigid body or beam; `undelivered`: work that the fluid still gets. */
 struct body_energy {
     double kinetic, potential, elastic, momentum[2], mass, undelivered;
 };
@@ -298,8 +294,7 @@ double spring_slope(const struct scene_spring *spring, double e);
 double spring_mean(const struct scene_spring *spring, double from, double to, double taut);
 /* Whether force and slope are finite numbers. */
 bool spring_is_finite(const struct scene_spring *spring, double e);
-/* Adds its elastic energy. That of a force law is a potential: its zero and sign are arbitrary, as
- * those of weight are. */
+/* Adds its elastic energy. That of a force law is a potential, of arbitrary zero and sign. */
 void spring_add_energy(const struct scene_spring *spring, double e, struct body_energy *sum);
 
 /* The motion of a wall; -1: none, also of wall -1. */
@@ -351,8 +346,7 @@ int scene_beam_parts(const struct scene *scene, const struct scene_beam *beam, c
 double scene_solid_dp(const struct scene *scene, int solid);
 /* Smoothing length of a solid, m. */
 double scene_solid_h(const struct scene *scene, int solid);
-/* Gives solids that are bonded to each other, directly or through others, the number of the first
- * of them. */
+/* Gives solids that are bonded, directly or through others, the number of the first of them. */
 void scene_bonds(const struct scene *scene, int bond[SCENE_MAX_SECTIONS]);
 /* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *scene, int solid);
@@ -363,12 +357,10 @@ bool scene_snapshot_has(const struct scene *scene, const char *field);
 /* Target of a probe; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 
-/* The contact section for two bodies, walls after solids, or for a body with itself; NULL: they do
- * not touch. */
+/* The contact section of two bodies, walls after solids; NULL: they do not touch. */
 const struct scene_contact *scene_contact_of(const struct scene *scene, int a, int b);
 
-/* The gap that it keeps, m: unless given, one layer of fluid in a scene with fluid and the standard
- * scheme. */
+/* The gap that it keeps, m: by default one layer of fluid with fluid and the standard scheme. */
 double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 
 /* Name k of a list with commas, or word k of one with blanks or commas; false: there are fewer. */
@@ -377,8 +369,7 @@ bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
-/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. The line of a key:
- * scene_line in case/params.h. */
+/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. See scene_line, too. */
 enum { LINE_NONE = -1 };
 struct scene_place {
     char text[300];

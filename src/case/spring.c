@@ -36,8 +36,7 @@ bool spring_is_finite(const struct scene_spring *spring, double e)
     return isfinite(spring_force(spring, e)) && isfinite(spring_slope(spring, e));
 }
 
-/* Finite at elongations up to its length and that of the start, and no push of a line that only
- * pulls. */
+/* Finite at elongations up to its length and that of the start; no push if it only pulls. */
 static enum err check_force(struct reader *r, const struct scene_spring *spring)
 {
     enum { PARTS = 1000 };

@@ -3,8 +3,7 @@
  * themselves, in a body, or with a free point on its face. */
 #include "check/check.h"
 
-/* Lengths over dp: along a line and beside it, that count as nothing; between places that are
- * looked at. */
+/* Lengths over dp: along and beside a line, that count as nothing; between places tested. */
 static const double ahead = 1e-3, beside = 1e-5, between = 0.02;
 
 /* A segment of a beam, or of a wall that is a thin line (beam: NULL). */
@@ -23,8 +22,7 @@ static bool is_near(const double a[2], const double b[2], double within)
     return elementary_hypot(a[0] - b[0], a[1] - b[1]) <= within;
 }
 
-/* Whether a clamp or hinge of a beam is within an element of a place, on another beam (NULL: on
- * anything). */
+/* Whether a clamp or hinge of a beam on another (NULL: any body) is near a place. */
 static bool is_held(const struct check *check, const struct scene_beam *beam, const double at[2],
                     const struct scene_beam *other)
 {

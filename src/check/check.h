@@ -10,8 +10,7 @@
 /* Warns of a scene that has been sampled. Sets its off_lattice, full and given_speed. */
 enum err check_scene(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
-/* Warns of steps that are unstable, or much shorter than they need be. Bounds of the step are known
- * after a step only. */
+/* Warns of steps that are unstable or much too short: to be called after a step. */
 void check_simulation(const struct simulation *sim, struct diag *d);
 
 /* --- within this folder --- */

@@ -288,8 +288,7 @@ struct gaps {
     bool *warned; /* [n][n][2]: by a pair of regions, of an open gap, of a closed one */
 };
 
-/* How far from a place, in dp and up to a limit, the next wall or solid is in a direction; and its
- * region, or -1. */
+/* How far from a place the next wall or solid is, in dp up to a limit; its region, or -1. */
 static double free_path(const struct check *check, const double at[2], const double toward[2],
                         double limit, int *region)
 {

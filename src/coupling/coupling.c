@@ -151,8 +151,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double rate
  * Measured; results are as good from 1.5 to 2.75 (docs/theory/substeps.md, Sec. 7.4). */
 #define ADDED_MASS 2
 
-/* T-35d: the fluid's density over that of a body, which has less mass where it is thinner than the
- * layers of fluid on both sides. */
+/* T-35d: density of fluid over that of a body, which has less mass where it is thin. */
 static double added_mass(const struct coupling *coupling, const struct solid_body *body)
 {
     const double layers = 2 * coupling->scene->top.dp;

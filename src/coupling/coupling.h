@@ -82,8 +82,7 @@ SPHFSI_INLINE double motion_weight(const struct coupling *coupling, double dt)
     return acceleration_weight(averaging_time(coupling), acceleration_age(coupling), dt);
 }
 
-/* Single rate: position and velocity of the structure; a share `weight` of the present acceleration
- * enters the mean. */
+/* Single rate: position and velocity of the structure; `weight` of the acceleration in the mean. */
 void motion_at_single_rate(struct coupling *coupling, double weight);
 
 /* --- impulse.c: impedance of the fluid in sub-steps, and the impulse (T-35a to T-35e) --- */
@@ -110,6 +109,5 @@ void impulse_clear(struct particles *particles, int64_t i);
 /* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
 double coupling_added_mass_step(const struct coupling *coupling, int *lightest);
 
-/* T-35g: largest step with the viscous drag at the corners of structures that fluid sticks to,
- * s; INFINITY without any. */
+/* T-35g: largest step with viscous drag at corners that fluid sticks to, s; INFINITY without. */
 double coupling_drag_step(const struct coupling *coupling);

@@ -20,8 +20,7 @@ SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS],
     }
 }
 
-/* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
- * the mirrored velocity. */
+/* Minus the laminar force that sum_dummies adds to the fluid; s has the mirrored velocity. */
 SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours *neighbours,
                               const struct receiver *s, const double *volume,
                               const struct vector_constants *k, double *fx, double *fy)

@@ -66,8 +66,7 @@ void impedance_kick(const struct particles *particles, int64_t first, int64_t en
     }
 }
 
-/* Verlet's two solutions receive the pressure in equal parts: the impulses of a fast oscillation
- * would drive them apart. */
+/* Both solutions of Verlet receive equal parts: a fast oscillation would drive them apart. */
 static void add_pressure(struct particles *particles, int64_t i, double pressure)
 {
     if (!particles->interface_pressure_next) {

@@ -86,8 +86,7 @@ double expr_of(const struct expr *e, double x);
 /* Value of an expression in x, y and t. */
 double expr_at_time(const struct expr *e, double x, double y, double t);
 
-/* The value of an expression in t or e alone with its exact first two derivatives; at a kink those
- * of the side after it. */
+/* The value of an expression in t or e alone with two derivatives; at a kink those after it. */
 struct expr_jet {
     double value, d1, d2;
 };
@@ -108,8 +107,7 @@ bool expr_varies(const struct expr *e);
 /* A copy with operations of its own. */
 enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
-/* What is left of e at a time, into a copy of it: parts without x and y become numbers, by the same
- * operations. */
+/* What is left of e at a time, in a copy: parts without x and y become numbers. */
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
 
 /* The last row of the table of t alone in it that ends first and whose value still changes there;
@@ -149,8 +147,7 @@ struct slice slice_of(const char *text);
 /* Without its first n characters; without blanks at both ends. */
 struct slice slice_after(struct slice s, size_t n);
 struct slice slice_trimmed(struct slice s);
-/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
- * remains. */
+/* Cuts a trimmed piece off the front of `rest` at a separator outside parentheses; false: none. */
 bool slice_next(struct slice *rest, char separator, struct slice *piece);
 int slice_count(struct slice text, char separator);
 /* The identifier at the front, which may be empty; the length of the number there. */

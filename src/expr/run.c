@@ -23,8 +23,7 @@ static int table_row(const struct expr_table *table, double x, bool back)
     return low;
 }
 
-/* With its derivatives in the argument. Between rows linear, or with slopes a cubic; outside
- * constant. */
+/* With derivatives in the argument. Between rows linear, with slopes cubic; outside constant. */
 static struct expr_jet table_at(const struct expr_table *table, double x, bool back)
 {
     const int last = table->n - 1, k = table_row(table, x, back);
@@ -320,8 +319,7 @@ static bool follows(double from, double to, double slope_from, double slope_to, 
            0.1 * slopes * dt + 1e-12 * (fabs(from) + fabs(to));
 }
 
-/* Jump of the value and of the velocity: a pole of even order has the same value and no net
- * velocity on its two sides. */
+/* Jump of value and velocity: a pole of even order has equal values and no net velocity. */
 static double mismatch(const struct expr_jet *a, const struct expr_jet *b, double dt)
 {
     return unexplained(a->value, b->value, a->d1, b->d1, dt) +

@@ -56,8 +56,7 @@ SPHFSI_INLINE four_double extrapolated_pressure(const struct fluid_constants *k,
 }
 
 /* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less
- * the mean velocity of the fluid around them. Halfway between dummies and fluid the velocity is
- * that of the surface. */
+ * the mean of the fluid around. Halfway between both the velocity is the surface's. */
 SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const struct receiver *s,
                                      double *u, double *v)
 {
@@ -245,8 +244,7 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
     *(four_double_at *)pressure = extrapolated_pressure(&fluid->k, &sum, FOUR(ax, 0), FOUR(ay, 0));
 }
 
-/* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
- * than the fluid. */
+/* State from that pressure. Eqs. 19-21 with each dummy's volume: a solid may be finer. */
 SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
                                  const struct dummy_cluster *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER])
@@ -275,8 +273,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
 
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
-/* Pressures and state of the dummies of a cell. No fluid reads a cluster that none is near to; at
- * rest none of it changes anyway. */
+/* Pressures and state of the dummies of a cell, but of clusters that no fluid is near to. */
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *particles,
                                    enum kind kind, const struct cells *cells, int32_t cell,
                                    bool thin)

@@ -20,9 +20,8 @@ struct force_weights {
     double force, mean, before, newest;
 };
 
-/* In steps: `impulse` is the time for which the fluid gets the force, `lead` that from the
- * evaluation to the middle of the structure's kicks. With `alternates` the fluid has two solutions,
- * whose forces are averaged. */
+/* In steps: for `impulse` the fluid gets the force; `lead` is from the evaluation to the middle of
+ * the structure's kicks. With `alternates` forces of two solutions are averaged. */
 SPHFSI_INLINE struct force_weights force_weights(double impulse, double lead, bool alternates)
 {
     return (struct force_weights){impulse, lead, impulse + lead - 1, alternates ? 0.5 : 1};

@@ -46,8 +46,7 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
     return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;
 }
 
-/* Volumes of the dummies of each body, how near fluid may come to them, whether the body moves, and
- * whether fluid sticks to it. */
+/* Of each body: volumes of dummies, how near fluid may come, whether it moves, or fluid sticks. */
 static enum err describe_bodies(struct fluid *fluid, struct arena *a, const struct scene *scene,
                                 enum kind kind, struct diag *d)
 {

@@ -104,8 +104,7 @@ struct packed_fields {
 
 struct fluid;
 
-/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, and their
- * extremes. */
+/* The fluid's rates (Eqs. 4, 6, 7, 21a) in active cells first to end - 1, and their extremes. */
 typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, int32_t first, int32_t end,
                          struct fluid_extremes *largest);
@@ -167,8 +166,7 @@ struct neighbour_scratch {
     struct neighbour_clusters around[KIND_COUNT];
     struct cluster_list near[KIND_COUNT];
     /* [1 + clusters of a chunk][sums][receiver][candidate]: deferred sums of the clusters as
-     * candidates, from earlier receivers. Zero between evaluations, except for the first, the
-     * discard slot. */
+     * candidates. Zero between evaluations, but for the first, the discard slot. */
     void *deferred;
     void *pieces; /* of thin lines near a cell: struct near_piece of fluid/neighbours.h */
 };
@@ -221,8 +219,7 @@ SPHFSI_INLINE bool fluid_near_dummies(const struct fluid *fluid, int32_t cell)
     return fluid_near_kind(fluid, KIND_WALL, cell) || fluid_near_kind(fluid, KIND_SOLID, cell);
 }
 
-/* Chooses sweeps and variant, and allocates packed fields and scratch; `fluid` is zero but for its
- * effects. */
+/* Chooses sweeps and variant, allocates packed fields and scratch; only effects are set before. */
 enum err fluid_create(struct fluid *fluid, struct arena *a, const struct scene *scene,
                       struct particles kinds[KIND_COUNT], const struct cells *cells, struct diag *d)
     SPHFSI_CHECKED;
@@ -260,8 +257,7 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
                       own, own ? fluid->lines.filled[i] : 0);
 }
 
-/* repulsion.c: energy that walls and structures have stored by repelling each section of fluid
- * (L-7b), J/m. */
+/* repulsion.c: energy stored by walls and structures that repel each section (L-7b), J/m. */
 void fluid_repulsion_energy(const struct fluid *fluid, const struct particles kind[KIND_COUNT],
                             const struct cells *cells, double of[SCENE_MAX_SECTIONS]);
 

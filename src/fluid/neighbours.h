@@ -63,8 +63,7 @@ SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed
                                near->code, near->n};
 }
 
-/* The neighbours of the cluster `own` of one kind among another kind, from the clusters collected
- * around its cell. */
+/* Neighbours of the cluster `own` of one kind among another, from the clusters around its cell. */
 SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighbour_scratch,
                                                 const struct fluid *fluid, enum kind kind,
                                                 enum kind own, int32_t cluster)
@@ -286,8 +285,7 @@ SPHFSI_INLINE vreal weight_seen(const struct receiver *a, const struct separatio
     return a->piece ? weight * d->seen : weight;
 }
 
-/* Geometry of the pairs, Eq. 5, with the volume in their weight; and with the dummy that is one of
- * them, or none (T-110). */
+/* Geometry of the pairs, Eq. 5, weighted by the volume; and with their dummy, or none (T-110). */
 SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, const real *b,
                                     vreal volume, vreal line, vreal filled)
 {

@@ -66,8 +66,7 @@ static struct place place_of(const struct open *o, const struct scene_open *b, i
     return at;
 }
 
-/* Whether a place is in the buffer or in front of it. The sides of the buffer are walls, which do
- * not affect its motion. */
+/* Whether a place is in the buffer or in front of it. Its sides are walls, which do not count. */
 static bool in_buffer(const struct open *o, const struct scene_open *b, const struct place *at)
 {
     return at->in >= -b->depth - o->k->dp && at->along > 0 && at->along < b->length;

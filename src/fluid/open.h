@@ -24,8 +24,7 @@ struct open_rate {
 /* Before, after and at the time of an evaluation. */
 enum open_time { OPEN_BEFORE, OPEN_AFTER, OPEN_NOW, OPEN_TIMES };
 
-/* A particle of a buffer, with pressure and velocity of the fluid across the line, or the given
- * one. */
+/* A particle of a buffer: pressure and velocity of the fluid across the line, or given ones. */
 struct open_member {
     int32_t particle;
     double p, v[2];

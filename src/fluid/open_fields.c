@@ -11,8 +11,7 @@
 enum { S_W, S_P, S_GX, S_GY };
 enum { S_U = S_W + 1, S_UX, S_UY, S_V, S_VX, S_VY, S_X, S_Y, S_XX, S_XY, S_YY, S_SUMS };
 
-/* Adds up to four particles of a cell from i on, at vectors (x, y) from the point, but not those of
- * the buffers. */
+/* Adds up to four particles of a cell from i on, at (x, y) from the point; none of buffers. */
 SPHFSI_INLINE void add_across(four_double sum[S_SUMS], bool flow, double inv_h,
                               const struct particles *particles, int32_t i, int count,
                               four_double x, four_double y)
@@ -70,8 +69,7 @@ SPHFSI_INLINE void state_across(const struct open *o, const double at[2], bool f
     for (int m = 0; m < S_SUMS; m++) sum[m] = (s[m][0] + s[m][2]) + (s[m][1] + s[m][3]);
 }
 
-/* T-51: the value at the point of the linear field fitted to the sums of a velocity; their mean if
- * the particles span no plane. */
+/* T-51: value of the fitted linear velocity at the point; the mean if no plane is spanned. */
 static double linear_value(const double s[S_SUMS], int velocity)
 {
     const double w = s[S_W], x = s[S_X] / w, y = s[S_Y] / w;
@@ -178,8 +176,7 @@ static double given_pressure(const struct scene_open *b, const struct fluid_cons
     return max2(0, -k->rho0 * k->gravity[1] * (b->level - on_line[1]));
 }
 
-/* T-52: pressure of a buffer particle such that it is `given` on the line; no tension at the end of
- * the water. */
+/* T-52: pressure of a buffer particle that makes it `given` on the line; no tension at the end. */
 static double odd_pressure(const struct scene_open *b, double given, double mirrored)
 {
     if (isnan(mirrored)) return given;

@@ -69,9 +69,8 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
 
-/* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with an
- * acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with
- * delay. */
+/* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), or with a
+ * damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with delay. */
 SPHFSI_INLINE four_double acting_pressure(const struct packing *packing,
                                           const struct particles *particles, int32_t i,
                                           four_double dens)
@@ -89,8 +88,7 @@ SPHFSI_INLINE void pack_slopes(const struct packing *packing, const struct parti
     put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * packing->slope);
 }
 
-/* Packed fields of the `count` particles from i on; if there are fewer than four, the rest belong
- * to the next cell. */
+/* Packed fields of the `count` particles from i on; the rest of four are of the next cell. */
 SPHFSI_INLINE void pack_cluster(const struct packing *packing, const struct particles *particles,
                                 int32_t i, int count, const double centre[2], real *out)
 {
@@ -158,8 +156,7 @@ SPHFSI_INLINE vreal gradient_weight(const struct separation *r, const real *b)
     return lane(b, PACKED_VOLUME) * (t * t * t);
 }
 
-/* Sums over the neighbours of a particle: of V x_ab (x) grad W and V (dens_a - dens_b) grad W,
- * without their common factor. */
+/* Sums over neighbours, V x_ab (x) grad W and V (dens_a - dens_b) grad W, less a common factor. */
 enum { SLOPE_XX, SLOPE_XY, SLOPE_YY, SLOPE_X, SLOPE_Y, SLOPE_SUMS };
 
 /* For the receivers from number r of a cluster on. */

@@ -88,8 +88,7 @@ SPHFSI_INLINE vreal law_viscosity(const struct pair *q, vreal damping, vreal str
     return vfma(vmin(q->v_xi, vset(0)), damping, stress);
 }
 
-/* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|)
- * (W_ab/W(dp))^4, Pa. */
+/* Monaghan 2000, Sec. 3: tension repels by epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
 SPHFSI_INLINE vreal law_tensile(const struct receiver *a, const struct pair *q,
                                const struct vector_constants *k)
 {
@@ -108,9 +107,8 @@ SPHFSI_INLINE void law_sliding(struct pair *q, vreal tx, vreal ty)
 }
 
 /* As in Zhang, Rezavand and Hu 2021 a fluid particle interacts with its own pressure p in a wall or
- * structure, plus the part of gravity and acceleration in between: Eq. 19 with this particle as the
- * only fluid. (x, y) is its position relative to the dummy in units of h, `lift` rho0 h (g - a) of
- * the dummy. */
+ * structure, plus gravity and acceleration in between: Eq. 19 with this particle alone. (x, y) is
+ * its position relative to the dummy over h, `lift` rho0 h (g - a) of the dummy. */
 SPHFSI_INLINE vreal law_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
                                  const struct vector_constants *k)
 {
@@ -180,8 +178,7 @@ SPHFSI_INLINE vreal law_diffusion_factor(const struct pair *q, vreal inv,
     return PAIR_HAS(effects, LIMITER) ? mixing * law_limiter(q, inv, k) : mixing;
 }
 
-/* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
- * - sum of V_b x_ab . grad W. */
+/* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; divergence - sum of V_b x_ab . grad W. */
 SPHFSI_INLINE void law_concentration(const struct pair *q, vreal sum[SUMS])
 {
     sum[SUM_GRAD_C_X] = vfma(q->weight, q->x, sum[SUM_GRAD_C_X]);

@@ -9,8 +9,7 @@ struct cluster_sums {
     vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
-/* Adds pairs to the sums of their receivers, or to those deferred for their candidates, which may
- * be `fluid` or dummies. */
+/* Adds pairs to the sums of their receivers, or to those deferred for fluid or dummies. */
 SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
                                   struct pair_set effects, bool fluid)
 {
@@ -27,8 +26,7 @@ SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
     if (PAIR_HAS(effects, SHIFTING)) law_concentration(q, sum);
 }
 
-/* Pairs with the volumes of both sides, as struct pair_terms has them, and the pressure of the
- * candidates. */
+/* Pairs with both volumes, as in struct pair_terms, and the pressure of the candidates. */
 SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b,
                                        vreal line, vreal filled)
 {

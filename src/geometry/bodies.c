@@ -18,8 +18,7 @@ double geometry_rows_across(const struct region *region)
     return across;
 }
 
-/* The area where no clamp holds the solid, and how much more of it particles cover. A hinge's area
- * is not that of its particles. */
+/* The area that no clamp holds, and how much more of it particles cover; without hinges. */
 static enum err find_area(struct sampler *sampler, const struct region *region)
 {
     const struct scene_lattice *const l = &region->lattice;

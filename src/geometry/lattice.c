@@ -6,8 +6,7 @@
 
 #include <stdlib.h>
 
-/* Tolerances: directions closer than this are equal, rad; edges closer than this to the lattice are
- * on it, dp. */
+/* Tolerances: directions closer than this are equal, rad; edges are on the lattice, dp. */
 static const double same_direction = 1e-6, on_lattice = 1e-6;
 
 /* Sampling lines at right angles to an axis, per spacing, which find the edges along it. */

@@ -11,8 +11,7 @@
 static const double coincident = 0.65;
 
 /* Faces from which layers are measured. A polyline has its own, on the drawn side, and layers
- * through all of its thickness. All other shapes have one common set, and layers as deep as the
- * kernel's reach. */
+ * through its thickness. All others have one set, and layers as deep as the kernel reaches. */
 struct face_set {
     struct point_grid grid; /* the exposed parts of the faces */
     double spacing, depth;  /* of layers; down to which they go, m */

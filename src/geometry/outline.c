@@ -39,8 +39,7 @@ static void left_normal(const struct shape *p, int k, double normal[2])
     normal[1] = dx / length;
 }
 
-/* Another wall drawn as a line, and which of its ends meets an end of this one; NULL: none. The two
- * have a joint as within a line. */
+/* Another wall drawn as a line that meets an end of this one, and its end; NULL: none. */
 static const struct shape *line_at(const struct scene *scene, const struct shape *p,
                                    const double end[2], bool *last)
 {
@@ -95,8 +94,7 @@ static bool mitre(const struct scene *scene, const struct shape *p, int k, doubl
         left_normal(q, of_end ? q->n - 2 : 0, normal);
         for (int c = 0; c < 2; c++) normal[c] *= q->size / p->size;
     }
-    /* The sum of the normals over 1 + their cosine has length 1/cos of half the angle between the
-     * segments. */
+    /* The sum of the normals over 1 + their cosine is as long as 1/cos of half of their angle. */
     const double scale = 1 + a[0] * b[0] + a[1] * b[1];
     if (scale < 2 / square(max_mitre)) return false;
     far[0] = p->pt[k][0] + p->size * (a[0] + b[0]) / scale;

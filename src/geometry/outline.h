@@ -53,8 +53,7 @@ int outlines_union(const struct outlines *add, const struct outlines *minus, dou
 /* The largest count of ends of intervals on a line inside the pieces, each for itself. */
 int outlines_ends(const struct outlines *o);
 
-/* Integrals over `add` minus `minus` by lines at most `step` apart, exact for polygons that do not
- * overlap. */
+/* Integrals over `add` less `minus` by lines at most `step` apart, exact for polygons apart. */
 struct moments {
     double area, x, y, xx, yy; /* of 1, x, y, x^2 and y^2 */
 };

@@ -226,8 +226,7 @@ static double air_share(const struct sampler *sampler, const double cell[2])
     return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : cover_of(sampler, cell) == COVER_NONE;
 }
 
-/* Cells of the lattice count as points by their share outside all shapes, so that nothing moves
- * into the air. */
+/* Lattice cells count as points by their share outside shapes: nothing moves into the air. */
 static enum err add_air(struct settling *s)
 {
     struct sampler *const sampler = s->sampler;

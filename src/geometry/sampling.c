@@ -100,8 +100,7 @@ static enum err turn_regions(struct sampler *sampler)
 
 /* --- rows --- */
 
-/* Adds a place of the lattice that is in a piece, to `layered` if all its pieces are; counts it for
- * each shape. */
+/* Adds a lattice place in a piece, to `layered` if all its pieces are; counts it for shapes. */
 static enum err visit_place(struct sampler *sampler, const struct region *region,
                             const int64_t at[2], int64_t *per_shape, struct samples *to,
                             struct samples *layered)

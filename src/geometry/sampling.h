@@ -89,8 +89,7 @@ struct samples {
     uint8_t *clamped;
 };
 
-/* Walls whose faces are not along the lattice (geometry/layers.c): sets region->layered for the
- * pieces that need layers. */
+/* Walls with faces off the lattice (geometry/layers.c): sets region->layered of such pieces. */
 enum err geometry_choose_layered(struct sampler *sampler, struct region *region) SPHFSI_CHECKED;
 /* Adds their layers, then of the lattice's points `layered` in them those behind the layers, all in
  * the axes of the lattice; the points of other pieces, from index `from` on, are there. */

@@ -32,8 +32,7 @@ SPHFSI_INLINE void envelope_add(const struct envelope *m, int64_t i, int64_t k, 
         m->value[m->start[i] + k - m->first[i]] += value;
 }
 
-/* Replaces the matrix by its factors. Returns the number of negative pivots, or -1 for one that is
- * zero or not a number. */
+/* Replaces the matrix by its factors. Returns the number of negative pivots; -1: a bad one. */
 int64_t envelope_factor(struct envelope *m);
 
 /* x = A^-1 x with the factors of A; x has n items, and ENVELOPE_ALIGN more that are numbers. */

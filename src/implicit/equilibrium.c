@@ -13,8 +13,7 @@
 
 enum { ITERATIONS = 25 };
 
-/* T-78b: for bodies of more particles across than along by so much the factors cost more than the
- * motion. */
+/* T-78b: bodies with this many more particles across than along, whose factors cost too much. */
 static const double dear = 80;
 
 static const double shortest_part = 1.0 / 256;

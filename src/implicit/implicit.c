@@ -35,8 +35,7 @@ static struct vtensor2 mean_stress(const struct solid_body *b, struct vtensor2 f
                    stress_of_strain(b, between(from, to, 1 - point)), 0.5);
 }
 
-/* A sweep at the middle of a step: in place of P of the mean gradient, F of the mean gradient times
- * the mean stress. */
+/* A sweep in the middle of a step: in place of P, the mean gradient times the mean stress. */
 static void take_mean_stress(const struct solid *solid, struct particles *particles, int64_t first,
                              int64_t last)
 {
@@ -214,9 +213,8 @@ static void book_impedance(struct particles *particles, double dt)
     }
 }
 
-/* From the middle of the step to its end: displacements, velocities, and the mean accelerations, of
- * which the work of loads follows. What clamps add to the other forces does the rest of the work
- * on their particles. */
+/* From the middle of the step to its end: displacements, velocities, and the mean accelerations,
+ * which give the work of loads. What clamps add to other forces does the rest. */
 static void finish(struct solid *solid, struct particles *particles, double dt)
 {
     double *const *const start = solid->scratch;
@@ -261,8 +259,7 @@ void implicit_keep_start(struct solid *solid, struct particles *particles)
     for (int k = 0; k < 4; k++) memcpy(solid->implicit->start[k], gradient[k], bytes);
 }
 
-/* The first guess: displacements at the middle by the present velocities; those of clamps are the
- * mean of both ends. */
+/* First guess: displacements at the middle by the velocities; of clamps the mean of both ends. */
 static void begin(struct solid *solid, struct particles *particles, double dt)
 {
     double *const *const start = solid->scratch;

@@ -68,8 +68,7 @@ void solid_advance_any(struct solid *solid, struct particles *particles, double 
 void implicit_resume(struct solid *solid, struct particles *particles);
 
 /* T-92: the factors of the matrix for the present gradients, a step of dt and wetted normals (NULL:
- * none), with `shift` times the mass added, 1/s^2. Returns the number of negative pivots, or -1 if
- * there are no factors. */
+ * none), with `shift` times the mass added, 1/s^2. Returns the number of negative pivots, or -1. */
 int64_t implicit_factor(struct solid *solid, const struct particles *particles, double dt,
                         double shift, const double *nx, const double *ny);
 

@@ -414,8 +414,7 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         TRY(path_join(path, folder, name, d));
         const enum err e = checkpoint_read(m, path, &why);
         if (e == ERR_OK) return ERR_OK;
-        /* Without memory nothing is known about this checkpoint. A restart from an older one would
-         * remove it. */
+        /* Without memory this one may be valid. A restart from an older one would remove it. */
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; trying the checkpoint before it", why.text);
     }

@@ -33,8 +33,7 @@ struct image_info {
 enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d) SPHFSI_CHECKED;
 
-/* Writes the image to the folder as step-NNNNNNNNN.ckpt, returned in `path`, and keeps only the two
- * newest checkpoints. */
+/* Writes the image to the folder as step-NNNNNNNNN.ckpt, `path`; keeps the two newest. */
 enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d) SPHFSI_CHECKED;
 
@@ -85,13 +84,11 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SP
  * derived fields (simulation_resume). */
 enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* As checkpoint_apply, for a case with other physics. Particles are sorted again if the grid is
- * another one; a motion must continue from the present position of its wall; dissipation is counted
- * from this time. */
+/* As checkpoint_apply, for a case with other physics. Particles are sorted again if the grid
+ * changes; a motion continues from the position of its wall; dissipation counts from now. */
 enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Removes the checkpoints of more than `newest` steps, of the others all but the last two, and
- * unfinished ones of killed runs. */
+/* Removes checkpoints of more than `newest` steps, all but two others, and unfinished ones. */
 enum err checkpoint_remove_others(const char *folder, int64_t newest, struct diag *d)
     SPHFSI_CHECKED;
 

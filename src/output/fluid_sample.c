@@ -121,8 +121,7 @@ double fluid_front(const struct simulation *sim, int direction)
         const int64_t i = sign > 0 ? particles->n - 1 - k : k;
         const double ahead = sign * coordinate[i];
         any = max2(any, ahead);
-        /* The thinnest tongue of water is a row of particles; the first of them has two others
-         * within reach. */
+        /* The thinnest tongue is a row of particles, of which the first has two within reach. */
         if (ahead > foremost &&
             particles_near(sim, particles->x[i], particles->y[i], KIND_FLUID + 1) >= 3)
             foremost = ahead;

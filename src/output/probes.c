@@ -311,8 +311,7 @@ static void rigid_pose(const struct probe *probe, const struct simulation *sim, 
     rate[2] = m.rate;
 }
 
-/* Force of the hinge or guide on a rigid body in the last step, or of a spring on what its end `to`
- * is fixed to. */
+/* Force of hinge or guide on a rigid body in the last step, or of a spring at its end `to`. */
 static void rigid_reaction(const struct probe *probe, const struct simulation *sim, double out[3])
 {
     double at[2];

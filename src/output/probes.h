@@ -9,8 +9,7 @@ struct probe_body {
     int body; /* index of its section */
 };
 
-/* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as
- * they are. */
+/* The time mean of a probe up to now; only doubles, so that a checkpoint takes them as such. */
 struct probe_mean {
     double row;     /* number of the row that it is for; -1: none yet */
     double time;    /* s: end of the time that it covers so far */

@@ -170,8 +170,7 @@ static void write_gains(struct json *j, const struct simulation *sim)
     json_close(j, '}');
 }
 
-/* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the
- * changes of the others. */
+/* Changes over the run. `moved` was converted: kinetic energy and changes of the others. */
 static void write_drift(struct json *j, const struct simulation *sim, const struct record *r)
 {
     const struct ledger *a = &r->first, *b = &r->last;

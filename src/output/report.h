@@ -81,8 +81,7 @@ struct record {
 enum err report_summary(const char *folder, struct simulation *sim, const struct record *r,
                         struct diag *d) SPHFSI_CHECKED;
 
-/* Parts of the summary: every value in effect; effects and the keys that call for them; derived
- * values. */
+/* Parts of the summary: values in effect; effects and the keys that need them; derived values. */
 void report_parameters(struct json *j, const struct scene *scene);
 void report_effects(struct json *j, const struct simulation *sim);
 void report_derived(struct json *j, const struct scene *scene);

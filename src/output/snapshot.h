@@ -14,8 +14,7 @@ struct snapshots {
     const char *version; /* of the program */
 };
 
-/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last
- * one or -1. */
+/* Starts without snapshots; or continues with those up to `time`; `last`: of the last, or -1. */
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, struct diag *d) SPHFSI_CHECKED;
 enum err snapshots_resume(struct snapshots *w, const char *folder, const struct scene *scene,
@@ -26,8 +25,7 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
 enum err snapshots_write(struct snapshots *w, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 
-/* CPU time of this thread for a snapshot that is written to a file in memory and copied to a spare,
- * s; 0: it failed. */
+/* CPU time of this thread for a snapshot in memory and its copy to a spare, s; 0: it failed. */
 double snapshots_seconds(struct simulation *sim);
 
 /* Removes the spare. */

@@ -100,8 +100,7 @@ static double cells_along(const struct cells *cells, int axis, double x)
     return at < n ? at : 0; /* just below the lower side rounding gives n */
 }
 
-/* Wraps coordinates into the periodic domain; returns the number of crossings of the upper side,
- * less those of the lower. */
+/* Wraps coordinates into the periodic domain; returns crossings of its upper less lower side. */
 static int64_t wrap_positions(const struct cells *cells, int axis, double *x, int64_t n)
 {
     const double lower = cells->lower[axis],

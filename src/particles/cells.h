@@ -84,8 +84,7 @@ int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *partic
 /* Builds the cell list of particles that are already sorted, from their `cell` fields (restart). */
 void cells_rebuild(struct cells *cells, enum kind kind, struct particles *particles);
 
-/* Orders the particles of each cell into clusters. `pair` holds (Morton key, particle), sorted
- * by key. */
+/* Orders the particles of each cell into clusters; `pair`: (Morton key, particle), sorted. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *particles, int threads);
 
 /* Most particles of any kind in one cell. */
@@ -162,8 +161,7 @@ SPHFSI_INLINE double cell_centre_y(const struct cells *cells, int32_t cell)
     return cells->lower[1] + ((double)cell_y(cells, cell) + 0.5) * cells->side[1];
 }
 
-/* Whether a position is at most half a side outside a cell; no particle moves further between
- * sorts. */
+/* Whether a place is within half a side of a cell: none moves further between sorts. */
 SPHFSI_INLINE bool cells_is_near(const struct cells *cells, int32_t cell, double x, double y)
 {
     const double dx = cells_minimum_image(cells, 0, x - cell_centre_x(cells, cell));

@@ -19,8 +19,7 @@ void rigid_hold(struct rigid *rigid, int k, double place, double speed);
 /* The displacement of a body on such a hinge from its angle. */
 void rigid_follow_hinge(const struct rigid *rigid, int k, double time, double x[3]);
 
-/* Stages of constraints (T-102): of the velocities before the forces of the step, of those after,
- * and of the places. */
+/* Stages of constraints (T-102): velocities before a step's forces and after them; places. */
 enum rigid_stage { RIGID_IMPACT, RIGID_STEP, RIGID_PUSH, RIGID_STAGES };
 
 /* T-96 of a body: what acts on it in the step, the mass of fluid that resists, the solution. */
@@ -77,8 +76,7 @@ struct rigid_row *rigid_add_row(struct rigid *rigid, enum rigid_law law, const i
 /* Sets what a unit of a force along e is to a body; `arm`: from its centre of mass to the place. */
 void rigid_row_along(struct rigid_row *row, int side, const double arm[2], const double e[2]);
 
-/* Relative velocity along a row after a stage; what the stage has changed in it; and what a unit of
- * impulse adds. */
+/* Relative velocity along a row after a stage; its change in that; and by a unit of impulse. */
 double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,
                       enum rigid_stage stage);
 double rigid_row_change(const struct rigid *rigid, const struct rigid_row *row,
@@ -101,8 +99,7 @@ void rigid_add_springs(struct rigid *rigid, double dt);
 enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 /* With walls where they are at a time. */
 void rigid_add_hinges(struct rigid *rigid, double time);
-/* T-99a: the rest of the distance of both places, or of the driven angle, after the step, as a
- * velocity. */
+/* T-99a: the rest of the distance, or of the driven angle, after the step, as a velocity. */
 double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late);
 /* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
 void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time);

@@ -107,8 +107,7 @@ void rigid_kick(struct rigid *rigid, double time, double dt);
 
 /* --- beams on bodies, also between these two (beam/bodies.c, joints.c) --- */
 
-/* Where a body is at the start of a step of dt, its velocity there, and its mean velocity in the
- * step without more forces. */
+/* Place and velocity of a body at the start of a step, and mean velocity by forces so far. */
 void rigid_free_motion(const struct rigid *rigid, int k, double time, double dt, double x[3],
                        double v[3], double mean[3]);
 

@@ -4,8 +4,7 @@
 
 /* --- potential of a pair --- */
 
-/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is the least reach R; r = R less the
- * overlap. */
+/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite at the least reach R; r = R less the overlap. */
 static double elastic_energy(double stiffness, double min_reach, double r)
 {
     if (!(r < min_reach)) return 0;

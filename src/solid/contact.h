@@ -48,8 +48,7 @@ struct contact_point {
     struct normal_load load[MAX_LOADS];
 };
 
-/* A piece of a surface: the line between two neighbouring points. A particle without a neighbour is
- * a line from itself to itself. */
+/* A line between two neighbouring points. A lone particle is a line from itself to itself. */
 struct contact_edge {
     int32_t a, b;
     bool sided; /* the outside is to the right from a to b; else on both sides */
@@ -139,8 +138,7 @@ const struct scene_section_common *contact_section(const struct contact *contact
 
 /* --- within the files of contact: contact_surface.c --- */
 
-/* Finds the surfaces, and how much further than half a spacing the outlines of the shapes are
- * from their points (T-61b). */
+/* Finds the surfaces, and how far beyond half a spacing the outlines are from points (T-61b). */
 enum err contact_surface_create(struct contact *contact, struct arena *a,
                                 const struct particles *solid, struct diag *d) SPHFSI_CHECKED;
 
@@ -164,8 +162,7 @@ bool contact_find_closest(const struct contact *contact, int32_t point, int32_t 
 /* The nearest place, without law and reach. */
 struct contact_closest contact_nearest(const struct contact *contact, int32_t point, int32_t edge);
 
-/* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
- * of the other. */
+/* Each of two surfaces carries half of the force: points of each act on edges of the other. */
 #define CONTACT_HALF 0.5
 
 /* Constants of a point and an edge. */

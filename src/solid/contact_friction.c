@@ -178,8 +178,7 @@ double contact_friction(struct contact *contact, const struct particles *particl
 
 /* --- after a step --- */
 
-/* A point keeps to the surface that it holds to until it leaves it; then it takes the nearest.
- * NULL: none. */
+/* A point keeps to a surface until it leaves it; then it takes the nearest. NULL: none. */
 static const struct normal_load *load_with_spring(const struct contact *contact,
                                                   const struct particles *particles, int32_t point)
 {

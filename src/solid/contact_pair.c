@@ -35,8 +35,7 @@ static double reach_of(const struct contact_law *law, const struct contact_point
 
 /* --- law --- */
 
-/* Whether a point was initially within the kernel of an end of an edge, with the smoothing length
- * of a body. */
+/* Whether a point began within the kernel, of a body's smoothing length, of an edge's end. */
 static bool initially_within(const struct contact *contact, const struct contact_point *point,
                              const struct contact_point *const end[2], int body)
 {
@@ -183,8 +182,7 @@ enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct 
     return ERR_OK;
 }
 
-/* Lists a point and an edge if they are near enough; the edges of a point, whose pairs begin at
- * `first`, in ascending order. */
+/* Lists a near point and edge; the edges of a point, whose pairs begin at `first`, ascend. */
 static void list_pair(struct contact *contact, int32_t point, int32_t edge, int64_t first)
 {
     struct contact_closest closest;

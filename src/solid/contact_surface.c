@@ -100,8 +100,7 @@ static enum err find_links(const struct contact *contact, const struct cloud *of
     return ERR_OK;
 }
 
-/* Numbers the particles at the surfaces of bodies that move by a motion, or of all others, on from
- * n_points. */
+/* Numbers particles at surfaces of bodies moved by a motion, or others, on from n_points. */
 static void number_points(struct contact *contact, const struct cloud *of, bool moves)
 {
     for (int64_t i = 0; i < of->n; i++) {

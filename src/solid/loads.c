@@ -26,8 +26,7 @@ static enum err find_held(struct loads *v, struct arena *a, const struct particl
     return ERR_OK;
 }
 
-/* Appends the particles of a load. A centre on an edge counts as above and to the right of it, as
- * in the sampling of bodies. */
+/* Appends the particles of a load. A centre on an edge counts as in the sampling of bodies. */
 static enum err find_loaded(struct loads *v, struct load_region *load,
                             const struct particles *particles, struct arena *temp, struct diag *d)
 {
@@ -51,8 +50,7 @@ static enum err find_loaded(struct loads *v, struct load_region *load,
     return ERR_OK;
 }
 
-/* The length of surface that each particle of a row represents: the lattice spacing along the
- * longer axis of the row. */
+/* The length of surface of each particle of a row: the spacing along the row's longer axis. */
 static double row_spacing(const struct loads *v, const struct load_region *load, int body,
                           const struct particles *particles)
 {

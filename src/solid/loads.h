@@ -56,8 +56,7 @@ void loads_place_clamps(struct loads *v, struct particles *particles, double tim
 void loads_forces(struct loads *v, const struct solid *solid, struct particles *particles,
                   double time);
 
-/* Work of loads and moving clamps over a kick of dt with the last forces, J/m, from the
- * velocities before it: exactly the change of kinetic energy that they cause. Adds each body's
- * part to `on`. */
+/* Work of loads and moving clamps over a kick of dt with the last forces, J/m, from the velocities
+ * before it: the change of kinetic energy that they cause. Adds each body's to `on`. */
 double loads_work(const struct loads *v, const struct particles *particles, const double *vx,
                   const double *vy, double dt, double *on);

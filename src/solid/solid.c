@@ -77,8 +77,7 @@ static bool needs_double(const struct solid *solid, const struct scene *scene,
     return false;
 }
 
-/* The packed fields that the scene needs. Sweeps in double precision use the particle fields
- * themselves where these exist. */
+/* The packed fields that the scene needs. Double precision uses particles' fields if there. */
 static enum err packed_create(struct solid *solid, struct arena *a,
                               const struct particles *particles, struct diag *d)
 {
@@ -183,8 +182,7 @@ static void stress_sweeps(const struct pack_range *own, bool displaced)
 #pragma omp barrier
 }
 
-/* Forces other than those of neighbours, for the packs of a body at a time; clamped particles do
- * not move. */
+/* Forces but those of neighbours, for the packs of a body at a time; what is clamped stays. */
 static void add_own_forces(const struct solid *solid, struct particles *particles, int64_t first,
                            int64_t last)
 {

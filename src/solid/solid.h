@@ -27,8 +27,7 @@ struct solid_body {
     bool mixed;       /* joined to a body of another viscosity: pairs use the mean of both */
 };
 
-/* Packed fields of the sweeps: arrays of the solid's own, float in mixed and double in double
- * precision. */
+/* Packed fields of the sweeps: the solid's arrays, float in mixed, double in double precision. */
 enum solid_packed_field {
     S_UX, /* displacement, m: in mixed precision its leading digits, */
     S_UY,
@@ -171,9 +170,8 @@ double solid_thickness(const struct solid *solid, const struct particles *partic
 /* Lets n threads step a solid that is large enough; a small one keeps what it has. */
 void solid_use_threads(struct solid *solid, const struct particles *particles, int n);
 
-/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
- * the weights of the gradient, and sums these (S_GX, S_GY). Bodies, sweeps and packed fields are
- * set. */
+/* Cuts the particles into packs, finds their reference neighbours within 2h in their body and the
+ * gradient's weights, and sums these (S_GX, S_GY). Bodies, sweeps and packed fields are set. */
 enum err solid_stencil_create(struct solid *solid, struct arena *a,
                               const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
@@ -217,8 +215,7 @@ solid_kick solid_free_kick;
 /* x = X + u; returns the largest displacement by it, m. */
 double solid_set_positions(struct particles *particles);
 
-/* Gradients and stresses of the last evaluation to the particles; in double precision they have
- * them already. */
+/* Gradients and stresses of the last evaluation to particles, which in double have them. */
 void solid_write_stress(const struct solid *solid, struct particles *particles);
 
 /* After a kick of dt with the last forces, from the velocities vx, vy: friction slides, rigid
@@ -233,8 +230,7 @@ void solid_place_clamps(const struct solid *solid, struct particles *particles, 
 double solid_step_of(double omega2, double damping);
 
 /* Largest frequency and damping rate of the operator linearised about the present deformation, by
- * power iteration on the force routine; and the stable step, s. Restores u, v and all data of the
- * present state. */
+ * power iteration on the force routine; and the stable step, s. Restores all data. */
 double solid_stable_step(struct solid *solid, struct particles *particles, double *omega,
                          double *damping);
 
@@ -249,7 +245,6 @@ void solid_cauchy(const struct solid *solid, const struct particles *particles, 
 /* Von Mises stress, Pa, of a Cauchy stress (xx, yy, xy, zz). */
 double solid_von_mises(const double sigma[4]);
 
-/* Strain energy and hourglass energy of a body, or of all (SOLID_ALL), J/m; smallest det F. From
- * the results of solid_stress. */
+/* Strain and hourglass energy of a body, or all, J/m; smallest det F. After solid_stress. */
 void solid_energy(const struct solid *solid, const struct particles *particles, int body,
                   double *elastic, double *hourglass, double *det_low);

@@ -117,8 +117,7 @@ double solid_stable_step(struct solid *solid, struct particles *particles, doubl
                           .base = {scratch[0], scratch[1]},
                           .rest = {scratch[2], scratch[3]}},
                      v = u;
-    /* At a base strain of 1 the rounding error of float is a thousandth of the change; velocities
-     * have the same amplitude. */
+    /* At a base strain of 1 float rounds by a thousandth of the change; velocities are as large. */
     u.amplitude = (solid->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * solid->dp;
     v.field[0] = particles->vx;
     v.field[1] = particles->vy;

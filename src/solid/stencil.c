@@ -16,8 +16,7 @@ struct draft {
     int64_t offset;
 };
 
-/* X_a - X_b, rounded to 2^-30 dp: equal surroundings on a lattice become bitwise equal, so that
- * packs can use the same slots. */
+/* X_a - X_b, rounded to 2^-30 dp: so equal surroundings are bitwise equal and share slots. */
 static double reference_distance(double a, double b, double dp)
 {
     const double unit = dp * 0x1p-30;

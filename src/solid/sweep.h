@@ -187,8 +187,7 @@ SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
                                          viscosity};
 }
 
-/* The variational form adds to the stress, which must be complete before neighbours sum it. So its
- * pairs have a pass of their own. */
+/* The variational form adds to the stress before neighbours sum it: in a pass of its own. */
 static void pairs_of_pack(const struct solid *solid, const struct solid_pack *pack)
 {
     const struct solid_body *const body = &solid->body[pack->body];

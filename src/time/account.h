@@ -30,8 +30,8 @@ struct energy_entry {
     /* `supplied` after the last step, work of that step, and its largest change from step to step,
      * which bounds the error of the sums over steps. */
     double supplied_before, last_work, work_change;
-    /* In a region: the lowest value of each term, the largest available energy since then, and the
-     * lowest potential energy. */
+    /* In a region: each term's lowest value, and since then the largest available energy; the
+     * lowest potential. */
     double lowest[ENERGY_TERMS], available[ENERGY_TERMS], lowest_potential;
 };
 

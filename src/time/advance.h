@@ -12,8 +12,7 @@ enum err initial_state(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* --- evaluation.c --- */
 
-/* One evaluation of the fluid's rates and of the fluid's force on the solid, with walls at their
- * positions at `time`. */
+/* An evaluation of the fluid's rates and its force on the solid, with walls as at `time`. */
 void evaluate_rates(struct simulation *sim, double time);
 
 /* Evaluates the state at the start of a step. Not repeated if output has just evaluated it. The
@@ -41,8 +40,7 @@ typedef void advance_range(struct particles *particles, const void *parameters, 
                            int64_t end);
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters);
 
-/* The sub-steps of solids in a fluid step of dt; the rates of the evaluation act on the
- * fluid for `rates_time`. */
+/* The sub-steps of solids in a fluid step of dt, whose rates act for `rates_time`. */
 void advance_solids(struct simulation *sim, double dt, double rates_time);
 
 /* The step of rigid bodies from a time on. begin_rigid: before the sub-steps of solids, which may
@@ -89,8 +87,7 @@ int particles_near(const struct simulation *sim, double x, double y, int kinds);
 /* --- solid_steps.c --- */
 
 /* Up to 16 steps of solids without fluid, or one with rigid bodies, which end at t_limit at the
- * latest. The observer sees the state before them, and within them the states on both sides of the
- * time that it waits for. */
+ * latest. The observer sees the state before them and those on both sides of its time. */
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* --- the integrators, each in a file of its own --- */

@@ -121,8 +121,7 @@ static void add_bodies(const struct simulation *sim, struct energies *body)
     }
 }
 
-/* The energy of dummies, divided among the fluids as their compression energy is: a wall at rest
- * belongs to no region. */
+/* The energy of dummies, divided among fluids as theirs of compression: a wall has no region. */
 static void add_dummies(const struct simulation *sim, struct energies *fluid)
 {
     double dummies = 0, internal = 0;

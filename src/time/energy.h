@@ -59,8 +59,7 @@ void energy_book_solid(struct simulation *sim, double dt, int n);
 void energy_book_body(struct simulation *sim, int wall, double received, double driven,
                       double passed);
 
-/* After a step: work of moving walls, clamps, loads and of gravity that varies (T-70), all of which
- * the ledger has, too. */
+/* After a step: work of moving walls, clamps, loads, varying gravity (T-70), as in the ledger. */
 void energy_after_step(struct simulation *sim);
 
 /* Tests the present state for gains if that is due: for the gain of a region that is the largest

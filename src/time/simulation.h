@@ -6,8 +6,7 @@
 #include "time/advance.h"
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
- * next evaluation on. It is called once for each evaluation of the fluid; the solid's sub-steps use
- * the same values. */
+ * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
 enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *at,
                                  void *context, struct diag *d) SPHFSI_CHECKED;
 
@@ -36,8 +35,7 @@ uint64_t simulation_hash(struct simulation *sim);
  * is over. ERR_GUARD: a guard, or no rest within relax.limit. */
 enum err relax_step(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Ends the search: the run begins with the present positions at rest; time, counts of steps and the
- * account of energy begin anew. */
+/* Ends the search: the run begins at rest in the present positions; time and account begin anew. */
 void relax_end(struct simulation *sim);
 
 /* All steps of the search. */

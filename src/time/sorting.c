@@ -99,8 +99,7 @@ static void measure_overhangs(struct simulation *sim, enum kind first)
 }
 
 /* Where displacements are bounded, cells need not be measured at every step. The predictor moves
- * structures further than a step does, so these are measured. Rounding errors of the displacements
- * are below the tolerance. */
+ * structures further than a step does: these are measured. Round-off is below the tolerance. */
 bool sorting_due(struct simulation *sim)
 {
     if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;

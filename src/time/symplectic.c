@@ -22,8 +22,7 @@ static void swap_states(struct particles *particles)
     swap_fields(&particles->dens, &particles->dens_half);
 }
 
-/* Writes the predicted state to the particles' fields. Only some effects read them; otherwise the
- * sweeps predict while they pack. */
+/* Writes the predicted state to the fields, if effects read them: sweeps predict themselves. */
 static void predict_fields(struct particles *particles, double half)
 {
     swap_states(particles);
