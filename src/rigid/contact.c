@@ -179,8 +179,9 @@ static enum err shape_create(struct rigid *rigid, int w, struct arena *a, struct
     return ERR_OK;
 }
 
-/* A layer of fluid stays between bodies that begin further apart, as between solids. A body on a
- * hinge may turn into what it touches at the start. */
+/* A layer of fluid stays between bodies that begin further apart, as between solids. Bodies that
+ * overlap at the start keep that overlap: to part them would add energy. A body on a hinge may turn
+ * into what it touches at the start. */
 static void set_law(struct rigid *rigid, int k, int w)
 {
     const struct scene *const scene = rigid->scene;
@@ -197,7 +198,7 @@ static void set_law(struct rigid *rigid, int k, int w)
     approach_pair(rigid, k, w);
     law->layer = scene_contact_gap(scene, from);
     for (int j = 0; j < rigid->n_rows; j += 2)
-        law->layer = max2(0, min2(law->layer, rigid->row[j].gap));
+        law->layer = min2(law->layer, rigid->row[j].gap);
     if (rigid->n_rows && hinged) law->layer = (double)NAN;
 }
 
