@@ -436,7 +436,7 @@ static enum err set_motion(struct sphfsi_simulation *handle, const char *name,
     struct simulation *const sim = &handle->session.simulation;
     sim->evaluated = false;
     sim->solid.calls_out = false;
-    for (int k = 0; k < scene->n_motion; k++) sim->solid.calls_out |= (*hook)[k].at != NULL;
+    for (int k = 0; k < scene->n_motion; k++) sim->solid.calls_out |= (*hook)[k].move != NULL;
     return ERR_OK;
 }
 

@@ -7,7 +7,6 @@
 #include "output/report.h"
 #include "output/rows.h"
 #include "output/snapshot.h"
-#include "time/guards.h"
 #include "time/timestep.h"
 
 #include <errno.h>
@@ -394,7 +393,7 @@ static enum err load_checkpoint(struct run *r)
     TRY(fork ? checkpoint_fork(&r->image, r->sim, r->diag)
              : checkpoint_apply(&r->image, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
-    const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : CHECK_INTERVAL);
+    const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : SOLID_BATCH);
     if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,

@@ -150,7 +150,7 @@ struct beams {
     struct beam_body *body;     /* [n_bodies] all rigid bodies */
     double part_end;            /* time at the end of the part of a step, s */
     bool crowded;               /* more places touch than the memory holds */
-    bool pushed;                /* a beam has pushed a rigid body; the account resets it */
+    bool has_pushed_body;       /* a beam has pushed a rigid body; the account resets it */
     int infinite;               /* a [load], counted from 1, that was not finite; 0: none */
     bool failed;                /* no solution, however short the step */
 };

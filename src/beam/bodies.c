@@ -138,17 +138,17 @@ void beams_return_bodies(struct beams *beams, double dt)
         const struct beam_body *const body = &beams->body[k];
         struct rigid_body *const to = &beams->rigid->body[k];
         const double(*const W)[3] = equations_of(beams, body)->yields;
-        const double late = beams->rigid->centred ? 0.5 * dt : dt;
+        const double late = beams->rigid->mid_step ? 0.5 * dt : dt;
         bool acts = false;
         for (int c = 0; c < 3; c++) acts |= body->impulse[c] != 0 || body->push[c] != 0;
         if (!acts) continue;
         for (int c = 0; c < 3; c++) {
             to->moved[c] += body->x[c] -
                             (body->from[c] + dt * body->mean[c] + late * dot3(W[c], body->impulse));
-            to->pushed[c] += body->push[c];
+            to->push_impulse[c] += body->push[c];
         }
         rigid_add_impulse(beams->rigid, k, body->impulse);
-        beams->pushed = true;
+        beams->has_pushed_body = true;
     }
 }
 

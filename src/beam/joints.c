@@ -88,7 +88,7 @@ void beams_give_rest(struct beams *beams, double last)
         struct beam_body *const body = &beams->body[j->row.body];
         double impulse[3];
         j->impulse = 0;
-        if (beams->rigid->centred) continue;
+        if (beams->rigid->mid_step) continue;
         memcpy(body->x, beams->rigid->state[j->row.body].x, sizeof body->x);
         memset(body->d, 0, sizeof body->d);
         beam_row_aim(beams, &j->row);
@@ -235,7 +235,7 @@ void beams_finish_joints(struct beams *beams, double dt)
     const struct beam_joints *const joints = beams->joints;
     for (int n = 0; joints && n < joints->n; n++) {
         struct beam_joint *const j = &joints->joint[n];
-        const double impulse = dt * j->row.force, now = beams->rigid->centred ? 1 : 0.5;
+        const double impulse = dt * j->row.force, now = beams->rigid->mid_step ? 1 : 0.5;
         j->impulse += impulse;
         for (int c = 0; c < 3; c++)
             beams->body[j->row.body].impulse[c] -= now * impulse * j->row.along[c];

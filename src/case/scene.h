@@ -308,7 +308,7 @@ struct motion_state {
     double turn[2]; /* cosine and sine of the angle */
 };
 struct motion_hook { /* a function of a program with the library, used instead */
-    void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
+    void (*move)(void *context, double time, double d[2], double v[2], double a[2]);
     void *context;
 };
 /* The present motion of a rigid body: of the simulation of the scene that was moved last. */

@@ -84,7 +84,7 @@ SPHFSI_INLINE void mirrored_velocity(const struct neighbours *neighbours, const 
 struct dummy_cluster {
     enum kind kind;
     int count;
-    const int32_t *at; /* [count] */
+    const int32_t *index; /* [count] */
     size_t cluster;
     real *packed;
 };
@@ -94,7 +94,7 @@ SPHFSI_INLINE void gather(const struct dummy_cluster *d, const double *field, do
 {
     memset(out, 0, CLUSTER * sizeof *out);
     if (!field) return;
-    for (int r = 0; r < d->count; r++) out[r] = field[d->at[r]];
+    for (int r = 0; r < d->count; r++) out[r] = field[d->index[r]];
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
@@ -109,7 +109,7 @@ SPHFSI_INLINE void gather_velocity(const struct fluid *fluid, const struct dummy
 
 SPHFSI_INLINE void scatter(const struct dummy_cluster *d, const double in[CLUSTER], double *field)
 {
-    for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
+    for (int r = 0; r < d->count; r++) field[d->index[r]] = in[r];
 }
 
 /* Lanes without particles get zeros, hence no volume. */
@@ -126,7 +126,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
 {
     const double inv_h = 1 / fluid->k.h;
     for (int r = 0; r < d->count; r++) {
-        const int32_t i = d->at[r];
+        const int32_t i = d->index[r];
         const double x =
             cells_minimum_image(cells, 0, particles->x[i] - cell_centre_x(cells, cell));
         const double y =
@@ -136,7 +136,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
     }
     cluster_close(d->packed, fluid->packed[d->kind].n, d->count);
     for (int r = 0; r < d->count && sides->piece; r++)
-        d->packed[PACKED_LINE * CLUSTER + r] = (real)fluid_line_of(fluid, d->kind, d->at[r]);
+        d->packed[PACKED_LINE * CLUSTER + r] = (real)fluid_line_of(fluid, d->kind, d->index[r]);
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
@@ -149,9 +149,10 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
     double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
-    for (int r = 0; r < d->count; r++) near2[r] = fluid->near2[d->kind][particles->body[d->at[r]]];
+    for (int r = 0; r < d->count; r++)
+        near2[r] = fluid->near2[d->kind][particles->body[d->index[r]]];
     for (int r = 0; r < d->count && sides->piece; r++)
-        if (fluid_line_of(fluid, d->kind, d->at[r]))
+        if (fluid_line_of(fluid, d->kind, d->index[r]))
             near2[r] = square(fluid->k.dp / fluid->k.h) + ETA2;
     if (fluid->effects & FX_ONE_SIDED) {
         put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
@@ -177,7 +178,8 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
     }
     for (int r = 0; r < d->count; r++) {
         sticks[r] =
-            neighbours->n && fluid->sticks[d->kind][particles->body[d->at[r]]] ? 1 + own_image : 0;
+            neighbours->n && fluid->sticks[d->kind][particles->body[d->index[r]]] ? 1 + own_image
+                                                                                  : 0;
         if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];
@@ -206,10 +208,10 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
         sum_lanes(sum, &filled[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        const int32_t line = fluid_line_of(fluid, d->kind, d->at[r]);
+        const int32_t line = fluid_line_of(fluid, d->kind, d->index[r]);
         const double phi = min2(1, 2 * KERNEL_NORM * (double)filled[r]), part = sqrt(phi);
-        if (line) line_slides(&fluid->lines.line[line - 1], d->at[r], t[r]);
-        if (line) fluid->lines.filled[d->at[r]] = phi;
+        if (line) line_slides(&fluid->lines.line[line - 1], d->index[r], t[r]);
+        if (line) fluid->lines.filled[d->index[r]] = phi;
         d->packed[PACKED_FILLED * CLUSTER + r] = (real)phi;
         d->packed[PACKED_ALONG_X * CLUSTER + r] = (real)(part * t[r][0]);
         d->packed[PACKED_ALONG_Y * CLUSTER + r] = (real)(part * t[r][1]);
@@ -261,7 +263,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
            acting);
     if (!(fluid->effects & FX_ONE_SIDED)) *(four_double_at *)acting += FOUR(pressure, 0);
     for (int r = 0; r < d->count; r++)
-        volume[r] = mean * fluid->volume[d->kind][particles->body[d->at[r]]];
+        volume[r] = mean * fluid->volume[d->kind][particles->body[d->index[r]]];
     /* At rest, particles whose masses fit their density fill a cell at any depth: so do dummies. */
     if (!(fluid->effects & FX_MASSES)) *(four_double_at *)volume /= 1 + FOUR(dens, 0);
     pack_four(d, u, PACKED_U);
@@ -287,7 +289,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
     gather_around_cell(neighbour_scratch, fluid, cells, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummy_cluster d = dummies_at(fluid, cells, kind, cell, m);
-        const bool moves = dummies_move(fluid, kind, particles, d.at, d.count);
+        const bool moves = dummies_move(fluid, kind, particles, d.index, d.count);
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);

@@ -238,25 +238,30 @@ static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUN
     fluid->walls_placed = !fluid->never_skip;
 }
 
-/* The passes in order; phase_table says which scenes have them. */
+/* Adds the time since `since` to that of a phase; returns the present time. */
+static double end_phase(double *seconds, double since)
+{
+    const double now = phase_clock();
+    *seconds += now - since;
+    return now;
+}
+
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT])
 {
-    const struct {
-        enum phase phase;
-        fluid_pass *run;
-    } passes[] = {{PHASE_packed, fluid->sweeps->packed},
-                  {PHASE_slope, fluid->sweeps->slopes},
-                  {PHASE_wall, update_dummies},
-                  {PHASE_fluid, rates_of_fluid}};
     double since = phase_clock();
-    for (size_t k = 0; k < COUNT_OF(passes); k++) {
-        if (!phase_runs(passes[k].phase, fluid->effects)) continue;
-        passes[k].run(fluid, kinds, cells);
-        const double now = phase_clock();
-        phase_seconds[passes[k].phase] += now - since;
-        since = now;
+    fluid->sweeps->pack(fluid, kinds, cells);
+    since = end_phase(&phase_seconds[PHASE_packed], since);
+    if (fluid->effects & FX_ANTUONO && !fluid->keeps_slopes) {
+        fluid->sweeps->find_gradients(fluid, kinds, cells);
+        since = end_phase(&phase_seconds[PHASE_slope], since);
     }
+    if (fluid->effects & (FX_WALL | FX_COUPLING)) {
+        update_dummies(fluid, kinds, cells);
+        since = end_phase(&phase_seconds[PHASE_wall], since);
+    }
+    rates_of_fluid(fluid, kinds, cells);
+    end_phase(&phase_seconds[PHASE_fluid], since);
 }
 
 void fluid_write_pressure(const struct fluid *fluid, struct particles *particles)

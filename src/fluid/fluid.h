@@ -124,8 +124,8 @@ typedef void fluid_pass(struct fluid *fluid, struct particles kinds[KIND_COUNT],
 /* The sweeps of one precision. */
 struct fluid_sweeps {
     size_t packed_item_size;
-    fluid_pass *packed; /* pressure by the equation of state, and packed fields of the fluid */
-    fluid_pass *slopes; /* renormalised gradient of the fluid's density, and its packed fields */
+    fluid_pass *pack; /* pressure by the equation of state, and packed fields of the fluid */
+    fluid_pass *find_gradients; /* renormalised, of the fluid's density, and its packed fields */
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed
      * fields. The fluid's force on them: coupling/force.h. */
     void (*update_dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],

@@ -139,8 +139,8 @@ SPHFSI_INLINE void pack_cell(const struct fluid *fluid, const struct packing *pa
     }
 }
 
-static void SWEEP(packed)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                          const struct cells *cells)
+static void SWEEP(pack)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                        const struct cells *cells)
 {
     const int32_t n = cells->list[KIND_FLUID].n_active;
     const struct packing packing = packing_of(fluid);
@@ -231,13 +231,12 @@ SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct p
                     cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m)));
 }
 
-static void SWEEP(slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                          const struct cells *cells)
+static void SWEEP(find_gradients)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                                  const struct cells *cells)
 {
     const struct cell_list *list = &cells->list[KIND_FLUID];
     struct particles *const particles = &kinds[KIND_FLUID];
     const struct packing packing = packing_of(fluid);
-    if (fluid->keeps_slopes) return; /* packed with the other fields */
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t k = 0; k < list->n_active; k++)
         if (fluid->effects & FX_THIN)

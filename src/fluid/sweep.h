@@ -213,5 +213,5 @@ static const struct fluid_variant SWEEP(variants)[] = {
 #include "fluid/variants.def"
 #undef VARIANT
 
-const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(packed), SWEEP(slopes),
+const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(pack), SWEEP(find_gradients),
                                                  SWEEP(update_dummies), SWEEP(variants)};

@@ -77,9 +77,9 @@ static struct motion_state prescribed_at(const struct scene *scene, int motion_i
     if (motion_index < 0 || motion_index >= scene->n_motion) return m;
     const struct motion_hook *const hook =
         scene->motion_hook ? &scene->motion_hook[motion_index] : NULL;
-    if (hook && hook->at) {
+    if (hook && hook->move) {
         if (time >= 0)
-            hook->at(hook->context, time, m.d, m.v, m.a); /* < 0: rest is sought (T-78) */
+            hook->move(hook->context, time, m.d, m.v, m.a); /* < 0: rest is sought (T-78) */
         return m;
     }
     if (motion_index >= scene_rigid_motion(scene, 0))

@@ -62,7 +62,7 @@ extern const int field_count;
 typedef void external_function(void *context, double time, const struct particles *particles,
                                double *ax, double *ay);
 struct external {
-    external_function *at; /* NULL: none */
+    external_function *accelerate; /* NULL: none */
     void *context;
     double *ax, *ay; /* m/s^2 */
 };

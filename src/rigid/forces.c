@@ -133,7 +133,7 @@ void rigid_solve(struct rigid *rigid, int k, double end, double rates_time)
     for (int c = 0; c < 3; c++) {
         right[c] = eq->impulse[c] - rates_time * body->mass[c] * s->a[c];
         for (int e = 0; e < 3; e++) {
-            A[c][e] = eq->fluid[c][e] + (c == e ? body->mass[c] : 0);
+            A[c][e] = eq->resisting[c][e] + (c == e ? body->mass[c] : 0);
             right[c] += A[c][e] * (s->v[e] + rates_time * s->a[e] - f.base[e]);
         }
     }
@@ -163,7 +163,7 @@ void rigid_find_reaction(struct rigid *rigid, int k, double rates_time)
     const bool free = !body->given->hinge.n && along[0] == 0 && along[1] == 0 && body->given->turns;
     for (int c = 0; c < 3; c++) {
         double needed = body->mass[c] * eq->change[c] - eq->impulse[c];
-        for (int e = 0; e < 3; e++) needed += eq->fluid[c][e] * eq->faster[e];
+        for (int e = 0; e < 3; e++) needed += eq->resisting[c][e] * eq->faster[e];
         rigid->state[k].reaction[c] = free ? 0 : needed / rates_time;
     }
 }
@@ -250,7 +250,7 @@ double rigid_displacement(const struct rigid *rigid, int k, int c, double late)
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double v =
         eq->before[c] + eq->change[c] + eq->touch[RIGID_IMPACT][c] + eq->touch[RIGID_STEP][c];
-    return late * (v - eq->pushed[c]) + rigid->body[k].moved[c];
+    return late * (v - eq->push_change[c]) + rigid->body[k].moved[c];
 }
 
 /* --- springs --- */

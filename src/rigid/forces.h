@@ -24,13 +24,14 @@ enum rigid_stage { RIGID_IMPACT, RIGID_STEP, RIGID_PUSH, RIGID_STAGES };
 
 /* T-96 of a body: what acts on it in the step, the mass of fluid that resists, the solution. */
 struct rigid_equations {
-    double impulse[3], fluid[3][3];
+    double impulse[3];
+    double resisting[3][3];           /* T' Z of T-96: mass of fluid, kg/m, kg, kg m */
     double from_fluid[3];             /* the fluid's part of the impulse */
     double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
     double at_start[3];               /* velocity at the time of the start */
     double change[3], faster[3];      /* of the velocity before, and delta */
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
-    double pushed[3];                 /* change by contact with solids and beams */
+    double push_change[3];            /* change by contact with solids and beams */
     double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */

@@ -4,11 +4,11 @@
 #include "rigid/forces.h"
 
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
-                      const struct wall_motion *motion, struct particles *walls, bool centred,
+                      const struct wall_motion *motion, struct particles *walls, bool mid_step,
                       struct diag *d)
 {
     *rigid = (struct rigid){.n = scene->n_rigid, .scene = scene, .walls = walls};
-    rigid->centred = centred;
+    rigid->mid_step = mid_step;
     rigid->impedance = scene->rho0 * scene->c0;
     rigid->mean_time = scene->n_fluid > 0 ? scene->h / scene->c0 : 0;
     TRY(arena_array(a, &rigid->body, rigid->n, "rigid bodies", d));
@@ -40,7 +40,7 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
 static void at_end(const struct rigid *rigid, double dt, const double value[3],
                    const double rate[3], double end[3])
 {
-    for (int c = 0; c < 3; c++) end[c] = value[c] + (rigid->centred ? 0 : 0.5 * dt * rate[c]);
+    for (int c = 0; c < 3; c++) end[c] = value[c] + (rigid->mid_step ? 0 : 0.5 * dt * rate[c]);
 }
 
 void rigid_publish(const struct rigid *rigid, double time, double dt)
@@ -136,7 +136,7 @@ static void prepare_body(struct rigid *rigid, int k, const double gravity[2], do
         eq->before[c] = s->v[c];
         eq->from_fluid[c] = rates_time * force[c] - part * s->impulse[c];
         eq->impulse[c] = eq->from_fluid[c] + rates_time * heavy;
-        for (int e = 0; e < 3; e++) eq->fluid[c][e] = after * impedance[c][e];
+        for (int e = 0; e < 3; e++) eq->resisting[c][e] = after * impedance[c][e];
     }
 }
 
@@ -164,7 +164,7 @@ void rigid_add_impulse(struct rigid *rigid, int k, const double impulse[3])
 /* What solids change in the velocity after the forces of a step that act at its start. */
 static double change_by_solids(const struct rigid *rigid, int k, int c)
 {
-    return rigid->centred ? 0 : rigid->eq[k].pushed[c];
+    return rigid->mid_step ? 0 : rigid->eq[k].push_change[c];
 }
 
 static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
@@ -177,14 +177,14 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     body->received = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
-        for (int e = 0; e < 3; e++) resisted += eq->fluid[c][e] * eq->faster[e];
+        for (int e = 0; e < 3; e++) resisted += eq->resisting[c][e] * eq->faster[e];
         const double change = rates_time * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
         body->mean[c] = eq->before[c] + 0.5 * (change - change_by_solids(rigid, k, c));
         body->received += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / rates_time;
         s->impulse[c] += rates_time * s->rate[c];
         s->v[c] = eq->before[c] + change;
-        s->x[c] += step->late * (s->v[c] - eq->pushed[c]) + body->moved[c] +
+        s->x[c] += step->late * (s->v[c] - eq->push_change[c]) + body->moved[c] +
                    step->dt * eq->touch[RIGID_PUSH][c];
     }
     rigid_hold(rigid, k, rigid->end, rigid->end);
@@ -199,7 +199,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double rates_time)
     const double weight = rates_time / (rates_time + rigid->mean_time);
     for (int c = 0; c < 3; c++) {
         const double impact = eq->touch[RIGID_IMPACT][c] / rates_time,
-                     push = eq->pushed[c] / rates_time;
+                     push = eq->push_change[c] / rates_time;
         /* An impact is no acceleration that the fluid could expect to go on. */
         const double steady = (s->v[c] - eq->start[c]) / rates_time - impact;
         /* The force that turns the velocity within the step is a reaction, too. */
@@ -220,14 +220,14 @@ static void end_body(struct rigid *rigid, int k, double dt, double rates_time)
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt,
                  double rates_time)
 {
-    const double late = rigid->centred ? 0.5 * dt : dt, now = time + dt - late;
+    const double late = rigid->mid_step ? 0.5 * dt : dt, now = time + dt - late;
     rigid->end = time + dt;
-    for (int k = 0; k < rigid->n && rigid->centred; k++)
+    for (int k = 0; k < rigid->n && rigid->mid_step; k++)
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
     for (int k = 0; k < rigid->n; k++) {
         struct rigid_body *const body = &rigid->body[k];
         struct motion_state *const published = &rigid->scene->rigid_motion[k].now;
-        memset(body->pushed, 0, sizeof body->pushed);
+        memset(body->push_impulse, 0, sizeof body->push_impulse);
         memset(body->moved, 0, sizeof body->moved);
         prepare_body(rigid, k, gravity, now, dt, rates_time);
         rigid_solve(rigid, k, rigid->end, rates_time);
@@ -239,15 +239,15 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
 
 void rigid_advance(struct rigid *rigid, double time, double dt, double rates_time)
 {
-    const struct rigid_step step = {dt, rates_time, .late = rigid->centred ? 0.5 * dt : dt};
+    const struct rigid_step step = {dt, rates_time, .late = rigid->mid_step ? 0.5 * dt : dt};
     const double now = time + dt - step.late;
     for (int k = 0; k < rigid->n; k++) {
-        velocity_by(&rigid->eq[k], rigid->body[k].pushed, rigid->eq[k].pushed);
-        rigid_add_impulse(rigid, k, rigid->body[k].pushed);
+        velocity_by(&rigid->eq[k], rigid->body[k].push_impulse, rigid->eq[k].push_change);
+        rigid_add_impulse(rigid, k, rigid->body[k].push_impulse);
     }
     rigid_find_impulses(rigid, now, &step);
     for (int k = 0; k < rigid->n; k++) move_body(rigid, k, &step);
-    if (rigid->centred) rigid_hinges_hold(rigid, rigid->end, rates_time);
+    if (rigid->mid_step) rigid_hinges_hold(rigid, rigid->end, rates_time);
     for (int k = 0; k < rigid->n; k++) end_body(rigid, k, dt, rates_time);
     rigid_impulse_work(rigid);
 }
@@ -281,7 +281,7 @@ void rigid_kick(struct rigid *rigid, double time, double dt)
         motion->now.v[1] += change[1];
         motion->now.rate += change[2];
         for (int c = 0; c < 3; c++) {
-            body->pushed[c] += impulse[c];
+            body->push_impulse[c] += impulse[c];
             body->moved[c] += (rigid->end - time) * change[c];
         }
     }
@@ -294,9 +294,9 @@ void rigid_free_motion(const struct rigid *rigid, int k, double time, double dt,
 {
     const struct rigid_body *const body = &rigid->body[k];
     const struct rigid_equations *const eq = &rigid->eq[k];
-    const double moved = rigid->centred ? 0.5 : 0;
+    const double moved = rigid->mid_step ? 0.5 : 0;
     memcpy(x, rigid->state[k].x, sizeof rigid->state[k].x);
-    velocity_by(eq, body->pushed, v);
+    velocity_by(eq, body->push_impulse, v);
     for (int c = 0; c < 3; c++) {
         x[c] -= moved * dt * eq->start[c];
         v[c] += eq->at_start[c];

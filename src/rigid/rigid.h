@@ -9,7 +9,7 @@
 /* What a run carries from step to step: x, y and angle each. Doubles only: saved as such. */
 struct rigid_state {
     double x[3];          /* displacement, m, rad */
-    double v[3];          /* velocity; half a step before x unless `centred` */
+    double v[3];          /* velocity; half a step before x unless `mid_step` */
     double last[3];       /* acceleration of the last step, m/s^2, 1/s^2 */
     double a[3];          /* mean acceleration, as the fluid's equations use it (T-98) */
     double impulse[3];    /* that the fluid has still to receive, N s/m and N s (T-97) */
@@ -28,7 +28,7 @@ struct rigid_body {
     int hinge_motion;                /* of this wall; -1: in place */
     double mean[3];                  /* velocity over the last step, m/s and 1/s */
     /* Contact with solids and beams: force now, its impulse, what it moves in the next step. */
-    double push[3], pushed[3], moved[3];
+    double push[3], push_impulse[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
     double received, driven, passed;
 };
@@ -57,13 +57,13 @@ struct rigid {
     struct particles *walls;
     double impedance; /* rho0 c0; 0: no fluid */
     double mean_time; /* h/c0: of the mean acceleration, s; 0: no fluid */
-    bool centred;     /* forces are found in the middle of a step */
+    bool mid_step;    /* forces are found in the middle of a step */
     double end;       /* of the step that has begun, s */
     bool crowded;     /* more places touch than the memory holds */
 };
 
 enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *scene,
-                      const struct wall_motion *motion, struct particles *walls, bool centred,
+                      const struct wall_motion *motion, struct particles *walls, bool mid_step,
                       struct diag *d) SPHFSI_CHECKED;
 
 /* The [rigid] of a name; -1: none. */

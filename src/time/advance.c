@@ -17,7 +17,7 @@ void advance_solids(struct simulation *sim, double dt, double rates_time)
 void begin_rigid(struct simulation *sim, double time, double dt, double rates_time)
 {
     double gravity[2];
-    scene_gravity_at(sim->scene, time + (sim->rigid.centred ? 0.5 * dt : 0), gravity);
+    scene_gravity_at(sim->scene, time + (sim->rigid.mid_step ? 0.5 * dt : 0), gravity);
     rigid_begin(&sim->rigid, gravity, time, dt, rates_time);
 }
 
@@ -67,7 +67,7 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
 
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
 {
-    enum { BLOCK = 256 };
+    enum { BLOCK = 256 }; /* particles whose fields stay in the first-level cache */
     struct particles *const particles = &sim->particles[KIND_FLUID];
     double low = 0, high = 0, speed2 = 0, nan_probe = 0;
 #pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \

@@ -86,8 +86,9 @@ int particles_near(const struct simulation *sim, double x, double y, int kinds);
 
 /* --- solid_steps.c --- */
 
-/* Up to 16 steps of solids without fluid, or one with rigid bodies, which end at t_limit at the
- * latest. The observer sees the state before them and those on both sides of its time. */
+/* Up to SOLID_BATCH steps of solids without fluid, or one with rigid bodies, not beyond t_limit.
+ * The observer sees the state before them and those on both sides of its time. */
+enum { SOLID_BATCH = 16 };
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* --- the integrators, each in a file of its own --- */

@@ -199,7 +199,7 @@ void energy_book_evaluation(struct simulation *sim, double dt)
     const struct particles *const fluid = &sim->particles[KIND_FLUID];
     const struct particles *const solid = &sim->particles[KIND_SOLID];
     const struct external *const external = &sim->external[KIND_FLUID];
-    for (int64_t i = 0; i < fluid->n && external->at; i++)
+    for (int64_t i = 0; i < fluid->n && external->accelerate; i++)
         entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
             dt * particle_mass(&sim->fluid.k, fluid, i) *
             (external->ax[i] * fluid->vx[i] + external->ay[i] * fluid->vy[i]);
@@ -368,8 +368,8 @@ void energy_after_step(struct simulation *sim)
         e->supplied_before = e->supplied;
     }
     if (sim->contact.touched) join_bodies(sim); /* they may part before the test */
-    if (sim->beams.pushed) join_beams(sim, scene_rigid_wall(sim->scene, 0));
-    sim->contact.touched = sim->beams.pushed = false;
+    if (sim->beams.has_pushed_body) join_beams(sim, scene_rigid_wall(sim->scene, 0));
+    sim->contact.touched = sim->beams.has_pushed_body = false;
 }
 
 void energy_begin(struct simulation *sim)

@@ -25,7 +25,7 @@ void find_external(struct simulation *sim, enum kind kind, double time)
     const size_t bytes = (size_t)sim->particles[kind].n * sizeof *external->ax;
     memset(external->ax, 0, bytes);
     memset(external->ay, 0, bytes);
-    external->at(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
+    external->accelerate(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
                  external->ax, external->ay);
 }
 
@@ -79,8 +79,8 @@ void evaluate_rates(struct simulation *sim, double time)
     if (sim->effects & FX_OPEN) open_hold(&sim->open);
     if (sim->effects & FX_DAMPING_ZONE)
         damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->particles[KIND_FLUID]);
-    if (sim->external[KIND_FLUID].at) add_external(sim, time);
-    if (sim->external[KIND_SOLID].at) find_external(sim, KIND_SOLID, time);
+    if (sim->external[KIND_FLUID].accelerate) add_external(sim, time);
+    if (sim->external[KIND_SOLID].accelerate) find_external(sim, KIND_SOLID, time);
 }
 
 void evaluate_start(struct simulation *sim)
@@ -99,7 +99,8 @@ void simulation_refresh(struct simulation *sim)
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
         evaluate_rates(sim, sim->state.time);
         /* A caller's own forces and motions may change between two steps. */
-        sim->evaluated = !sim->external[KIND_FLUID].at && !sim->external[KIND_SOLID].at &&
+        sim->evaluated = !sim->external[KIND_FLUID].accelerate &&
+                         !sim->external[KIND_SOLID].accelerate &&
                          !sim->scene->motion_hook;
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }

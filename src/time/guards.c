@@ -14,7 +14,7 @@
 #define STEP_WARNING 100 /* times the limit of the step */
 
 struct finding {
-    int64_t at; /* -1: none found */
+    int64_t particle; /* -1: none found */
     const char *quantity;
     double value, limit;
 };
@@ -32,7 +32,7 @@ static struct finding find_invalid(const struct particles *particles, double spe
         if (dens_limit > 0 && !(fabs(particles->dens[i]) <= dens_limit))
             return (struct finding){i, "rho/rho0 - 1", particles->dens[i], dens_limit};
     }
-    return (struct finding){.at = -1};
+    return (struct finding){.particle = -1};
 }
 
 static enum err invalid(const struct simulation *sim, enum kind kind, struct finding f,
@@ -45,8 +45,8 @@ static enum err invalid(const struct simulation *sim, enum kind kind, struct fin
     return diag_fail(d, ERR_GUARD,
                      "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, %s: %s",
                      time_text(sim).text, (long long)sim->state.steps, kind_names[kind],
-                     (long long)particles->id[f.at], particles->x[f.at], particles->y[f.at],
-                     f.quantity, f.value, limit, cause);
+                     (long long)particles->id[f.particle], particles->x[f.particle],
+                     particles->y[f.particle], f.quantity, f.value, limit, cause);
 }
 
 /* Says a sentence about the present state, if `warned` is not set yet. */
@@ -91,7 +91,7 @@ static enum err check_fluid(struct simulation *sim, struct diag *d)
     if (!fluid_is_valid(sim)) {
         const struct finding f = find_invalid(&sim->particles[KIND_FLUID], sim->guard.speed_limit,
                                               sim->guard.dens_limit);
-        if (f.at >= 0)
+        if (f.particle >= 0)
             return invalid(sim, KIND_FLUID, f, sim->guard.warned_entered ? ENTERED : UNSTABLE, d);
     }
     if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0)
@@ -149,7 +149,7 @@ static struct finding too_fast(const struct simulation *sim, const struct partic
             return (struct finding){i, "speed relative to the first particle of its body (m/s)",
                                     sqrt(speed2), limit};
     }
-    return (struct finding){.at = -1};
+    return (struct finding){.particle = -1};
 }
 
 static enum err check_contact(struct simulation *sim, struct diag *d)
@@ -182,7 +182,7 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
 {
     const struct particles *const particles = &sim->particles[KIND_SOLID];
     const struct finding fast = too_fast(sim, particles);
-    if (fast.at >= 0)
+    if (fast.particle >= 0)
         return invalid(sim, KIND_SOLID, fast,
                        "this is ten times the speed of sound of the material. The solid is "
                        "unstable (a smaller solid_safety may help) or far too soft for its load",
@@ -201,8 +201,8 @@ static enum err check_solid(struct simulation *sim, struct diag *d)
             sim, &sim->guard.warned_det, d,
             "solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
             "the material is inverted and the run stops; a smaller dp or a stiffer law may help",
-            (long long)particles->id[det.at], particles->x[det.at], particles->y[det.at],
-            det.value);
+            (long long)particles->id[det.particle], particles->x[det.particle],
+            particles->y[det.particle], det.value);
     return ERR_OK;
 }
 
@@ -267,6 +267,7 @@ static enum err check_motion(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
+/* Steps between two sums, which cost a pass; a share above what sampling and density change. */
 enum { VOIDS_INTERVAL = 256 };
 #define VOIDS_SHARE 0.01
 

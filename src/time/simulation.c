@@ -32,17 +32,17 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     return ERR_OK;
 }
 
-enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *at,
+enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *f,
                                  void *context, struct diag *d)
 {
     struct external *const external = &sim->external[kind];
     const size_t n = (size_t)sim->particles[kind].capacity;
     if (!external->ax) TRY(arena_array(&sim->arena, &external->ax, n, "accelerations", d));
     if (!external->ay) TRY(arena_array(&sim->arena, &external->ay, n, "accelerations", d));
-    external->at = at;
+    external->accelerate = f;
     external->context = context;
-    sim->evaluated = false; /* the last evaluation lacked `at` */
-    if (kind == KIND_SOLID) sim->solid.external = at ? external : NULL;
+    sim->evaluated = false; /* the last evaluation lacked it */
+    if (kind == KIND_SOLID) sim->solid.external = f ? external : NULL;
     return ERR_OK;
 }
 

@@ -5,9 +5,9 @@
 
 #include "time/advance.h"
 
-/* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
+/* Registers `f`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
-enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *at,
+enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *f,
                                  void *context, struct diag *d) SPHFSI_CHECKED;
 
 /* Builds the state at time zero from a scene, or the arrays for it if a checkpoint is to be loaded.

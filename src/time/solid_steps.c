@@ -4,9 +4,6 @@
 #include "time/guards.h"
 #include "time/timestep.h"
 
-/* Steps of a solid without fluid between two checks of its state. */
-enum { SOLID_BATCH = CHECK_INTERVAL };
-
 /* n steps; implicit ones have explicit sub-steps while surfaces are near each other. */
 static void advance_lone(struct simulation *sim, double dt, int n)
 {
