@@ -36,23 +36,25 @@ struct beam_contact {
 
 /* --- pieces --- */
 
-static void add_piece(struct beam_contact *contact, int wall, const double from[2],
-                      const double to[2], double radius)
+static enum err add_piece(struct beam_contact *contact, int wall, const double from[2],
+                          const double to[2], double radius, struct arena *a, struct diag *d)
 {
-    struct beam_piece *const piece = &contact->piece[contact->n_pieces++];
-    *piece = (struct beam_piece){.wall = wall, .radius = radius};
-    memcpy(piece->from, from, sizeof piece->from);
-    memcpy(piece->to, to, sizeof piece->to);
+    TRY(arena_more(a, &contact->piece, contact->n_pieces, "beams", d));
+    contact->piece[contact->n_pieces++] =
+        (struct beam_piece){wall, {from[0], from[1]}, {to[0], to[1]}, radius};
+    return ERR_OK;
 }
 
-static void add_outlines(struct beam_contact *contact, int wall, const struct outlines *o)
+static enum err add_outlines(struct beam_contact *contact, int wall, const struct outlines *o,
+                             struct arena *a, struct diag *d)
 {
     for (int k = 0; k < o->n; k++) {
-        const struct outline *const item = &o->item[k];
-        if (!item->n) add_piece(contact, wall, item->centre, item->centre, item->radius);
-        for (int j = 0; j < item->n; j++)
-            add_piece(contact, wall, item->pt[j], item->pt[j + 1 < item->n ? j + 1 : 0], 0);
+        const struct outline *const i = &o->item[k];
+        if (!i->n) TRY(add_piece(contact, wall, i->centre, i->centre, i->radius, a, d));
+        for (int j = 0; j < i->n; j++)
+            TRY(add_piece(contact, wall, i->pt[j], i->pt[j + 1 < i->n ? j + 1 : 0], 0, a, d));
     }
+    return ERR_OK;
 }
 
 static enum err create_pieces(struct beams *beams, struct arena *a, struct arena *temp,
@@ -60,24 +62,15 @@ static enum err create_pieces(struct beams *beams, struct arena *a, struct arena
 {
     const struct scene *const scene = beams->scene;
     struct beam_contact *const contact = beams->contact;
-    const size_t n = (size_t)contact->n_walls;
-    struct body_outlines *const o = arena_alloc(temp, n, sizeof *o, "beams", d);
-    int most = 0;
-    if (!o) return ERR_MEMORY;
     for (int w = 0; w < contact->n_walls; w++) {
-        TRY(body_outlines_of(&o[w], scene, &scene->wall[w].shape, &scene->wall[w].minus, temp, d));
-        most += outlines_ends(&o[w].add) + outlines_ends(&o[w].minus);
-        for (int k = 0; k < scene->wall[w].shape.n; k++) most += scene->wall[w].shape.item[k].n;
-    }
-    TRY(arena_array(a, &contact->piece, most, "beams", d));
-    for (int w = 0; w < contact->n_walls; w++) {
-        add_outlines(contact, w, &o[w].add);
-        add_outlines(contact, w, &o[w].minus);
-        for (int k = 0; k < scene->wall[w].shape.n; k++) {
-            const struct shape *const s = &scene->wall[w].shape.item[k];
+        const struct shape_list *const shapes = &scene->wall[w].shape;
+        struct body_outlines o;
+        TRY(body_outlines_of(&o, scene, shapes, &scene->wall[w].minus, temp, d));
+        TRY(add_outlines(contact, w, &o.add, a, d));
+        TRY(add_outlines(contact, w, &o.minus, a, d));
+        for (const struct shape *s = shapes->item; s < shapes->item + shapes->n; s++)
             for (int j = 0; s->thin && j + 1 < s->n; j++)
-                add_piece(contact, w, s->pt[j], s->pt[j + 1], 0);
-        }
+                TRY(add_piece(contact, w, s->pt[j], s->pt[j + 1], 0, a, d));
     }
     return ERR_OK;
 }

@@ -57,12 +57,10 @@ static bool meet(const struct check *check, const struct part *p, const struct p
     const double nothing = beside * check->scene->top.dp;
     double end[4][2]; /* of q relative to p, of p relative to q */
     for (int k = 0; k < 4; k++) {
-        const struct line_part *const on = k < 2 ? &p->line : &q->line, *const of = k < 2
-                                                                                        ? &q->line
-                                                                                        : &p->line;
-        memcpy(at, k % 2 ? of->to : of->from, 2 * sizeof *at);
-        relative_to_part(on, at, end[k]);
-        const double beyond = max2(-end[k][0], end[k][0] - on->length);
+        const struct part *const on = k < 2 ? p : q, *const of = k < 2 ? q : p;
+        memcpy(at, k % 2 ? of->line.to : of->line.from, 2 * sizeof *at);
+        relative_to_part(&on->line, at, end[k]);
+        const double beyond = max2(-end[k][0], end[k][0] - on->line.length);
         if (fabs(end[k][1]) < nothing && beyond < nothing && !may_meet(check, p, q, at))
             return true;
     }

@@ -98,9 +98,7 @@ static void warn_of_surface(struct check *check, int f)
  * compresses it by g H/c0^2, unless gravity is along a periodic side. */
 static void warn_of_density(struct check *check, int f)
 {
-    enum {
-        LIGHTEST_LIQUID = 100
-    }; /* kg/m^3; liquid hydrogen has 71, all other liquids have more */
+    enum { LIGHTEST_LIQUID = 100 }; /* kg/m^3; hydrogen has 71, all others have more */
     const struct scene *const scene = check->scene;
     const struct scene_fluid *const fluid = &scene->fluid[f];
     if (fluid->density < LIGHTEST_LIQUID)
@@ -347,18 +345,15 @@ static void warn_of_dry_probe(struct check *check, const struct scene_probe *pro
 {
     const struct scene *const scene = check->scene;
     const double *const at = probe->point;
-    if (scene_probe_target(probe) != TARGET_FLUID_POINT) return;
-    if (is_buried(check, at)) {
-        char value[SCENE_NAME + 80] = "its value is the height of the point";
-        if (probe->quantity != PROBE_LEVEL)
-            snprintf(value, sizeof value, "its %s comes from fluid within 2 h = %g m, or is 0",
-                     quantity_table[probe->quantity].name, 2 * scene->h);
-        warn_section(
-            check, &probe->common,
-            "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "
-            "it to the face",
-            at[0], at[1], value);
-    }
+    if (scene_probe_target(probe) != TARGET_FLUID_POINT || !is_buried(check, at)) return;
+    char value[SCENE_NAME + 80] = "its value is the height of the point";
+    if (probe->quantity != PROBE_LEVEL)
+        snprintf(value, sizeof value, "its %s comes from fluid within 2 h = %g m, or is 0",
+                 quantity_table[probe->quantity].name, 2 * scene->h);
+    warn_section(check, &probe->common,
+                 "point = %g, %g lies inside a wall or solid, where there is no fluid, so %s; move "
+                 "it to the face",
+                 at[0], at[1], value);
 }
 
 /* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The force of the fluid on structures, and on walls that move or whose force is probed (Eq. 21b).
  * Included by force_mixed.c and force_double.c after the header of their precision. */
-
 #include "coupling/coupling.h"
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */

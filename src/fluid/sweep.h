@@ -5,7 +5,6 @@
  * of cells only, and chunks do not depend on the number of threads; so neither do the bits. Each
  * lane of a group of four has its own sum over candidates, so the bits do not depend on the number
  * of groups in a vector. */
-
 #include "fluid/fluid.h"
 #include "fluid/neighbours.h"
 /* After the definitions that they need. */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * What the matrix of implicit steps needs and never changes: links between particles, the
  * numbering of the unknowns, and the springs of hourglass control. */
-
 #include "base/box2.h"
 #include "implicit/implicit.h"
 #include "solid/loads.h"

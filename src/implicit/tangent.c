@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * The matrix of T-92 and its factors. */
-
 #include "implicit/implicit.h"
 #include "implicit/stress.h"
 

@@ -147,17 +147,12 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
     list_run(list, m, sim);
     for (unsigned k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++) {
+            const size_t count = (size_t)sim->particles[k].n;
             const struct field_info *const info = &field_table[f];
             void *const data = field_array(&sim->particles[k], info);
             if (!data || info->keep != KEEP_STATE) continue;
-            struct part part = {info->name,
-                                k,
-                                item_of(info->type),
-                                data,
-                                (size_t)sim->particles[k].n,
-                                FORK_LOADS,
-                                -FINITE,
-                                FINITE};
+            struct part part = {info->name, k, item_of(info->type), data, count, FORK_LOADS,
+                                -FINITE,    FINITE};
             if (info->group & new_in_fork[k]) part.in_fork = FORK_LOADS_IF_THERE;
             if (data == sim->particles[k].body) part.low = 0, part.high = sections[k] - 1;
             add_part(list, part);

@@ -3,7 +3,6 @@
  * k-d tree (Bentley 1975) that halves along the longer axis. The order follows from positions
  * and ids alone, so that a restart reproduces it: positions at the sort for fluid, in the
  * reference configuration for bodies. */
-
 #include "particles/cells.h"
 #include "base/simd.h"
 

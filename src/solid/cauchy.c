@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * True stress of a particle and energy of bodies, for output. */
-
 #include "solid/material_energy.h"
 
 /* Displacement gradients of `count` particles, in the first lanes; the others have none. */

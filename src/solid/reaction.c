@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Accelerations and the forces of clamps and hinges, for output. */
-
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"

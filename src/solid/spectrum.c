@@ -2,7 +2,6 @@
  * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the article
  * contains the speed of sound only; the hourglass springs are stiffer than the material and limit
  * the step. */
-
 #include "solid/material.h"
 
 /* Numbers without a pattern that the operator could have too; the same on every machine. */

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Limits beyond which a state is invalid: what stopped a run, where, and what helps. */
-
 #include <float.h>
 #include <stdarg.h>
 

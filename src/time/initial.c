@@ -158,23 +158,24 @@ static enum err create_bare_solids(struct simulation *sim, struct diag *d)
 /* The solids with what acts on them: implicit steps, contact, loads. */
 static enum err create_solids(struct simulation *sim, struct diag *d)
 {
+    struct arena *const a = &sim->arena;
+    struct particles *const particles = &sim->particles[KIND_SOLID];
     TRY(create_bare_solids(sim, d));
     sim->state.solid_stiffening = sim->state.solid_slowing = 1;
     timestep_set_solid(sim);
     if (implicit_pays(sim)) {
         sim->effects |= FX_IMPLICIT;
-        TRY(particles_add(&sim->particles[KIND_SOLID], &sim->arena, G_MATRIX, "solid", d));
+        TRY(particles_add(particles, a, G_MATRIX, "solid", d));
         TRY(create_bare_solids(sim, d));
     }
     if (sim->effects & FX_CONTACT)
-        TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
-                           &sim->particles[KIND_SOLID], d));
+        TRY(contact_create(&sim->contact, a, sim->scene, &sim->solid, particles, d));
     if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION))
-        TRY(loads_create(&sim->solid, &sim->arena, sim->scene, &sim->particles[KIND_SOLID], d));
+        TRY(loads_create(&sim->solid, a, sim->scene, particles, d));
     if (sim->effects & FX_IMPLICIT) {
-        TRY(implicit_create(&sim->solid, &sim->arena, &sim->particles[KIND_SOLID], d));
+        TRY(implicit_create(&sim->solid, a, particles, d));
         if (!(sim->effects & FX_FLUID))
-            sim->solid.implicit->period = implicit_period(&sim->solid, &sim->particles[KIND_SOLID]);
+            sim->solid.implicit->period = implicit_period(&sim->solid, particles);
     }
     sim->solid.gravity_scene = sim->gravity_varies ? sim->scene : NULL;
     timestep_set_solid(sim);
@@ -195,6 +196,8 @@ static void set_step_of_bodies(struct simulation *sim)
 
 enum err initial_state(struct simulation *sim, struct diag *d)
 {
+    struct arena *const a = &sim->arena;
+    struct particles *const walls = &sim->particles[KIND_WALL];
     sim->gravity_varies = scene_gravity_varies(sim->scene);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
@@ -205,7 +208,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     sim->open = (struct open){.k = &sim->fluid.k,
                               .particles = &sim->particles[KIND_FLUID],
                               .cells = &sim->cells};
-    if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, &sim->arena, sim->scene, id, d));
+    if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, a, sim->scene, id, d));
     sim->coupling = (struct coupling){
         .scene = sim->scene,
         .fluid = &sim->fluid,
@@ -217,19 +220,16 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     };
     if (sim->effects & FX_SOLID) TRY(create_solids(sim, d));
     if (sim->effects & FX_MOTION) {
-        TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene,
-                               &sim->particles[KIND_WALL], d));
+        TRY(wall_motion_create(&sim->wall_motion, a, sim->scene, walls, d));
         if (sim->effects & FX_RIGID)
-            TRY(rigid_create(&sim->rigid, &sim->arena, sim->scene, &sim->wall_motion,
-                             &sim->particles[KIND_WALL],
+            TRY(rigid_create(&sim->rigid, a, sim->scene, &sim->wall_motion, walls,
                              sim->integrator->stage > 0 || !(sim->effects & FX_FLUID), d));
         if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
-    if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, &sim->arena, sim->scene, d));
+    if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, a, sim->scene, d));
     if (sim->effects & FX_BEAM && sim->effects & FX_RIGID) sim->beams.rigid = &sim->rigid;
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
-        TRY(beams_wet_create(&sim->beams, &sim->arena, &sim->fluid.lines,
-                             &sim->particles[KIND_WALL], sim->integrator->stage,
+        TRY(beams_wet_create(&sim->beams, a, &sim->fluid.lines, walls, sim->integrator->stage,
                              sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);

@@ -3,7 +3,6 @@
  * positions, and the density follows the third-order Adams-Bashforth rule. The evaluation uses the
  * velocity extrapolated by half a step. Stable up to more than twice the step of Eqs. 22-26 for the
  * same work. */
-
 #include "time/advance.h"
 
 /* T-32b: mean rate over the coming step dt from the present rates, those dt_old earlier, and those
