@@ -80,8 +80,7 @@ static void on_signal(int number)
         requests.stop = number;
 }
 
-/* A second SIGINT while the checkpoint is written ends the program immediately; a second SIGTERM
- * does not, since batch systems send several. */
+/* A second SIGINT ends the program at once; batch systems send SIGTERM more than once. */
 static void install_signals(void)
 {
     struct sigaction once = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};

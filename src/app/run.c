@@ -87,8 +87,7 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->dir.path, r->checkpoint, d);
 }
 
-/* [output] snapshot_failure says whether a failure stops the run. If not, the next snapshot is
- * tried; the file keeps the earlier ones. */
+/* The next snapshot is tried unless snapshot_failure = stop; the file keeps the earlier ones. */
 static enum err write_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);

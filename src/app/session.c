@@ -213,8 +213,7 @@ void session_close(struct session *session)
     scene_free(&session->scene);
 }
 
-/* Most steps of a run and rows of a file. `step`: the longest that the program chooses. Keys are
- * the time between two steps or outputs; 0: not set. */
+/* Most steps and rows. `step`: the longest of the program; keys: times between two, 0: not set. */
 static enum err check_counts(const struct scene *scene, double step, struct diag *d)
 {
     static const double max_count = 1e10;

@@ -20,8 +20,7 @@
 #define SPHFSI_CHECKED __attribute__((warn_unused_result))
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
-/* An invariant that no input can break. Checked in debug, sanitizer and thread builds; the
- * release build (NDEBUG) does not evaluate it. */
+/* An invariant that no input can break; release builds (NDEBUG) do not evaluate it. */
 #ifdef NDEBUG
 #define ASSERT(condition) ((void)sizeof(condition))
 #else

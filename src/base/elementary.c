@@ -3,8 +3,7 @@
 #include "base/elementary.h"
 #include "base/base.h"
 
-/* A double-double: the number hi + lo, hi being its nearest double (Dekker 1971). Operations on
- * them have relative errors of some 2^-104. */
+/* The number hi + lo, hi its nearest double (Dekker 1971): relative errors of some 2^-104. */
 struct dd {
     double hi, lo;
 };

@@ -11,8 +11,7 @@ enum { PATH_BYTES = 4096 };
 enum err path_join(char path[PATH_BYTES], const char *folder, const char *name, struct diag *d)
     SPHFSI_CHECKED;
 
-/* As open(), but fails with ELOOP on a symbolic link: a link in the folder of a run must not
- * redirect output to another place. */
+/* As open(), but ELOOP on a symbolic link, which must not redirect the output of a run. */
 int file_open_no_follow(const char *path, int flags);
 
 /* strerror(), except that ELOOP is explained as file_open_no_follow means it. */
@@ -57,8 +56,7 @@ struct run_dir {
 /* Whether the folder may be used so; changes nothing. */
 enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d) SPHFSI_CHECKED;
 
-/* Creates the folder and its parents, checks it as run_dir_check does, and locks it until
- * run_dir_close or the end of the process. */
+/* Creates the folder, checks it as run_dir_check does, and locks it until run_dir_close. */
 enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use use, struct diag *d)
     SPHFSI_CHECKED;
 void run_dir_close(struct run_dir *dir);

@@ -353,8 +353,7 @@ SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
 }
 #endif
 
-/* Stores to `out`, in order, the items whose lane of a is below the limit; returns their number.
- * Always writes LANES_FLOAT items. */
+/* Stores to `out` the items whose lane of a is below the limit; always writes LANES_FLOAT. */
 SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, float limit)
 {
 #ifdef SIMD_AVX512

@@ -36,8 +36,7 @@ static void stiffness_of(const struct scene_beam *b, double of[3])
     of[2] = isnan(b->bending_stiffness) ? young * t * t * t / 12 : b->bending_stiffness;
 }
 
-/* T-103d: Gregory's quadrature of n equal elements, exact for cubic functions: total mass, its
- * centre and its inertia are those of the line. */
+/* T-103d: Gregory's quadrature of n equal elements, exact for cubic functions. */
 static double weight_of(int k, int n)
 {
     static const double ends[] = {3.0 / 8, 7.0 / 6, 23.0 / 24};

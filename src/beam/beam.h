@@ -163,8 +163,7 @@ double beams_longest_step(struct beams *beams);
 /* The part of it that remains while springs are stiffer than it takes into account. */
 double beams_stiffer_step(const struct beams *beams);
 
-/* The lengths of a step, of the one before (0: the first), and of that of the velocities by the
- * rates of the last evaluation, s. */
+/* Lengths of a step, of the one before (0: none), and for which rates act, s. */
 struct beam_times {
     double dt, last, kick;
 };
@@ -174,8 +173,7 @@ void beams_advance(struct beams *beams, double time, const struct beam_times *ti
 
 /* --- for output --- */
 
-/* The point of a beam that is nearest to a point at the start: an element, the part of it before
- * that point, and the distance, m. */
+/* The nearest point of a beam at the start: an element, the part before it, the distance, m. */
 struct beam_place {
     int element;
     double part, distance;
@@ -196,8 +194,7 @@ enum { BEAM_PAIRS = 512 }; /* that may touch at a time */
 
 enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Finds the pairs of a step of dt from a time on that may touch, for the displacements of its
- * first guess. No force acts there yet. */
+/* Finds the pairs that may touch in a step, by its first guess. No force acts there yet. */
 void beams_find_pairs(struct beams *beams, double time, double dt);
 
 /* Adds the forces of contact to those of the nodes (`touch` of struct beam_step). */

@@ -68,8 +68,7 @@ static struct middle find_middle(const struct beam_element *e, const struct beam
     return m;
 }
 
-/* The derivative of the force, without that of the shares and of the cosine of half the rotation,
- * which vanish with the step. Symmetric. */
+/* The derivative of the force, but for shares and cosine, which vanish with the step. Symmetric. */
 static void find_matrix(const struct beam_element *e, const struct middle *m, const double N[3],
                         double weight, const double force[2][3], double matrix[6][6])
 {

@@ -107,8 +107,7 @@ enum err case_split(struct reader *r, const char *text, int n_sets, const char *
     SPHFSI_CHECKED;
 const struct entry *case_entry(const struct reader *r, int section, const char *key);
 
-/* case/numbers.c. Finds the names of all constants and of the numbers at the top, ERR_INPUT if one
- * is invalid; then evaluates all of them. */
+/* case/numbers.c: finds the names of constants and numbers at the top; then evaluates all. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */

@@ -33,8 +33,7 @@ static const struct preset {
     const char *key;
     double value;
 } presets[] = {
-    /* scheme: `paper` has no rows. What each row gains and costs:
-     * docs/notes/2026-11-23-fluid-scheme.md. */
+    /* scheme: `paper` has no rows. See docs/notes/2026-11-23-fluid-scheme.md. */
     {true, FLUID, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 2},
     {true, STREAM, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 1.35},
     {true, COUPLED, SCHEME_STANDARD, ANY, SECTION_numerics, "h_over_dp", 1.5},

@@ -54,8 +54,7 @@ static enum err allocate_sections(struct reader *r)
 
 /* --- `like` --- */
 
-/* `like = NAME`: the values of an earlier section of the kind become the defaults. Its regions do
- * not, since two bodies cannot be in the same place. */
+/* `like = NAME`: values of an earlier section become the defaults, but not its regions. */
 static enum err inherit(struct reader *r, const struct param *like, struct scene_section_common *to)
 {
     char *const target = (void *)to;

@@ -51,8 +51,7 @@ static enum err warn_of_missing_floor(struct check *check)
 
 /* --- `surface`: gravity along -y, and water up to that height --- */
 
-/* Gravity at t = 0 sets the initial pressure. Fluid with nothing above it, more than one spacing
- * below the surface, begins under pressure. */
+/* Fluid with nothing above it, a spacing or more below the surface, begins under pressure. */
 static void warn_of_surface(struct check *check, int f)
 {
     const struct scene *const scene = check->scene;
@@ -328,8 +327,7 @@ static bool has_surface(const struct check *check)
 
 /* --- probes --- */
 
-/* Whether the point is in walls or solids, more than half a spacing from their faces, i.e. deeper
- * than the outermost particle reaches. */
+/* Whether a point is more than half a spacing inside of walls or solids. */
 static bool is_buried(const struct check *check, const double at[2])
 {
     const double side = 0.5 * check->scene->top.dp;

@@ -10,8 +10,7 @@ static double cells_to(const struct region *region, int c, double x)
     return (x - region->lattice.origin[c]) / region->lattice.spacing[c];
 }
 
-/* An edge along an axis of the lattice that lies between its lines; in the axes of the lattice.
- * `warned`: of one along each axis. */
+/* An edge along an axis of the lattice, between its lines. `warned`: of one along each axis. */
 static void warn_of_edge(struct check *check, const struct region *region, int line,
                          const double a[2], const double b[2], bool warned[2])
 {
@@ -123,8 +122,7 @@ static bool anything_beyond(const struct check *check, const double from[2], con
     return false;
 }
 
-/* Whether something lies on both sides of the middle of a wall, which is a line between two corners
- * and further by `off` to the left. */
+/* Whether something is on both sides of a wall: a line between corners, `off` to its left. */
 static bool has_two_sides(const struct check *check, const double corner[2][2], double off)
 {
     const double dp = check->scene->top.dp, dx = corner[1][0] - corner[0][0],

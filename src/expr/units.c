@@ -105,8 +105,7 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
         sign = *rest.at == '/' ? -1 : 1;
         rest = slice_trimmed(slice_after(rest, 1));
         u = find_unit(slice_identifier(rest));
-        /* Not g, which alone usually means the gravitational acceleration (no other unit symbol
-         * may name a constant), nor the function min. */
+        /* Not g, which usually means the gravitational acceleration, nor the function min. */
         const struct slice next = slice_trimmed(slice_after(rest, u ? strlen(u->symbol) : 0));
         if (u && (strcmp(u->symbol, "g") == 0 || (next.length && *next.at == '('))) break;
     }

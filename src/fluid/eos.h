@@ -54,8 +54,7 @@ SPHFSI_INLINE double eos_dens(double pressure, double rho0, double c0)
     return d;
 }
 
-/* eos_dens for blocks of values, whose iterations hide each other's latency. Each value
- * is final once its own iterations are done. */
+/* eos_dens for blocks, whose iterations hide each other's latency: the same values. */
 enum { EOS_BLOCK = 16 };
 SPHFSI_INLINE void eos_dens_of_block(const double *pressure, double rho0, double c0, double *d)
 {

@@ -4,8 +4,7 @@
 
 _Static_assert((int)CLUSTER == (int)GROUP, "a group of lanes is a cluster");
 
-/* Vectors for the candidates of a cluster. Sums over each are kept separate, so that they equal
- * those with one wider vector. */
+/* Vectors for the candidates of a cluster, with separate sums, equal to those of a wider one. */
 enum { PARTS = (int)CLUSTER * (int)GROUPS / (int)LANES };
 
 /* Vectors for the receivers of a cluster. */

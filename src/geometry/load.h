@@ -4,8 +4,7 @@
 
 #include "case/scene.h"
 
-/* scene_read followed by scene_sample. After success the caller frees with scene_free; after a
- * failure there is nothing to free. */
+/* scene_read followed by scene_sample. After success scene_free is due. */
 enum err scene_load_text(struct scene *scene, const char *text, const char *path, int n_sets,
                          const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 

@@ -30,8 +30,7 @@ bool geometry_covers_strictly(const struct region *region, double x, double y)
     return true;
 }
 
-/* Whether particle k may lie in another region: a clamped one in a wall, one of a wall in a clamp
- * or in a wall that moves with it. */
+/* Whether particle k may lie in another region: in a wall if clamped; of a wall in its clamp. */
 static bool may_lie_in(const struct sampler *sampler, const struct samples *samples, int64_t k,
                        const struct region *its)
 {

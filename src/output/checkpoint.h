@@ -68,8 +68,7 @@ struct block {
     const unsigned char *data;
 };
 
-/* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at.
- * Returns false if no whole block begins there. */
+/* The block at offset *at (0: the first one), which advances. false: no whole one is there. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block *b);
 
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
@@ -80,8 +79,7 @@ enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, str
 /* Whether each particle is in or near the cell that it was loaded with. ERR_INPUT: another grid. */
 enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Loads a valid image into a simulation of the same case from simulation_create, and recomputes
- * derived fields (simulation_resume). */
+/* Loads a valid image into a new simulation of the same case, and recomputes derived fields. */
 enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* As checkpoint_apply, for a case with other physics. Particles are sorted again if the grid

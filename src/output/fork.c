@@ -66,8 +66,7 @@ static enum err fork_clamps(struct simulation *sim, const double *free, struct d
     return ERR_OK;
 }
 
-/* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork
- * without a change keeps its bits. */
+/* Whether the checkpoint's order fits the grid and stays: then a fork may keep its bits. */
 static bool order_fits(const struct simulation *sim)
 {
     struct diag other_grid = {.code = ERR_OK};

@@ -37,8 +37,7 @@ void series_close(struct series *s);
 
 /* --- times of outputs: the multiples of an interval --- */
 
-/* Rounds a time to 12 digits, so that the times k * interval of several outputs are equal where
- * they should be and do not differ by round-off. */
+/* Rounds a time to 12 digits, so that times of several outputs do not differ by round-off. */
 double due_round(double time);
 
 struct due {

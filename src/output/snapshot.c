@@ -18,8 +18,7 @@ static int64_t count_points(const struct simulation *sim, bool most)
     return n;
 }
 
-/* Opens the spare, or creates a new one: if there is none, if it is damaged, or if a reader that
- * opened it under the final name still locks it. */
+/* Opens the spare; creates it if there is none, it is damaged, or a reader still locks it. */
 static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points, hid_t named)
 {
     hid_t file = access(w->spare, F_OK) == 0 ? H5Fopen(w->spare, H5F_ACC_RDWR, H5P_DEFAULT) : -1;

@@ -365,8 +365,7 @@ static bool copy_chunk(hid_t source, hid_t target, hsize_t row, hsize_t column)
     return ok;
 }
 
-/* Appends to `to` the rows of a dataset that it lacks of the first `until` in `from`. A chunk that
- * is partly filled in `to` is replaced. */
+/* Appends what `to` lacks of the first `until` rows of `from`; replaces partly filled chunks. */
 static bool copy_rows(hid_t from, hid_t to, const struct column *c, int64_t until)
 {
     const hid_t source = H5Dopen2(from, c->name, H5P_DEFAULT);

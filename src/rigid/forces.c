@@ -383,8 +383,7 @@ static double end_yields(const struct rigid *rigid, const struct rigid_spring *s
     return 1 / mass[0] + (square(at.arm[0]) + square(at.arm[1])) / mass[2];
 }
 
-/* The larger slope of a spring's force now and after such a step, if it is finite there: the guards
- * judge where the spring comes to. */
+/* The larger slope of a spring's force now and after such a step, if that is finite. */
 static double stiffness_in(const struct rigid *rigid, const struct rigid_spring *spring, double dt)
 {
     if (!spring->given->force.e[0]) return spring->given->stiffness;

@@ -115,8 +115,7 @@ void rigid_add_pairs(struct rigid *rigid, double time);
 
 /* --- the solution for all rows (rigid/impulses.c) --- */
 
-/* After the solution of all bodies for a step, with walls where they are at a time: all impulses,
- * added to `eq`, and what they change there. */
+/* After all bodies' solution, with walls as at a time: all impulses, added to `eq`. */
 void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_step *step);
 
 /* Their work in the last step, of walls that move and of bodies on each other. */

@@ -162,8 +162,7 @@ void contact_forces(struct contact *contact, struct particles *particles, double
     }
 }
 
-/* In spacings: two points may approach by so much more than their present speeds times the time.
- * Twice of it gives the same bits. */
+/* Spacings that points may approach more than by their speeds. Twice of it: the same bits. */
 #define GAIN 0.25
 /* Surfaces nearer than this many times their reach count in the step bound: forces may bring them
  * nearer than their present velocity does, by which their distance after the step is found. */
@@ -268,8 +267,7 @@ static void watch_pair(struct contact *contact, const struct particles *particle
     add_rows(contact, particles, pair, &closest, then);
 }
 
-/* Notes the depth of a point behind the nearest edge of another body if it has passed the
- * surface, from the pairs of this point. */
+/* Notes the depth of a point behind the nearest edge of another body, from its pairs. */
 static void watch_side(struct contact *contact, int64_t first, int64_t end)
 {
     struct contact_closest nearest = {.distance = (double)INFINITY};

@@ -122,8 +122,7 @@ bool contact_watch(struct contact *contact, const struct particles *particles, d
 /* The state has been replaced, and walls at rest may be elsewhere: discards what is known. */
 void contact_forget(struct contact *contact, const struct particles *walls);
 
-/* Adds the accelerations of contact to sx, sy, with walls at their positions at `time`. Inside a
- * parallel region all threads call it together. */
+/* Adds the accelerations of contact to sx, sy, with walls as at `time`. By all threads together. */
 void contact_forces(struct contact *contact, struct particles *particles, double time);
 
 /* Lets the places that friction holds points to slide where a spring exceeds friction, after the

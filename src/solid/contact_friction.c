@@ -133,8 +133,7 @@ static struct friction_spring spring_at(const struct contact *contact,
     return h;
 }
 
-/* The edge bears the opposite force as if it reached to the point: both act along one line, and
- * the work of the spring is that of its energy. */
+/* The edge bears the opposite force, along the same line: the spring's work is its energy's. */
 static void add_friction(struct contact *contact, struct particles *particles, int32_t point,
                          const struct friction_spring *h)
 {

@@ -241,8 +241,7 @@ static void value_of(const struct particles *particles, int32_t i, double dt, bo
     value[1] -= faster * fy;
 }
 
-/* The velocity that each point must have after a kick of dt: the one that brings it to its place a
- * drift of dt later. Or its acceleration. */
+/* The velocity or acceleration that brings each point to its place a drift of dt later. */
 static void find_targets(struct hinges *hinges, const struct particles *particles, double time,
                          double dt)
 {

@@ -33,8 +33,7 @@ struct hinges {
     bool released;           /* hinges_forces does nothing */
 };
 
-/* Gives a solid its hinges: finds the particles around each, and their weights. solid->body is set;
- * the particles of all clamps have free = 0. */
+/* Gives a solid its hinges. solid->body is set; particles of all clamps have free = 0. */
 enum err hinges_create(struct solid *solid, struct arena *a, const struct scene *scene,
                        const struct particles *particles, struct diag *d) SPHFSI_CHECKED;
 
@@ -59,7 +58,6 @@ void hinges_push(const struct hinges *hinges, const double *force, double *x, do
 /* Displacement that a hinge gives its point at a time, m. */
 void hinges_place(const struct hinges *hinges, int hinge, double time, double to[2]);
 
-/* Work of hinges on moving walls over a kick of dt with the last forces, J/m, from the velocities
- * before it. Adds each body's part to `on`. */
+/* Work of hinges on moving walls over a kick of dt, as loads_work. */
 double hinges_work(const struct hinges *hinges, const double *vx, const double *vy, double dt,
                    double *on);

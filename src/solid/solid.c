@@ -244,8 +244,7 @@ SPHFSI_INLINE bool calls_program(const struct solid *solid)
     return solid->calls_out && (solid->contact || solid->loads || solid->hinges);
 }
 
-/* Actions from outside the solid, each a pass of its own; hinges come last, against all others.
- * dt: of the kick that follows; 0: none does. */
+/* Actions from outside; hinges last, against all others. dt: of the kick that follows, or 0. */
 static void outer_forces(const struct solid *solid, struct particles *particles, double time,
                          double dt)
 {

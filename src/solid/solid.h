@@ -179,8 +179,7 @@ enum err solid_stencil_create(struct solid *solid, struct arena *a,
  * variational form hourglass control adds to the stress; then also the pair forces. */
 void solid_stress(struct solid *solid, struct particles *particles);
 
-/* Total acceleration (Eq. 21b) to sx, sy, from the results of solid_stress for the same
- * displacements and velocities; zero where clamped. */
+/* Total acceleration (Eq. 21b) to sx, sy, after solid_stress of this state; zero where clamped. */
 void solid_forces(const struct solid *solid, struct particles *particles);
 
 /* The displacement gradients alone, to the particles; in double precision. */

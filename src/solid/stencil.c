@@ -23,8 +23,7 @@ static double reference_distance(double a, double b, double dp)
     return nearbyint((a - b) / unit) * unit;
 }
 
-/* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near,
- * are not bonded to it. -1: too many. */
+/* Neighbours of i in its own body and those joined to it, ascending. -1: too many. */
 static int neighbours_of(const struct solid *solid, const struct point_grid *g,
                          const struct particles *particles, int64_t i, int32_t *found)
 {

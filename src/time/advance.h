@@ -25,8 +25,7 @@ void find_external(struct simulation *sim, enum kind kind, double time);
 /* Sets position, velocity and acceleration of moving walls at a time. */
 void move_walls(struct simulation *sim, double time);
 
-/* Brings DERIVED fields that output uses (pressure of wall and solid; displacement gradient) up to
- * date without changing the state. */
+/* Brings DERIVED fields that output uses up to date without changing the state. */
 void simulation_refresh(struct simulation *sim);
 
 /* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */

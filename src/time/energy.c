@@ -541,8 +541,7 @@ static void write_remedy(const struct simulation *sim, enum energy_term term, ch
              term == TERM_SOLID && paper ? " or law = neo_hookean or svk" : "");
 }
 
-/* What has the most speed in a region: "[solid gate] at (0.1, 0.2) m", or the region's first
- * section where it has no particles. */
+/* What is fastest in a region: "[solid gate] at (0.1, 0.2) m", or its first section. */
 static void write_fastest(const struct simulation *sim, int region, char text[TEXT])
 {
     static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};

@@ -50,8 +50,7 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 
-/* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work of the fluid, of the
- * impedance and of a program's accelerations. */
+/* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work on it. */
 void energy_book_solid(struct simulation *sim, double dt, int n);
 
 /* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,
@@ -67,6 +66,5 @@ void energy_after_step(struct simulation *sim);
 void energy_test_if_due(struct simulation *sim);
 struct energy_gain energy_find_gain(struct simulation *sim);
 
-/* Reads the last test of the account: warns once if a region has gained energy, and fails if the
- * gain is nine tenths of its available energy. */
+/* Reads the last test: warns once of a gain, and fails above 0.9 of the available energy. */
 enum err energy_guard(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;

@@ -11,8 +11,7 @@ enum { CHECK_INTERVAL = 16 };
 /* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
 int64_t guards_count_entered(const struct simulation *sim, int64_t *first);
 
-/* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
- * there are more than stray particles. */
+/* Checks for fluid inside walls or solids. Warns once; fails above what may be stray. */
 enum err guards_check_entered(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* Says that fluid has left the domain: the particles from `first` on, which are in no cell. */

@@ -15,8 +15,7 @@ static double extrapolated_rate(double now, double old, double older, double r, 
 
 static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2, dt / dt_old) : 1; }
 
-/* The interval of an update, s, from half a step behind to half a step ahead; its ratio to the
- * previous one, and the previous one's ratio. */
+/* The interval of an update, s; its ratio to the one before, and that one's. */
 struct leapfrog_step {
     double dt, kick, r, r_old;
 };

@@ -10,8 +10,7 @@
 enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *f,
                                  void *context, struct diag *d) SPHFSI_CHECKED;
 
-/* Builds the state at time zero from a scene, or the arrays for it if a checkpoint is to be loaded.
- * After a failure there is nothing to free. */
+/* Builds the state at time zero of a scene, or arrays for a checkpoint. Frees all if it fails. */
 enum err simulation_create(struct simulation *sim, const struct scene *scene, struct diag *d)
     SPHFSI_CHECKED;
 void simulation_free(struct simulation *sim);

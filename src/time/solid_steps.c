@@ -56,8 +56,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
     return ERR_OK;
 }
 
-/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). The
- * positions after the step follow later. */
+/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). */
 static void external_for_step(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->particles[KIND_SOLID];

@@ -16,8 +16,7 @@ enum bound timestep_binding(const struct simulation *sim);
  * with half of the smallest bound, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *sim, double *half);
 
-/* Finds all bounds of the next step, sim->dt_bound, from the fluid's last evaluation and the bound
- * of the solid; returns the smallest, s. */
+/* Finds all bounds of the next step, sim->dt_bound; returns the smallest, s. */
 double timestep_bound(struct simulation *sim);
 
 /* Chooses the next step by its bounds. It ends at t_limit at the latest; the last two steps before
@@ -44,6 +43,5 @@ void timestep_count(struct simulation *sim, double dt, int n);
 /* The end of a step with fluid: its time and what is counted. */
 void timestep_end_fluid_step(struct simulation *sim, double dt, double t_limit, bool hits);
 
-/* Whether contact can matter in the coming `steps` from `time` on. Stores its effect on their
- * bounds, and enables its forces if it can. */
+/* Whether contact can matter in the coming `steps`; then it bounds them and has forces. */
 bool timestep_watch_contact(struct simulation *sim, double time, int steps);
