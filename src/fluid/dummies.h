@@ -322,10 +322,13 @@ static void SWEEP(update_dummies)(const struct fluid *fluid, struct particles ki
 {
     struct particles *const particles = &kinds[kind];
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
+    /* A loop each: in one the registers that thin lines need would slow the other scenes. */
+    if (fluid->effects & FX_THIN) {
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
-    for (int32_t k = 0; k < n; k++)
-        if (fluid->effects & FX_THIN)
+        for (int32_t k = 0; k < n; k++)
             dummies_of_cell(fluid, particles, kind, cells, cell[k], true);
-        else
-            dummies_of_cell(fluid, particles, kind, cells, cell[k], false);
+        return;
+    }
+#pragma omp parallel for schedule(static) num_threads(fluid->threads)
+    for (int32_t k = 0; k < n; k++) dummies_of_cell(fluid, particles, kind, cells, cell[k], false);
 }
