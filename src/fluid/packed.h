@@ -47,7 +47,7 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 struct packing {
     double inv_h, volume;  /* 1/m; of a particle at rest, in units of h^2 */
     double tait, acoustic; /* factors of the pressure, Pa: c0^2 rho0/gamma, c0^2 rho0 */
-    double slope;          /* factor of the gradient of dens, m */
+    double gradient;       /* factor of the gradient of dens, m */
     double per_viscosity;  /* 1/(-2 alpha c0 rho0) of Eq. 7, m^2 s/kg */
     double predict_by;     /* s */
     effect_set effects;
@@ -84,8 +84,8 @@ SPHFSI_INLINE four_double acting_pressure(const struct packing *packing,
 SPHFSI_INLINE void pack_slopes(const struct packing *packing, const struct particles *particles,
                                int32_t i, real *out)
 {
-    put_four(out, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * packing->slope);
-    put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * packing->slope);
+    put_four(out, PACKED_SLOPE_X, FOUR(particles->slope_x, i) * packing->gradient);
+    put_four(out, PACKED_SLOPE_Y, FOUR(particles->slope_y, i) * packing->gradient);
 }
 
 /* Packed fields of the `count` particles from i on; the rest of four are of the next cell. */

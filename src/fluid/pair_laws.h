@@ -20,7 +20,7 @@
 struct pair_terms {
     struct pair pair;
     vreal radial; /* of xi in the forces, Pa */
-    vreal drag;   /* of -v in the forces, kg/(m^2 s) */
+    vreal laminar; /* of -v in the forces, kg/(m^2 s) */
     vreal rate;   /* of v.xi in the rate, 1 */
     vreal dens_difference; /* that diffuses, 1 */
     vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
@@ -38,7 +38,7 @@ struct vector_constants {
     vreal eta2;           /* (eta/h)^2 = 0.01 */
     /* Factors of the sums in the rates: the slope of the kernel over the volume of a particle, with
      * 1/rho0 in that of forces; and of Eq. 6. */
-    double slope, acceleration, mixing;
+    double kernel_slope, acceleration, mixing;
 };
 
 SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *fluid)
@@ -58,7 +58,7 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
         .gy = vset((real)(fk->gravity[1] * per_c2)),
         .diffusion = vset((real)(fk->model->density_diffusion * fk->c0 / STRAIN_DIFFUSION)),
         .eta2 = vset((real)ETA2),
-        .slope = slope,
+        .kernel_slope = slope,
         .acceleration = slope / fk->rho0,
         .mixing = 2 * fk->model->density_diffusion * fk->c0,
     };

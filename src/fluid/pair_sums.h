@@ -18,8 +18,8 @@ SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
     sum[SUM_Y] = vfma(e->radial, q->y, sum[SUM_Y]);
     sum[SUM_RATE] = vfma(e->rate, q->v_xi, sum[SUM_RATE]);
     if (fluid ? PAIR_HAS(effects, LAMINAR) : PAIR_HAS(effects, NO_SLIP)) {
-        sum[SUM_X] = vfma(-e->drag, q->u, sum[SUM_X]);
-        sum[SUM_Y] = vfma(-e->drag, q->v, sum[SUM_Y]);
+        sum[SUM_X] = vfma(-e->laminar, q->u, sum[SUM_X]);
+        sum[SUM_Y] = vfma(-e->laminar, q->v, sum[SUM_Y]);
     }
     if (fluid && PAIR_HAS(effects, DIFFUSION))
         sum[SUM_MIXING] = vfma(e->mixing, e->dens_difference, sum[SUM_MIXING]);
@@ -63,7 +63,7 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
     }
     if (PAIR_HAS(effects, TENSILE)) stress = stress + law_tensile(a, q, k);
     e.radial = q->weight * stress;
-    if (PAIR_HAS(effects, LAMINAR)) e.drag = law_laminar(q, k);
+    if (PAIR_HAS(effects, LAMINAR)) e.laminar = law_laminar(q, k);
     *approach = vmax(*approach, law_approach(q, inv));
     return e;
 }
@@ -130,7 +130,7 @@ SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t
     *approach = vmax(*approach, law_approach(q, inv));
     if (PAIR_HAS(effects, THIN)) law_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
     if (PAIR_HAS(effects, NO_SLIP)) {
-        e.drag = lane(b, PACKED_STICKS) * law_laminar(q, k);
+        e.laminar = lane(b, PACKED_STICKS) * law_laminar(q, k);
         q->u = a->u - lane(b, PACKED_MIRROR_U);
         q->v = a->v - lane(b, PACKED_MIRROR_V);
     }

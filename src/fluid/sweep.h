@@ -58,7 +58,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
         const double mixing = PAIR_HAS(effects, LIMITER) ? 2 * STRAIN_DIFFUSION : k->mixing;
         rate = rate + mixing * odd_sum(s, deferred, SUM_MIXING);
     }
-    full = k->slope * full;
+    full = k->kernel_slope * full;
     const four_double ddens = -full * rate, a2 = ax * ax + ay * ay;
     store_four(particles->ax + i, ax, count);
     store_four(particles->ay + i, ay, count);

@@ -124,8 +124,8 @@ SPHFSI_INLINE vreal viscous_pressure(const struct solid *solid, const struct sol
 SPHFSI_INLINE vreal mean_viscosity(const struct solid *solid, int64_t i, int64_t j,
                                    const struct solid_body *body)
 {
-    const vreal drag = packed_of(solid, S_DRAG, i) + packed_of(solid, S_DRAG, j);
-    return drag * (real)(0.5 / body->density);
+    const vreal viscosity = packed_of(solid, S_VISCOSITY, i) + packed_of(solid, S_VISCOSITY, j);
+    return viscosity * (real)(0.5 / body->density);
 }
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. The symmetric form, half of it and half of

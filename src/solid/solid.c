@@ -92,15 +92,15 @@ static enum err packed_create(struct solid *solid, struct arena *a,
     for (int k = 0; k < SOLID_PACKED_FIELDS; k++) {
         if ((k == S_PAIRS_X || k == S_PAIRS_Y) && !solid->variational) continue;
         if ((k == S_LOW_X || k == S_LOW_Y) && solid->sweeps->size == sizeof(double)) continue;
-        if (k == S_DRAG && !mixed) continue;
+        if (k == S_VISCOSITY && !mixed) continue;
         solid->packed[k] = field[k];
         if (field[k] && solid->sweeps->size == sizeof(double)) continue;
         TRY(arena_place(a, &solid->packed[k], (size_t)particles->n, solid->sweeps->size,
                         "packed fields of the solid", d));
     }
-    for (int64_t i = 0; solid->packed[S_DRAG] && i < particles->n; i++) {
+    for (int64_t i = 0; solid->packed[S_VISCOSITY] && i < particles->n; i++) {
         const struct solid_body *const b = &solid->body[particles->body[i]];
-        solid_set(solid, solid->packed[S_DRAG], i, b->density * b->viscosity);
+        solid_set(solid, solid->packed[S_VISCOSITY], i, b->density * b->viscosity);
     }
     return ERR_OK;
 }

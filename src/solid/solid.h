@@ -47,7 +47,7 @@ enum solid_packed_field {
     S_GY,
     S_PAIRS_X, /* acceleration by hourglass and viscous force, m/s^2; variational only */
     S_PAIRS_Y,
-    S_DRAG, /* rho0 alpha_s c_s h of its body, Pa s; of joined bodies */
+    S_VISCOSITY, /* rho0 alpha_s c_s h of its body, Pa s; of joined bodies */
     SOLID_PACKED_FIELDS
 };
 

@@ -65,7 +65,8 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
     return e;
 }
 
-void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
+/* With their extremes, while the blocks are in the caches; `range` NULL: they stay. */
+static void advance_blocks(struct simulation *sim, advance_range *range, const void *parameters)
 {
     enum { BLOCK = 256 }; /* particles whose fields stay in the first-level cache */
     struct particles *const particles = &sim->particles[KIND_FLUID];
@@ -84,7 +85,12 @@ void advance_fluid(struct simulation *sim, advance_range *range, const void *par
     sim->extremes = (struct extremes){low, high, speed2, nan_probe};
 }
 
-void update_extremes(struct simulation *sim) { advance_fluid(sim, NULL, NULL); }
+void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
+{
+    advance_blocks(sim, range, parameters);
+}
+
+void update_extremes(struct simulation *sim) { advance_blocks(sim, NULL, NULL); }
 
 void find_speed(struct simulation *sim)
 {

@@ -3,7 +3,7 @@
  * and structure, sorting into cells. All integrators share it. */
 #pragma once
 
-#include "time/energy.h"
+#include "time/simulation.h"
 
 /* --- initial.c --- */
 
@@ -25,16 +25,9 @@ void find_external(struct simulation *sim, enum kind kind, double time);
 /* Sets position, velocity and acceleration of moving walls at a time. */
 void move_walls(struct simulation *sim, double time);
 
-/* Brings DERIVED fields that output uses up to date without changing the state. */
-void simulation_refresh(struct simulation *sim);
-
-/* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */
-void simulation_wall_forces(struct simulation *sim);
-
 /* --- advance.c --- */
 
-/* Advances the fluid by `range`, which updates the particles from `from` to `end` - 1 (NULL: they
- * stay). Finds their extremes while they are in the caches. */
+/* Advances the fluid by `range`, which updates particles `from` to `end` - 1; finds extremes. */
 typedef void advance_range(struct particles *particles, const void *parameters, int64_t from,
                            int64_t end);
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters);
@@ -80,14 +73,10 @@ void forget_fluid(struct particles *particles);
  * neighbours. To be called after a step, while cells are valid. */
 void limit_isolated_tension(struct simulation *sim);
 
-/* Particles within the kernel's reach of a point, of the first `kinds` kinds. */
-int particles_near(const struct simulation *sim, double x, double y, int kinds);
-
 /* --- solid_steps.c --- */
 
 /* Up to SOLID_BATCH steps of solids without fluid, or one with rigid bodies, not beyond t_limit.
  * The observer sees the state before them and those on both sides of its time. */
-enum { SOLID_BATCH = 16 };
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* --- the integrators, each in a file of its own --- */

@@ -3,7 +3,7 @@
  * no file names and no command lines. */
 #pragma once
 
-#include "time/advance.h"
+#include "time/energy.h"
 
 /* Registers `f`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
@@ -14,6 +14,9 @@ enum err simulation_set_external(struct simulation *sim, enum kind kind, externa
 enum err simulation_create(struct simulation *sim, const struct scene *scene, struct diag *d)
     SPHFSI_CHECKED;
 void simulation_free(struct simulation *sim);
+
+/* Most steps of solids without fluid in one call. */
+enum { SOLID_BATCH = 16 };
 
 /* Advances by one time step, of a solid without fluid by up to 16, ending at t_limit (> time) at
  * the latest. INFINITY: the physics alone sets the step. The observer sees the state before and
@@ -27,6 +30,15 @@ enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKE
 /* Hash of every STATE field and state scalar but those of the energy account, which measures the
  * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
+
+/* Brings DERIVED fields that output uses up to date without changing the state. */
+void simulation_refresh(struct simulation *sim);
+
+/* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */
+void simulation_wall_forces(struct simulation *sim);
+
+/* Particles within the kernel's reach of a point, of the first `kinds` kinds. */
+int particles_near(const struct simulation *sim, double x, double y, int kinds);
 
 /* --- relax.c: the search for a state of rest before a run (T-78) --- */
 
