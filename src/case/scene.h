@@ -148,7 +148,10 @@ struct scene_lattice {
  * left of the line and `beyond` the place in its direction, m. */
 struct line_dummy {
     int32_t part;
+    bool same_side; /* of the line as the fluid that sees it (T-110f) */
     double along, off, beyond;
+    double width;  /* of its row, over dp */
+    double inside; /* part of it that lies within the thickness */
 };
 
 /* A thin line (T-110): n points, with n - 1 parts between them. */
@@ -159,6 +162,7 @@ struct scene_line {
     int into[2];              /* this wall */
     double (*seen)[2];        /* its points, the first and the last one moved by that */
     double longest;           /* its longest part, m */
+    double half;              /* half its thickness, m: the faces are so far from it */
     bool tip[2];              /* whether fluid can flow round its ends, once they have left it */
     int64_t first, n_dummies; /* among the particles of walls */
     struct line_dummy *dummy; /* [n_dummies] */

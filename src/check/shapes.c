@@ -193,23 +193,11 @@ static void warn_of_thin_solid(struct check *check, const struct region *region)
         warn_of_thin(check, region, NULL, across * dp);
 }
 
-/* From four particles across on, a solid bends as it should and has the faces that a beam lacks. */
-static void warn_of_thick_beam(struct check *check, const struct scene_beam *beam)
-{
-    const double across = beam->thickness / check->scene->top.dp;
-    if (check->scene->n_fluid && across >= 4 * (1 - 1e-9))
-        warn_section(check, &beam->common,
-                     "is %g m thick, %.0f particles, but fluid sees a line without thickness, so "
-                     "drag may be too small and swings in a flow too large; use a [solid] there",
-                     beam->thickness, across);
-}
-
 static void warn_of_region(struct check *check, const struct region *region)
 {
     if (check->scene->n_fluid + check->scene->n_solid == 0) return; /* rigid bodies are as drawn */
     const int k_beam = region->body - scene_beam_wall(check->scene, 0);
     const bool beam = region->kind == KIND_WALL && k_beam >= 0;
-    if (beam) warn_of_thick_beam(check, &check->scene->beam[k_beam]);
     for (int k = 0; k < region->list->n; k++) {
         const struct shape *const shape = &region->list->item[k];
         if (shape->thin && check->scene->n_fluid && check->scene->fluid[0].wall_repulsion == 0)
@@ -226,6 +214,7 @@ static void warn_of_region(struct check *check, const struct region *region)
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
         if (region->lattice.fitted || layered) continue;
+        if (beam && check->scene->beam[k_beam].thickness > 0) continue; /* fluid is packed there */
         warn_of_edges(check, region, k);
         if (region->kind == KIND_WALL && !shape->thin)
             warn_of_thin(check, region, shape, thickness(shape));

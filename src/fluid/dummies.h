@@ -136,7 +136,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
     }
     cluster_close(d->packed, fluid->packed[d->kind].n, d->count);
     for (int r = 0; r < d->count && sides->piece; r++)
-        d->packed[PACKED_LINE * CLUSTER + r] = (real)fluid_line_of(fluid, d->kind, d->index[r]);
+        d->packed[PACKED_LINE * CLUSTER + r] = (real)fluid_line_before(fluid, d->kind, d->index[r]);
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
@@ -153,7 +153,9 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct p
         near2[r] = fluid->near2[d->kind][particles->body[d->index[r]]];
     for (int r = 0; r < d->count && sides->piece; r++)
         if (fluid_line_of(fluid, d->kind, d->index[r]))
-            near2[r] = square(fluid->k.dp / fluid->k.h) + ETA2;
+            near2[r] =
+                square(fluid_repels_from(fluid, d->kind, particles, d->index[r]) / fluid->k.h) +
+                ETA2;
     if (fluid->effects & FX_ONE_SIDED) {
         put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
         put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
@@ -208,8 +210,10 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
         sum_lanes(sum, &filled[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        const int32_t line = fluid_line_of(fluid, d->kind, d->index[r]);
-        const double phi = min2(1, 2 * KERNEL_NORM * (double)filled[r]), part = sqrt(phi);
+        const int32_t line = fluid_line_before(fluid, d->kind, d->index[r]);
+        const double inside = line ? fluid_line_dummy(fluid, d->kind, d->index[r])->inside : 0,
+                     wet = (1 - inside) * min2(1, 2 * KERNEL_NORM * (double)filled[r]),
+                     phi = inside + wet, part = sqrt(wet);
         if (line) line_slides(&fluid->lines.line[line - 1], d->index[r], t[r]);
         if (line) fluid->lines.filled[d->index[r]] = phi;
         d->packed[PACKED_FILLED * CLUSTER + r] = (real)phi;
@@ -249,7 +253,7 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
 /* State from that pressure. Eqs. 19-21 with each dummy's volume: a solid may be finer. */
 SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
                                  const struct dummy_cluster *d, const double pressure[CLUSTER],
-                                 const double dens[CLUSTER])
+                                 const double dens[CLUSTER], bool thin)
 {
     const double mean = fluid->k.mass / fluid->k.rho0 * square(1 / fluid->k.h);
     double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0}, acting[CLUSTER];
@@ -263,7 +267,8 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
            acting);
     if (!(fluid->effects & FX_ONE_SIDED)) *(four_double_at *)acting += FOUR(pressure, 0);
     for (int r = 0; r < d->count; r++)
-        volume[r] = mean * fluid->volume[d->kind][particles->body[d->index[r]]];
+        volume[r] = mean * (thin ? fluid_volume_of(fluid, d->kind, particles, d->index[r])
+                                 : fluid->volume[d->kind][particles->body[d->index[r]]]);
     /* At rest, particles whose masses fit their density fill a cell at any depth: so do dummies. */
     if (!(fluid->effects & FX_MASSES)) *(four_double_at *)volume /= 1 + FOUR(dens, 0);
     pack_four(d, u, PACKED_U);
@@ -304,7 +309,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         }
         scatter(&d, none, particles->p);
         scatter(&d, none, particles->dens);
-        if (moves) dummies_state(fluid, particles, &d, none, none);
+        if (moves) dummies_state(fluid, particles, &d, none, none, thin);
     }
     for (int32_t m = n * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
     for (int32_t m = 0; m < n * CLUSTER; m += EOS_BLOCK)
@@ -313,7 +318,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         const struct dummy_cluster d = dummies_at(fluid, cells, kind, cell, wet[m]);
         scatter(&d, &pressure[m * CLUSTER], particles->p);
         scatter(&d, &dens[m * CLUSTER], particles->dens);
-        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
+        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER],
+                      thin);
     }
 }
 

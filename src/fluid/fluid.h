@@ -247,14 +247,48 @@ SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, i
     return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
+/* That dummy; NULL: of no line. */
+SPHFSI_INLINE const struct line_dummy *fluid_line_dummy(const struct fluid *fluid, enum kind kind,
+                                                        int64_t i)
+{
+    const int32_t of = fluid_line_of(fluid, kind, i);
+    const struct thin_line *const line = &fluid->lines.line[of - 1];
+    return of ? &line->scene->dummy[i - line->first] : NULL;
+}
+
+/* The line that has to lie between fluid and particle i of a kind, from 1; 0: none. */
+SPHFSI_INLINE int32_t fluid_line_before(const struct fluid *fluid, enum kind kind, int64_t i)
+{
+    const struct line_dummy *const dummy = fluid_line_dummy(fluid, kind, i);
+    return dummy && !dummy->same_side ? fluid_line_of(fluid, kind, i) : 0;
+}
+
+/* Volume of particle i of walls or solids, at rest, over that of a fluid particle. */
+SPHFSI_INLINE double fluid_volume_of(const struct fluid *fluid, enum kind kind,
+                                     const struct particles *particles, int64_t i)
+{
+    const struct line_dummy *const dummy = fluid_line_dummy(fluid, kind, i);
+    return dummy ? dummy->width : fluid->volume[kind][particles->body[i]];
+}
+
+/* r0 of L-7, m. A particle that has passed a line would be pushed on by the other side. */
+SPHFSI_INLINE double fluid_repels_from(const struct fluid *fluid, enum kind kind,
+                                       const struct particles *particles, int64_t i)
+{
+    const struct line_dummy *const dummy = fluid_line_dummy(fluid, kind, i);
+    const double width = dummy ? dummy->width : sqrt(fluid->volume[kind][particles->body[i]]);
+    return (fluid_line_before(fluid, kind, i) ? 1 : REPULSION_REACH) * 0.5 * (1 + width) *
+           fluid->k.dp;
+}
+
 /* How much a place and particle i of a kind, (x, y) away, see each other (T-110). */
 SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *cells,
                                 const double from[2], enum kind kind, int64_t i, double x, double y)
 {
     if (!(fluid->effects & FX_THIN)) return 1;
-    const int32_t own = fluid_line_of(fluid, kind, i);
-    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from, (const double[]){x, y},
-                      own, own ? fluid->lines.filled[i] : 0);
+    const int32_t own = fluid_line_before(fluid, kind, i);
+    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
+                      (const double[]){x, y}, own, own ? fluid->lines.filled[i] : 0);
 }
 
 /* repulsion.c: energy stored by walls and structures that repel each section (L-7b), J/m. */

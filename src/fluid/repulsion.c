@@ -23,9 +23,8 @@ static double repulsion_held(double r, double r0, double h)
 static double repulsion_of(const struct fluid *fluid, const struct cell_visit *v)
 {
     const enum kind kind = (enum kind)v->kind;
-    const double over = fluid->volume[kind][v->particles->body[v->i]];
-    const double r0 = (fluid_line_of(fluid, kind, v->i) ? 1 : REPULSION_REACH) * 0.5 *
-                      (1 + sqrt(over)) * fluid->k.dp;
+    const double over = fluid_volume_of(fluid, kind, v->particles, v->i),
+                 r0 = fluid_repels_from(fluid, kind, v->particles, v->i);
     if (!(v->r < r0)) return 0;
     return fluid_seen(fluid, v->cells, v->at, kind, v->i, v->x, v->y) * over * fluid->k.mass /
            (fluid->k.rho0 * (1 + v->particles->dens[v->i])) * repulsion_held(v->r, r0, fluid->k.h);

@@ -183,6 +183,13 @@ enum err outlines_of(struct outlines *o, const struct scene *scene, const struct
     return ERR_OK;
 }
 
+void outlines_add(struct outlines *o, const struct outline *piece, int shape)
+{
+    o->item[o->n] = *piece;
+    o->shape[o->n] = shape;
+    add_box(o, &o->item[o->n++]);
+}
+
 int geometry_ascending(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

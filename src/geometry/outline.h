@@ -17,7 +17,7 @@ struct outline {
 struct outlines {
     int n; /* none of a thin line */
     struct outline *item;
-    int *shape;      /* index of the shape that a piece belongs to */
+    int *shape;      /* index of the shape that a piece belongs to; -1: a beam */
     struct box2 box; /* of all pieces */
 };
 
@@ -31,6 +31,9 @@ double polygon_area(int n, double (*const pt)[2]);
  * joints, so that neighbours share an edge. */
 enum err outlines_of(struct outlines *o, const struct scene *scene, const struct shape_list *list,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* Adds a piece, for which there is memory. */
+void outlines_add(struct outlines *o, const struct outline *piece, int shape);
 
 /* The region of a section. */
 struct body_outlines {

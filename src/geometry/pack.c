@@ -9,8 +9,8 @@
 #include "base/point_grid.h"
 #include "particles/kernel.h"
 
-/* Lines through a cell, for its area in the shape. */
-enum { LINES = 16 };
+/* Lines through a cell, for its area in the shape: that a slanted edge cuts, or one along them. */
+enum { LINES = 16, LEVEL_LINES = 256 };
 /* Slope of an edge that counts as one along the lattice. */
 static const double along_lattice = 1e-6;
 /* Fluid this much of dp too near to a thin line is still on the lattice. */
@@ -24,6 +24,7 @@ static const int max_shifts = 1000;
 struct cut_cells {
     const struct region *region;
     struct point_grid grid; /* their centres */
+    int64_t n_slanted;      /* of them; faces of beams along the lattice cut the others */
     double *share;          /* part of the cell that is in the shape */
     double (*middle)[2];    /* centre of that part */
 };
@@ -46,11 +47,21 @@ static enum err visit(struct cut_cells *c, struct sampler *sampler, const double
                : point_grid_add(&c->grid, i, j, &sampler->temp, sampler->diag);
 }
 
+/* Whether an edge along the lattice lies between its lines. */
+static bool lies_between(const struct scene_lattice *l, const double at[2], int across)
+{
+    const double cells = (at[across] - l->origin[across]) / l->spacing[across];
+    return fabs(cells - round(cells)) > beside_line;
+}
+
+/* `level`: an edge along the lattice, between its lines; else: a slanted one. */
 static enum err visit_edge(struct cut_cells *c, struct sampler *sampler, const double a[2],
-                           const double b[2])
+                           const double b[2], bool level)
 {
     const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
-    if (min2(fabs(dx), fabs(dy)) <= along_lattice * length) return ERR_OK;
+    const bool along = min2(fabs(dx), fabs(dy)) <= along_lattice * length;
+    if (along != level || (level && !lies_between(&c->region->lattice, a, fabs(dx) > fabs(dy))))
+        return ERR_OK;
     const double normal[2] = {-dy / length, dx / length};
     const int parts = 1 + (int)min2(1e8, length / c->region->lattice.dp * EDGE_PARTS);
     for (int k = 0; k < parts; k++) {
@@ -74,25 +85,26 @@ static enum err visit_circle(struct cut_cells *c, struct sampler *sampler, const
 }
 
 static enum err visit_outlines(struct cut_cells *c, struct sampler *sampler,
-                               const struct outlines *o)
+                               const struct outlines *o, bool level)
 {
     for (int k = 0; k < o->n; k++) {
         const struct outline *const piece = &o->item[k];
-        if (piece->n == 0) TRY(visit_circle(c, sampler, piece));
+        if (level && o->shape[k] >= 0) continue;
+        if (piece->n == 0 && !level) TRY(visit_circle(c, sampler, piece));
         for (int j = 0; j < piece->n; j++)
-            TRY(visit_edge(c, sampler, piece->pt[j], piece->pt[(j + 1) % piece->n]));
+            TRY(visit_edge(c, sampler, piece->pt[j], piece->pt[(j + 1) % piece->n], level));
     }
     return ERR_OK;
 }
 
 /* Share of the cell with this centre, and its middle. `line` and `scratch`: see outlines_union. */
-static double share_of(const struct region *r, const double centre[2], double middle[2],
+static double share_of(const struct region *r, const double centre[2], int lines, double middle[2],
                        double *line, double *scratch)
 {
     const struct scene_lattice *const l = &r->lattice;
     double area = 0, moment[2] = {0, 0};
-    for (int n = 0; n < LINES; n++) {
-        const double y = centre[1] - 0.5 + (n + 0.5) / LINES;
+    for (int n = 0; n < lines; n++) {
+        const double y = centre[1] - 0.5 + (n + 0.5) / lines;
         const int ends =
             outlines_union(&r->add, &r->minus, l->origin[1] + y * l->spacing[1], line, scratch);
         for (int e = 0; e + 1 < ends; e += 2) {
@@ -105,15 +117,17 @@ static double share_of(const struct region *r, const double centre[2], double mi
         }
     }
     for (int c = 0; c < 2; c++) middle[c] = area > 0 ? moment[c] / area : centre[c];
-    return area / LINES;
+    return area / lines;
 }
 
 static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
                            const struct region *region)
 {
     *c = (struct cut_cells){.region = region, .grid.side = 1};
-    TRY(visit_outlines(c, sampler, &region->add));
-    TRY(visit_outlines(c, sampler, &region->minus));
+    TRY(visit_outlines(c, sampler, &region->add, false));
+    TRY(visit_outlines(c, sampler, &region->minus, false));
+    c->n_slanted = c->grid.n;
+    TRY(visit_outlines(c, sampler, &region->minus, true));
     const size_t n = (size_t)c->grid.n + 1;
     const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
     double *line;
@@ -121,8 +135,9 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
     TRY(geometry_array(sampler, &c->share, n));
     TRY(geometry_array(sampler, &c->middle, n));
     for (int64_t k = 0; k < c->grid.n; k++)
-        c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]}, c->middle[k],
-                               line, line + ends);
+        c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]},
+                               k < c->n_slanted ? LINES : LEVEL_LINES, c->middle[k], line,
+                               line + ends);
     return ERR_OK;
 }
 
@@ -138,8 +153,16 @@ struct settling {
     int *line;         /* the thin line that a point belongs to, from 1; 0: none */
 };
 
+static bool covers_cell(const struct region *region, const double cell[2])
+{
+    double at[2];
+    place_of_cell(&region->lattice, cell, at);
+    return geometry_covers(region, at[0], at[1]);
+}
+
 /* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
- * filled when the sum of the shares exceeds the number of filled cells by a half. */
+ * filled when the sum of the shares exceeds the number of filled cells by a half. Beside a beam
+ * along the lattice, cells that keep their particle have it where it was. */
 static enum err refill(struct settling *s, const struct cut_cells *c, struct scene_points *to)
 {
     const struct scene_points *const from = &s->sampler->scene->points[KIND_FLUID];
@@ -155,13 +178,15 @@ static enum err refill(struct settling *s, const struct cut_cells *c, struct sce
     }
     double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
-        TRY(point_grid_add(&s->cells, c->grid.x[k], c->grid.y[k], &s->sampler->temp,
-                           s->sampler->diag));
-        excess += c->share[k];
-        if (excess < 0.5) continue;
+        const double cell[2] = {c->grid.x[k], c->grid.y[k]};
+        const bool drawn = k >= c->n_slanted && covers_cell(c->region, cell);
+        const bool filled = (excess += c->share[k]) >= 0.5;
+        if (k < c->n_slanted || drawn != filled)
+            TRY(point_grid_add(&s->cells, cell[0], cell[1], &s->sampler->temp, s->sampler->diag));
+        if (!filled) continue;
         excess--;
         double at[2];
-        place_of_cell(l, c->middle[k], at);
+        place_of_cell(l, drawn ? cell : c->middle[k], at);
         to->x[to->n] = at[0];
         to->y[to->n] = at[1];
         to->body[to->n++] = c->region->body;
@@ -202,6 +227,7 @@ static enum cover cover_of(const struct sampler *sampler, const double cell[2])
     enum cover found = COVER_NONE;
     double at[2];
     place_of_cell(&sampler->scene->lattice, cell, at);
+    if (geometry_in_beam(sampler->scene, at)) return COVER_BODY;
     for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
         if (geometry_covers(&sampler->regions[r], at[0], at[1]))
             found = sampler->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
@@ -272,10 +298,13 @@ static enum err gather(struct settling *s)
                     !beside(s, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
                     continue;
                 if (moves) s->particle[s->n] = k;
-                if (kind == KIND_WALL) s->line[s->n] = scene_line_of(scene, k);
+                const int line = kind == KIND_WALL ? scene_line_of(scene, k) : 0;
+                const struct scene_line *const of = line ? &scene->line[line - 1] : NULL;
+                const struct line_dummy *const dummy = of ? &of->dummy[k - of->first] : NULL;
+                if (dummy && !dummy->same_side) s->line[s->n] = line;
                 const double dp =
                     kind == KIND_SOLID ? scene_solid_dp(scene, from->body[k]) : scene->top.dp;
-                add_point(s, from->x[k], from->y[k], square(dp));
+                add_point(s, from->x[k], from->y[k], square(dp) * (dummy ? dummy->width : 1));
             }
         }
         if (!fixed) s->n_free = s->n;
@@ -354,11 +383,11 @@ enum err geometry_pack(struct sampler *sampler)
                                 .air.side = 1};
     TRY(visit_lines(&settling));
     if (most == 0 && settling.cells.n == 0) return ERR_OK;
-    scene->packed = true;
     struct scene_points to;
     TRY(geometry_points(sampler, KIND_FLUID, points->n + most, false, &to));
     for (int k = 0; k < n_cut; k++) TRY(refill(&settling, &cut[k], &to));
     *points = to;
+    scene->packed = settling.cells.n > 0;
     TRY(add_air(&settling));
     TRY(gather(&settling));
     TRY(settle(&settling));

@@ -52,8 +52,9 @@ static void add_region(struct sampler *sampler, enum kind kind, int body,
 static enum err draw_region(struct sampler *sampler, struct region *region)
 {
     TRY(outlines_of(&region->add, sampler->scene, region->list, &sampler->temp, sampler->diag));
-    return outlines_of(&region->minus, sampler->scene, region->minus_list, &sampler->temp,
-                       sampler->diag);
+    TRY(outlines_of(&region->minus, sampler->scene, region->minus_list, &sampler->temp,
+                    sampler->diag));
+    return region->kind == KIND_FLUID ? geometry_subtract_beams(sampler, &region->minus) : ERR_OK;
 }
 
 /* Fluid is drawn before the walls beside it, and these have their thickness before joints are. */

@@ -182,6 +182,9 @@ bool geometry_covers_strictly(const struct region *region, double x, double y);
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *sampler) SPHFSI_CHECKED;
 
+/* Adds the beams, with their thickness, to what is cut out of a fluid. */
+enum err geometry_subtract_beams(struct sampler *sampler, struct outlines *minus) SPHFSI_CHECKED;
+
 /* Mass, centre and inertia of a rigid body from its shapes, which are not yet rotated. */
 enum err geometry_rigid_mass(struct sampler *sampler, int rigid, const struct region *region)
     SPHFSI_CHECKED;

@@ -26,6 +26,23 @@ static void place_of(const struct scene_line *line, const struct line_dummy *dum
     place_on_part(&part, dummy->along * part.length + dummy->beyond, dummy->off, at);
 }
 
+static bool line_is_closed(const struct scene_line *line)
+{
+    const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
+    return a[0] == b[0] && a[1] == b[1];
+}
+
+static int rows_of_line(const struct scene *scene)
+{
+    return (int)ceil(KERNEL_REACH * scene->h / scene->top.dp - 1e-9);
+}
+
+/* In m; 0: a beam of which only stiffness and mass are given. */
+static double beam_half_thickness(const struct scene_beam *beam)
+{
+    return isnan(beam->thickness) ? 0 : 0.5 * beam->thickness;
+}
+
 /* Whether a place beside a part is nearer to another one. A place as far from both belongs to the
  * first of them that has it on the same side. */
 static bool belongs_elsewhere(const struct scene_line *line, const struct line_dummy *dummy,
@@ -46,27 +63,59 @@ static bool belongs_elsewhere(const struct scene_line *line, const struct line_d
     return false;
 }
 
-/* The dummies of a part on one side (1: left, -1: right), in rows along the line, which share the
- * stations (j + 1/2) step of the whole line; `start`: where the part begins. */
+/* Whether a dummy within the thickness lies beyond the face there: beside a corner, or beyond the
+ * line's end. */
+static bool lies_outside(const struct scene_line *line, const struct line_dummy *dummy)
+{
+    const bool end = dummy->beyond < 0 ? dummy->part == 0 : dummy->part == line->n - 2;
+    return dummy->beyond != 0 &&
+           ((end && !line_is_closed(line)) ||
+            elementary_hypot(dummy->off, dummy->beyond) > line->half);
+}
+
+/* A row of a part's dummies for the fluid on one side (1: left, -1: right). Rows have the stations
+ * (j + 1/2) step of the whole line; `start`: where the part begins; `from`, `to`: how deep the row
+ * lies below the face, in dp. */
+static enum err lay_row(struct sampler *sampler, struct scene_line *line, int k, double start,
+                        double step, double side, double from, double to)
+{
+    const double dp = sampler->scene->top.dp, length = line_part_at(line, k).length,
+                 deep = max2(line->half, dp * rows_of_line(sampler->scene)),
+                 both = 2 * line->half / dp;
+    const int64_t first = (int64_t)ceil((start - deep) / step - 0.5),
+                  end = (int64_t)ceil((start + length + deep) / step - 0.5);
+    for (int64_t j = first; j < end; j++) {
+        const double along = ((double)j + 0.5) * step - start,
+                     on_part = min2(max2(along, 0), length),
+                     off = 0.5 * (from + to) * dp - line->half;
+        const struct line_dummy dummy = {.part = k,
+                                         .same_side = off < 0,
+                                         .along = on_part / length,
+                                         .off = side * off,
+                                         .beyond = along - on_part,
+                                         .width = to - from,
+                                         .inside = max2(0, min2(both, to) - from) / (to - from)};
+        if ((dummy.same_side && lies_outside(line, &dummy)) || belongs_elsewhere(line, &dummy, dp))
+            continue;
+        TRY(arena_more(&sampler->scene->arena, &line->dummy, line->n_dummies, "thin walls",
+                       sampler->diag));
+        line->dummy[line->n_dummies++] = dummy;
+    }
+    return ERR_OK;
+}
+
+/* T-110f: rows from the face on, as deep as the kernel, and at least to the line; it cuts the row
+ * that it meets. */
 static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k, double start,
                          double step, double side)
 {
-    const struct scene *const scene = sampler->scene;
-    const double dp = scene->top.dp, length = line_part_at(line, k).length;
-    const int rows = (int)ceil(KERNEL_REACH * scene->h / dp - 1e-9);
-    const int64_t first = (int64_t)ceil((start - rows * dp) / step - 0.5),
-                  end = (int64_t)ceil((start + length + rows * dp) / step - 0.5);
-    for (int row = 0; row < rows; row++)
-        for (int64_t j = first; j < end; j++) {
-            const double along = ((double)j + 0.5) * step - start,
-                         on_part = min2(max2(along, 0), length);
-            const struct line_dummy dummy = {k, on_part / length, side * (row + 0.5) * dp,
-                                             along - on_part};
-            if (belongs_elsewhere(line, &dummy, dp)) continue;
-            TRY(arena_more(&sampler->scene->arena, &line->dummy, line->n_dummies, "thin walls",
-                           sampler->diag));
-            line->dummy[line->n_dummies++] = dummy;
-        }
+    const double half = line->half / sampler->scene->top.dp,
+                 deep = max2(rows_of_line(sampler->scene), half), nothing = 1e-6;
+    for (double from = 0, to; from < deep; from = to) {
+        to = min2(deep, floor(from + 1 + nothing));
+        if (from < half - nothing && half < to - nothing) to = half;
+        TRY(lay_row(sampler, line, k, start, step, side, from, to));
+    }
     return ERR_OK;
 }
 
@@ -113,11 +162,11 @@ static bool is_joined(const struct scene *scene, const struct scene_line *line, 
 static enum err add_line(struct sampler *sampler, int wall, const struct shape *shape)
 {
     struct scene *const scene = sampler->scene;
+    const int beam = wall - scene_beam_wall(scene, 0);
     TRY(arena_more(&scene->arena, &scene->line, scene->n_line, "thin walls", sampler->diag));
     struct scene_line *const line = &scene->line[scene->n_line++];
     *line = (struct scene_line){.wall = wall, .n = shape->n, .pt = shape->pt};
-    const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
-    const bool closed = a[0] == b[0] && a[1] == b[1];
+    if (beam >= 0) line->half = beam_half_thickness(&scene->beam[beam]);
     double length = 0, start = 0;
     for (int k = 0; k + 1 < line->n; k++) {
         const double part = line_part_at(line, k).length;
@@ -125,7 +174,7 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
         line->longest = max2(line->longest, part);
     }
     const double step = length / max2(1, round(length / scene->top.dp));
-    for (int last = 0; last < 2 && !closed; last++) {
+    for (int last = 0; last < 2 && !line_is_closed(line); last++) {
         line->extend[last] = extension(sampler, line, last);
         line->tip[last] = true;
     }
@@ -151,6 +200,55 @@ double geometry_line_distance(const struct scene *scene, const double at[2])
             nearest = min2(nearest, distance_from(&part, at, &left));
         }
     return nearest;
+}
+
+bool geometry_in_beam(const struct scene *scene, const double at[2])
+{
+    for (int j = 0; j < scene->n_line; j++)
+        for (int k = 0; k + 1 < scene->line[j].n; k++) {
+            const struct line_part part = line_part_at(&scene->line[j], k);
+            double place[2];
+            relative_to_part(&part, at, place);
+            if (place[0] > 0 && place[0] < part.length && fabs(place[1]) < scene->line[j].half)
+                return true;
+        }
+    return false;
+}
+
+static bool turns_at(const struct shape *line, int k)
+{
+    const struct line_part before = line_part(line->pt[k - 1], line->pt[k]),
+                           after = line_part(line->pt[k], line->pt[k + 1]);
+    return fabs(before.t[0] * after.t[1] - before.t[1] * after.t[0]) > 1e-9;
+}
+
+/* T-110f: a box around each part of a beam, and a disc around each of its corners. */
+enum err geometry_subtract_beams(struct sampler *sampler, struct outlines *minus)
+{
+    const struct scene *const scene = sampler->scene;
+    const struct outlines own = *minus;
+    int n = own.n;
+    for (int b = 0; b < scene->n_beam; b++) n += 2 * scene->beam[b].shape.item->n;
+    TRY(geometry_array(sampler, &minus->item, n));
+    TRY(geometry_array(sampler, &minus->shape, n));
+    minus->n = 0;
+    for (int k = 0; k < own.n; k++) outlines_add(minus, &own.item[k], own.shape[k]);
+    for (int b = 0; b < scene->n_beam; b++) {
+        const struct shape *const line = scene->beam[b].shape.item;
+        const double half = beam_half_thickness(&scene->beam[b]);
+        for (int k = 0; k + 1 < line->n && half > 0; k++) {
+            const struct line_part part = line_part(line->pt[k], line->pt[k + 1]);
+            struct outline box = {.n = 4},
+                           disc = {.centre = {line->pt[k][0], line->pt[k][1]}, .radius = half};
+            TRY(geometry_array(sampler, &box.pt, 4));
+            for (int c = 0; c < 4; c++)
+                place_on_part(&part, c == 1 || c == 2 ? part.length : 0, c < 2 ? -half : half,
+                              box.pt[c]);
+            outlines_add(minus, &box, -1);
+            if (k > 0 && turns_at(line, k)) outlines_add(minus, &disc, -1);
+        }
+    }
+    return ERR_OK;
 }
 
 /* A connection that is further from the end of a piece than the next ones reach crosses none of

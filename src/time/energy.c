@@ -128,7 +128,7 @@ static void add_dummies(const struct simulation *sim, struct energies *fluid)
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         const struct particles *const particles = &sim->particles[kind];
         for (int64_t i = 0; i < particles->n && particles->dens; i++)
-            dummies += sim->fluid.volume[kind][particles->body[i]] *
+            dummies += fluid_volume_of(&sim->fluid, kind, particles, i) *
                        eos_energy(particles->dens[i], sim->fluid.k.c0);
     }
     for (int k = 0; k < sim->scene->n_fluid; k++) internal += fluid[k].row.internal;

@@ -63,7 +63,7 @@ surface = 0.6
 shape = polyline: 0, 1; 0, 0; 1.2, 0; 1.2, 1
 [beam baffle]
 shape = polyline: 0.6, 0; 0.6, 0.7
-thickness = 5 mm
+thickness = 75 mm
 density = 1100
 young = 1e10
 clamp = 0.6, 0

@@ -49,20 +49,6 @@ static void test_a_beam_in_a_wall(void)
     rig_refuses(BEAM("-0.01"), "[beam plate] lies in [wall floor]");
 }
 
-/* The fluid does not see the thickness of a beam. From four particles on, a solid shows it. */
-static void test_a_thick_beam_in_water(void)
-{
-#define THICK(t) \
-    HEAD WATER SIDES FLOOR BEAM_AT "0; 0.05, 0.08\nclamp = 0.05, 0\nthickness = " t "\n" POST
-    read(THICK("19 mm"));
-    TEST_ASSERT_EQUAL_STRING("", warnings);
-    read(THICK("20 mm"));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "[beam plate] is 0.02 m thick, 4 particles"),
-                                 warnings);
-    read(HEAD BEAM_AT "0; 0.05, 0.08\nclamp = 0.05, 0\nthickness = 20 mm\n" POST);
-    TEST_ASSERT_EQUAL_STRING("", warnings);
-}
-
 static void test_a_tank_without_a_floor(void)
 {
     /* All but the nine of each outer column that stand above the foot of a side. */
@@ -482,7 +468,6 @@ int main(void)
     RUN_TEST(test_a_sound_tank_gets_no_warning);
     RUN_TEST(test_a_hinge_is_one_particle);
     RUN_TEST(test_a_beam_in_a_wall);
-    RUN_TEST(test_a_thick_beam_in_water);
     RUN_TEST(test_a_tank_without_a_floor);
     RUN_TEST(test_surface_against_gravity_and_below_the_water);
     RUN_TEST(test_a_surface_above_the_water);

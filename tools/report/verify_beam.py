@@ -206,9 +206,8 @@ DENSITIES, THICKNESSES = (0.01, 1, 10), (0.05, 0.2, 1, 4)
 def wet_text(sides, solid):
     fluid = "shape = box 0, 0, 1, H"
     weight = "" if sides == 2 else "9810*H + "
-    low = "-plate" if solid else "0"
     if sides == 2:
-        fluid += f"\nshape = box 0, {low} - H, 1, {low}"
+        fluid += "\nshape = box 0, -plate - H, 1, -plate"
     if solid:
         walls = TALL.format("0") + ("\n" + CUP.format("-plate") if sides == 2 else "")
         body = ("[solid b]\nshape = box -0.1, -plate, 1.1, 0\n"
@@ -219,11 +218,12 @@ def wet_text(sides, solid):
     else:
         walls = TALL.format("-0.2")
         if sides == 2:
-            walls = "shape = polyline: 0, 1.4*H; 0, -H; 1, -H; 1, 1.4*H"
-        body = ("[beam b]\nshape = polyline: 0, 0; 1, 0\nclamp = 0, 0\nclamp = 1, 0\n" + SECTION)
+            walls = "shape = polyline: 0, 1.4*H; 0, -plate - H; 1, -plate - H; 1, 1.4*H"
+        body = ("[beam b]\nshape = polyline: 0, -plate/2; 1, -plate/2\nclamp = 0, -plate/2\n"
+                "clamp = 1, -plate/2\n" + SECTION)
         load = ON_BEAM.format(weight)
     return BASIN.format(fluid=fluid, walls=walls, body=body, load=load, surface="H",
-                        probe="0.25, -plate/2" if solid else "0.25, 0").replace("sides = 2",
+                        probe="0.25, -plate/2").replace("sides = 2",
                                                                                 f"sides = {sides}")
 
 
@@ -342,10 +342,12 @@ def peak(wanted, seconds):
     return measure
 
 
-GATE = as_beam("gate", "gate", "[beam gate]\nshape = polyline: W, top; W, gate_length; W, dp/100\n"
-               "clamp = W, top\nclamp = W, gate_length\nthickness = gate_thickness\n"
-               "density = 1100 kg/m^3\nyoung = 7.8 MPa\npoisson = 0.4\n",
-               "shape = box W, gate_length,").replace("W + gate_thickness/2, 0", "W, dp/100")
+MIDDLE = "W + gate_thickness/2"
+GATE = as_beam("gate", "gate", "[beam gate]\nshape = polyline: {0}, top; {0}, gate_length; "
+               "{0}, dp/100\n"
+               "clamp = {0}, top\nclamp = {0}, gate_length\nthickness = gate_thickness\n"
+               "density = 1100 kg/m^3\nyoung = 7.8 MPa\npoisson = 0.4\n".replace("{0}", MIDDLE),
+               "shape = box W, gate_length,").replace(f"{MIDDLE}, 0", f"{MIDDLE}, dp/100")
 BAFFLE = as_beam("wet_baffle", "baffle", "[beam baffle]\nshape = polyline: base_x + base_width/2, "
                  "base_height; base_x + base_width/2, tip\nclamp = base_x + base_width/2, "
                  "base_height\nthickness = thickness\ndensity = 1250 kg/m^3\nyoung = 5.7 MPa\n"

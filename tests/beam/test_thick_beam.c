@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT
+ * Beams of any thickness in fluid: what they displace, how water lifts them, rest (T-110f). */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+#define WATER                                                                  \
+    "scheme = standard\ndp = 20 mm\nend_time = 9\ngravity = 0, -9.81\n"        \
+    "[fluid w]\nshape = box 0, 0, 0.8, 0.4\nsound_speed = 25\nsurface = 0.4\n" \
+    "[wall tank]\nshape = polyline: 0, 0.6; 0, 0; 0.8, 0; 0.8, 0.6\n"
+
+/* A beam 0.4 m long is held at the height y. Its faces fit the lattice or, below a spacing, its
+ * line does. */
+static void open_held(double half, double y)
+{
+    char text[1000];
+    snprintf(text, sizeof text,
+             WATER "[beam b]\nshape = polyline: 0.2, %g; 0.4, %g; 0.6, %g\nclamp = 0.4, %g\n"
+                   "thickness = %g\nyoung = 1e9\ndensity = 1000\ngravity = off\n",
+             y, y, y, y, 2 * half);
+    rig_open(&rig, text, NULL);
+}
+
+static double lift(void)
+{
+    const struct particles *const walls = &rig.sim.particles[KIND_WALL];
+    double sum = 0;
+    simulation_wall_forces(&rig.sim);
+    for (int64_t i = 0; i < walls->n; i++) sum += walls->body[i] == 1 ? walls->fy[i] : 0;
+    return sum;
+}
+
+static double mean_square_speed(void)
+{
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
+    double sum = 0;
+    for (int64_t i = 0; i < fluid->n; i++) sum += square(fluid->vx[i]) + square(fluid->vy[i]);
+    return sum / (double)fluid->n;
+}
+
+/* The lift is the weight of the water displaced, within 2 % or the weight of a particle. Fluid
+ * beside faces between the lines of the lattice begins out of order. */
+static void test_lift_and_rest(void)
+{
+    static const struct {
+        double half, y, speed;
+    } scenes[] = {{0.5e-3, 0.2, 0.01},
+                  {5e-3, 0.2, 0.02},
+                  {10e-3, 0.21, 0.01},
+                  {20e-3, 0.2, 0.01},
+                  {40e-3, 0.2, 0.01}};
+    const double particle = 9.81 * 1000 * square(0.02);
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char what[40];
+        double start, mean = 0;
+        const double half = scenes[k].half, wanted = 9810 * 2 * half * 0.4;
+        snprintf(what, sizeof what, "thickness %g m", 2 * half);
+        open_held(half, scenes[k].y);
+        start = lift();
+        rig_run(&rig, 0.2);
+        for (int n = 1; n <= 20; n++) {
+            rig_run(&rig, 0.2 + 0.01 * n);
+            mean += lift() / 20;
+        }
+        if (half > 5e-3) assert_near(0.02 * wanted, wanted, start, what);
+        assert_near(max2(0.02 * wanted, particle), wanted, mean, what);
+        assert_at_most(square(scenes[k].speed), mean_square_speed(), what);
+    }
+}
+
+/* A beam of half the density of water floats with half of its thickness in it. */
+static void test_a_float(void)
+{
+    rig_open(&rig,
+             WATER "[beam b]\nshape = polyline: 0.2, 0.4; 0.6, 0.4\nthickness = 80 mm\n"
+                   "young = 1e8\ndensity = 500\n",
+             NULL);
+    const struct beam_state *const middle = &rig.sim.beams.state[10];
+    for (int n = 1; n <= 20; n++) {
+        rig_run(&rig, 0.05 * n);
+        assert_at_most(0.15 * 0.02, fabs(middle->x[1]), "heave");
+        assert_at_most(0.002, fabs(middle->x[2]), "turn");
+    }
+    assert_at_most(square(0.01), mean_square_speed(), "speed^2");
+}
+
+/* The fluid has its area less that of the beam, to a particle, at any place of its faces. */
+static void test_what_is_displaced(void)
+{
+    static const struct {
+        const char *line;
+        double length, thickness;
+    } scenes[] = {{"0.2, 0.2; 0.6, 0.2", 0.4, 0.003},
+                  {"0.2, 0.207; 0.6, 0.207", 0.4, 0.02},
+                  {"0.35, 0.08; 0.35, 0.32", 0.24, 0.05},
+                  {"0.2, 0.1; 0.5, 0.3", 0.36056, 0.03}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 WATER "[beam b]\nshape = polyline: %s\nthickness = %g\nyoung = 1e9\n"
+                       "density = 1000\n",
+                 scenes[k].line, scenes[k].thickness);
+        rig_open(&rig, text, NULL);
+        assert_near(1, (0.8 * 0.4 - scenes[k].length * scenes[k].thickness) / square(0.02),
+                    (double)rig.sim.particles[KIND_FLUID].n, scenes[k].line);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_lift_and_rest);
+    RUN_TEST(test_a_float);
+    RUN_TEST(test_what_is_displaced);
+    return UNITY_END();
+}
