@@ -153,13 +153,6 @@ struct settling {
     int *line;         /* the thin line that a point belongs to, from 1; 0: none */
 };
 
-static bool covers_cell(const struct region *region, const double cell[2])
-{
-    double at[2];
-    place_of_cell(&region->lattice, cell, at);
-    return geometry_covers(region, at[0], at[1]);
-}
-
 /* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
  * filled when the sum of the shares exceeds the number of filled cells by a half. Beside a beam
  * along the lattice, cells that keep their particle have it where it was. */
@@ -179,14 +172,15 @@ static enum err refill(struct settling *s, const struct cut_cells *c, struct sce
     double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
         const double cell[2] = {c->grid.x[k], c->grid.y[k]};
-        const bool drawn = k >= c->n_slanted && covers_cell(c->region, cell);
+        double at[2];
+        place_of_cell(l, cell, at);
+        const bool drawn = k >= c->n_slanted && geometry_covers(c->region, at[0], at[1]);
         const bool filled = (excess += c->share[k]) >= 0.5;
         if (k < c->n_slanted || drawn != filled)
             TRY(point_grid_add(&s->cells, cell[0], cell[1], &s->sampler->temp, s->sampler->diag));
         if (!filled) continue;
         excess--;
-        double at[2];
-        place_of_cell(l, drawn ? cell : c->middle[k], at);
+        if (!drawn) place_of_cell(l, c->middle[k], at);
         to->x[to->n] = at[0];
         to->y[to->n] = at[1];
         to->body[to->n++] = c->region->body;
