@@ -63,10 +63,11 @@ def separate(time: Sequence[float], levels: Sequence[Sequence[float]], places: S
         raise BadFile(f"{len(places)} gauges with {levels.shape} levels at {len(time)} times: two "
                       "or more gauges are needed, with a level at each time")
     if period is not None:
-        periods = int((time[-1] - time[0]) / period * (1 + 1e-9))
+        # Each row stands for the time until the next one: 80 rows of T/40 are two periods.
+        record = (time[-1] - time[0]) * len(time) / max(len(time) - 1, 1)
+        periods = int(record / period * (1 + 1e-9))
         if periods < 1:
-            raise BadFile(f"the record of {time[-1] - time[0]:g} s is shorter than the period of "
-                          f"{period:g} s")
+            raise BadFile(f"the record of {record:g} s is shorter than the period of {period:g} s")
         last = time >= time[-1] - periods * period * (1 + 1e-9)
         frequency = np.array([1 / period])
         amplitudes = _fit(time[last], levels[:, last], period)[:, None]

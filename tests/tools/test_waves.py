@@ -44,6 +44,16 @@ def test_regular_waves():
         assert abs(found.incident - 0.04) < 1e-9 and abs(found.reflection - 0.15) < 1e-8, found
 
 
+def test_all_periods_count():
+    """Rows for two periods, each of them once. A wave of two thirds of the period is periodic in
+    both together and does not count."""
+    length = 2 * np.pi / wave_number(2 * np.pi / PERIOD, DEPTH)
+    places, rows = [1, 1 + length / 4], len(TIME) // 5
+    levels = sea(places, [(PERIOD, 0.02, 0.003, 0.7), (PERIOD / 1.5, 0.01, 0, 0)])[:, -rows:]
+    found = separate(TIME[-rows:], levels, places, DEPTH, PERIOD)
+    assert abs(found.incident - 0.04) < 1e-9 and abs(found.reflection - 0.15) < 1e-8, found
+
+
 def test_irregular_waves():
     """Frequencies of the record; those for which the gauges are half a length apart are left
     out."""
