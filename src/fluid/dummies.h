@@ -179,9 +179,8 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
         mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        sticks[r] =
-            neighbours->n && fluid->sticks[d->kind][particles->body[d->index[r]]] ? 1 + own_image
-                                                                                  : 0;
+        const bool held = neighbours->n && fluid->sticks[d->kind][particles->body[d->index[r]]];
+        sticks[r] = held ? 1 + own_image : 0;
         if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];
