@@ -44,7 +44,7 @@ static bool matters_to_fork(const struct line *line)
         "max_speed", "max_pressure", "particle_mass", "solid_h_over_dp", "hinge",
         "mass",      "inertia",      "centre",        "thickness",       "element",
         NULL};
-    static const char *const free_sections[] = {"[output", "[probe",  "[reference",
+    static const char *const free_sections[] = {"[output", "[probe", "[reference",
                                                 "[motion", "[table", NULL};
     if (is_one_of(line->section, free_sections, "] ")) return false;
     return line->text[0] == '[' || is_one_of(line->text, kept, " ");

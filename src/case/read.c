@@ -151,8 +151,7 @@ static enum err read_section(struct reader *r, int section)
 static enum err read_sections(struct reader *r, bool tables)
 {
     for (int k = 0; k < r->n_sections; k++)
-        if (tables == (r->sections[k].id == SECTION_table))
-            TRY(case_go_on(r, read_section(r, k)));
+        if (tables == (r->sections[k].id == SECTION_table)) TRY(case_go_on(r, read_section(r, k)));
     return ERR_OK;
 }
 

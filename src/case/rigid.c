@@ -105,8 +105,7 @@ static enum err check_hinge(struct reader *r, const struct scene_rigid *rigid)
                            "to the other bodies",
                            rigid->hinge.n);
     if (driven >= 0 && !r->scene->motion[driven].turn.e[0])
-        return bad_section(r,
-                           "has the `hinge_motion` %s, which has no angle; give it `turn`",
+        return bad_section(r, "has the `hinge_motion` %s, which has no angle; give it `turn`",
                            rigid->hinge_motion);
     if (*rigid->hinge_motion && moments > 0)
         return bad_section(r, "has a `hinge_motion`, which gives the angle, and a stiffness, "

@@ -211,7 +211,7 @@ struct scene {
     int n_given;
     struct scene_given *given;
     struct test_switches test;
-    struct expr_table *function; /* [n_table] */
+    struct expr_table *function;     /* [n_table] */
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
     /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
     struct rigid_motion *rigid_motion;

@@ -44,15 +44,13 @@ static enum err load_function(struct reader *r, int k)
     struct diag why = {.code = ERR_OK};
     char columns[64] = "argument, value (or `column = 3`)";
     if (chosen) snprintf(columns, sizeof columns, "argument, value in column %d", given->column);
-    struct csv csv = {.columns = columns,
-                      .n = given->column,
-                      .more = chosen,
-                      .limit = 1e15,
-                      .diag = &why};
+    struct csv csv = {
+        .columns = columns, .n = given->column, .more = chosen, .limit = 1e15, .diag = &why};
     if (meaning) return bad_section(r, "has the name of %s; rename it", meaning);
     if (slice_identifier(slice_of(name)).length < strlen(name))
-        return bad_section(r, "is a function %s(...) of expressions, so its name must be letters, "
-                              "digits and _, a letter first",
+        return bad_section(r,
+                           "is a function %s(...) of expressions, so its name must be letters, "
+                           "digits and _, a letter first",
                            name);
     if (!*given->file) return ERR_OK; /* reported as missing */
     enum err e = table_open(scene, &csv, given->file);

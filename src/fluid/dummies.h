@@ -317,8 +317,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         const struct dummy_cluster d = dummies_at(fluid, cells, kind, cell, wet[m]);
         scatter(&d, &pressure[m * CLUSTER], particles->p);
         scatter(&d, &dens[m * CLUSTER], particles->dens);
-        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER],
-                      thin);
+        dummies_state(fluid, particles, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], thin);
     }
 }
 

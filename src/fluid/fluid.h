@@ -287,8 +287,8 @@ SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *c
 {
     if (!(fluid->effects & FX_THIN)) return 1;
     const int32_t own = fluid_line_before(fluid, kind, i);
-    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from,
-                      (const double[]){x, y}, own, own ? fluid->lines.filled[i] : 0);
+    return lines_seen(&fluid->lines, cells, KERNEL_REACH * fluid->k.h, from, (const double[]){x, y},
+                      own, own ? fluid->lines.filled[i] : 0);
 }
 
 /* repulsion.c: energy stored by walls and structures that repel each section (L-7b), J/m. */

@@ -73,8 +73,7 @@ static void carry(const struct thin_line *line, int64_t j, double v[2], double a
     double t[2], foot[2], faster[2] = {0};
     line_tangent(line, j, t);
     line_foot(line, j, foot);
-    const double arm[2] = {foot[0] - by->x[0], foot[1] - by->x[1]},
-                 across[2] = {-arm[1], arm[0]};
+    const double arm[2] = {foot[0] - by->x[0], foot[1] - by->x[1]}, across[2] = {-arm[1], arm[0]};
     for (int c = 0; c < 2; c++) {
         faster[0] += t[c] * (by->v[c] + by->spin * across[c] - v[c]);
         faster[1] +=

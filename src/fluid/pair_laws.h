@@ -19,9 +19,9 @@
  * even. With the volumes of both, over h^4. */
 struct pair_terms {
     struct pair pair;
-    vreal radial; /* of xi in the forces, Pa */
-    vreal laminar; /* of -v in the forces, kg/(m^2 s) */
-    vreal rate;   /* of v.xi in the rate, 1 */
+    vreal radial;          /* of xi in the forces, Pa */
+    vreal laminar;         /* of -v in the forces, kg/(m^2 s) */
+    vreal rate;            /* of v.xi in the rate, 1 */
     vreal dens_difference; /* that diffuses, 1 */
     vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
 };
@@ -47,8 +47,8 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
     const double per_c2 = fk->h / square(fk->c0);
     const double slope = PAIR_SLOPE * fk->h / (fk->mass / fk->rho0);
     return (struct vector_constants){
-        .laminar = vset(
-            (real)(2 * fk->model->laminar_viscosity * fk->rho0 / (fk->second_moment * fk->h))),
+        .laminar =
+            vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / (fk->second_moment * fk->h))),
         .tensile = vset((real)fk->model->tensile_control),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
         .repulsion = vset((real)(fk->model->wall_repulsion * fk->rho0 * square(fk->c_u))),
@@ -90,7 +90,7 @@ SPHFSI_INLINE vreal law_viscosity(const struct pair *q, vreal damping, vreal str
 
 /* Monaghan 2000, Sec. 3: tension repels by epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
 SPHFSI_INLINE vreal law_tensile(const struct receiver *a, const struct pair *q,
-                               const struct vector_constants *k)
+                                const struct vector_constants *k)
 {
     const vreal r = vsqrt(q->r2);
     const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r, vset(1)));
@@ -110,7 +110,7 @@ SPHFSI_INLINE void law_sliding(struct pair *q, vreal tx, vreal ty)
  * structure, plus gravity and acceleration in between: Eq. 19 with this particle alone. (x, y) is
  * its position relative to the dummy over h, `lift` rho0 h (g - a) of the dummy. */
 SPHFSI_INLINE vreal law_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
-                                 const struct vector_constants *k)
+                                  const struct vector_constants *k)
 {
     return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
 }
@@ -130,7 +130,7 @@ SPHFSI_INLINE vreal law_repulsion(vreal near, vreal inv, const struct vector_con
 /* The repulsion of a pair that approaches at a speed u: zeta rho0 c0 u, the pressure of the
  * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
 SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal v_xi,
-                                    const struct vector_constants *k)
+                                     const struct vector_constants *k)
 {
     const vreal speed = -(vmin(v_xi, vset(0)) * vsqrt(inv));
     return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));

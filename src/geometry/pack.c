@@ -135,9 +135,9 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
     TRY(geometry_array(sampler, &c->share, n));
     TRY(geometry_array(sampler, &c->middle, n));
     for (int64_t k = 0; k < c->grid.n; k++)
-        c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]},
-                               k < c->n_slanted ? LINES : LEVEL_LINES, c->middle[k], line,
-                               line + ends);
+        c->share[k] =
+            share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]},
+                     k < c->n_slanted ? LINES : LEVEL_LINES, c->middle[k], line, line + ends);
     return ERR_OK;
 }
 
@@ -257,8 +257,7 @@ static enum err add_air(struct settling *s)
             for (int64_t i = -around; i <= around; i++) {
                 const double cell[2] = {s->cells.x[k] + (double)i, s->cells.y[k] + (double)j};
                 if (!point_grid_any(&s->air, cell[0], cell[1], 0.1))
-                    TRY(point_grid_add(&s->air, cell[0], cell[1], &sampler->temp,
-                                       sampler->diag));
+                    TRY(point_grid_add(&s->air, cell[0], cell[1], &sampler->temp, sampler->diag));
             }
     return ERR_OK;
 }

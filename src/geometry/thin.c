@@ -68,9 +68,8 @@ static bool belongs_elsewhere(const struct scene_line *line, const struct line_d
 static bool lies_outside(const struct scene_line *line, const struct line_dummy *dummy)
 {
     const bool end = dummy->beyond < 0 ? dummy->part == 0 : dummy->part == line->n - 2;
-    return dummy->beyond != 0 &&
-           ((end && !line_is_closed(line)) ||
-            elementary_hypot(dummy->off, dummy->beyond) > line->half);
+    return dummy->beyond != 0 && ((end && !line_is_closed(line)) ||
+                                  elementary_hypot(dummy->off, dummy->beyond) > line->half);
 }
 
 /* A row of a part's dummies for the fluid on one side (1: left, -1: right). Rows have the stations
@@ -263,8 +262,8 @@ int geometry_between(const struct scene *scene, const double from[2], const doub
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
             const double *const seen = line->seen[k + 1],
-                         a[2] = {line->seen[k][0] - from[0], line->seen[k][1] - from[1]},
-                         b[2] = {seen[0] - from[0], seen[1] - from[1]};
+                                a[2] = {line->seen[k][0] - from[0], line->seen[k][1] - from[1]},
+                                b[2] = {seen[0] - from[0], seen[1] - from[1]};
             odd ^= crosses_piece(offset, a, b);
             const double along = offset[0] * b[0] + offset[1] * b[1],
                          across = offset[0] * b[1] - offset[1] * b[0],

@@ -151,7 +151,7 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
             const struct field_info *const info = &field_table[f];
             void *const data = field_array(&sim->particles[k], info);
             if (!data || info->keep != KEEP_STATE) continue;
-            struct part part = {info->name, k, item_of(info->type), data, count, FORK_LOADS,
+            struct part part = {info->name, k,     item_of(info->type), data, count, FORK_LOADS,
                                 -FINITE,    FINITE};
             if (info->group & new_in_fork[k]) part.in_fork = FORK_LOADS_IF_THERE;
             if (data == sim->particles[k].body) part.low = 0, part.high = sections[k] - 1;

@@ -35,8 +35,7 @@ static enum err read_file(struct reference *r, const struct scene *scene, struct
                           struct diag *d)
 {
     struct diag why = {.code = ERR_OK};
-    struct csv csv = {
-        .columns = "time (s), value (SI)", .n = 2, .limit = HUGE_VAL, .diag = &why};
+    struct csv csv = {.columns = "time (s), value (SI)", .n = 2, .limit = HUGE_VAL, .diag = &why};
     enum err e = table_open(scene, &csv, r->from->file);
     if (!e) e = read_rows(r, &csv, a);
     csv_close(&csv);

@@ -18,10 +18,10 @@ struct pair_law {
 };
 
 struct rigid_contact {
-    double reach;                /* a spacing, m */
-    struct rigid_shape *shape;   /* [n_wall] */
+    double reach;               /* a spacing, m */
+    struct rigid_shape *shape;  /* [n_wall] */
     struct pair_law *law, *now; /* [rigid bodies][n_wall]; of the pair that is compared */
-    int most;                    /* pairs */
+    int most;                   /* pairs */
 };
 
 /* --- outlines --- */
@@ -197,8 +197,7 @@ static void set_law(struct rigid *rigid, int k, int w)
     rigid->n_rows = 0;
     approach_pair(rigid, k, w);
     law->layer = scene_contact_gap(scene, from);
-    for (int j = 0; j < rigid->n_rows; j += 2)
-        law->layer = min2(law->layer, rigid->row[j].gap);
+    for (int j = 0; j < rigid->n_rows; j += 2) law->layer = min2(law->layer, rigid->row[j].gap);
     if (rigid->n_rows && hinged) law->layer = (double)NAN;
 }
 

@@ -26,7 +26,7 @@ void find_external(struct simulation *sim, enum kind kind, double time)
     memset(external->ax, 0, bytes);
     memset(external->ay, 0, bytes);
     external->accelerate(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
-                 external->ax, external->ay);
+                         external->ax, external->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
@@ -100,8 +100,7 @@ void simulation_refresh(struct simulation *sim)
         evaluate_rates(sim, sim->state.time);
         /* A caller's own forces and motions may change between two steps. */
         sim->evaluated = !sim->external[KIND_FLUID].accelerate &&
-                         !sim->external[KIND_SOLID].accelerate &&
-                         !sim->scene->motion_hook;
+                         !sim->external[KIND_SOLID].accelerate && !sim->scene->motion_hook;
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);

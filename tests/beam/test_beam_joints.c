@@ -255,12 +255,12 @@ static void test_bad_input_is_refused(void)
 /* Holds of a place that move alike are one; others contradict each other. */
 static void test_holds_that_move_apart_are_refused(void)
 {
-#define WALLS                                                               \
-    "[wall w]\nshape = box -1, -1, -0.5, -0.5\nmotion = m\n[motion m]\n"    \
-    "x = t\n[wall o]\nshape = box 2, 2, 3, 3\n"                              \
+#define WALLS                                                            \
+    "[wall w]\nshape = box -1, -1, -0.5, -0.5\nmotion = m\n[motion m]\n" \
+    "x = t\n[wall o]\nshape = box 2, 2, 3, 3\n"                          \
     "motion = n\n[motion n]\ny = t\n"
-#define OTHER(rest)                                                         \
-    "[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n"            \
+#define OTHER(rest)                                             \
+    "[beam c]\nshape = polyline: 1, 0; 0.5, 0.5\nyoung = 1e6\n" \
     "thickness = 1 cm\ndensity = 1\n" rest
     rig_refuses(BEAM("clamp = 1, 0, w\n") OTHER("clamp = 1, 0, b\nclamp = 1, 0, o\n") WALLS,
                 "t.cfg:15: [beam c] is held at 1, 0 with [motion n], but t.cfg:8 holds this point "

@@ -97,7 +97,7 @@ static void test_a_hanging_bar_pulls_with_its_weight(void)
 #define ACROSS(name, at) HELD(name, at ", 0", "to = " at ", -1\nstiffness = 1e7\n")
 /* Two that pull against each other hold it across by their tension, 5000 N/m^2 each. */
 #define TAUT "length = 0.5\nstiffness = 1e4\n"
-#define ALONG(name, at, left, right)                   \
+#define ALONG(name, at, left, right)                    \
     HELD(name "l", at ", 0", "to = " left ", 0\n" TAUT) \
     HELD(name "r", at ", 0", "to = " right ", 0\n" TAUT)
 static double sprung_period(const char *scene, const char *step)
@@ -121,9 +121,9 @@ static double sprung_period(const char *scene, const char *step)
 
 static void test_stiff_springs_shorten_the_step(void)
 {
-    static const char *const scene[] = {
-        CANTILEVER ACROSS("s", "0.5") ACROSS("t", "1"),
-        CANTILEVER ALONG("s", "0.5", "-0.5", "1.5") ALONG("t", "1", "0", "2")};
+    static const char *const scene[] = {CANTILEVER ACROSS("s", "0.5") ACROSS("t", "1"),
+                                        CANTILEVER ALONG("s", "0.5", "-0.5", "1.5")
+                                            ALONG("t", "1", "0", "2")};
     for (int k = 0; k < 2; k++) {
         const double exact = sprung_period(scene[k], "numerics.fixed_step=2e-4");
         assert_near(0.01 * exact, exact, sprung_period(scene[k], "numerics.cfl=0.2"), "period");

@@ -303,8 +303,7 @@ static void test_long_tables(void)
 
 static void test_a_folder_is_no_table(void)
 {
-    refuses(TOP SOLID
-            "clamp = box 0, 0, 10 mm, 5 mm\n[table way]\nfile = .\n",
+    refuses(TOP SOLID "clamp = box 0, 0, 10 mm, 5 mm\n[table way]\nfile = .\n",
             "l.cfg:10: [table way] file: .: is not a file");
 }
 

@@ -61,8 +61,8 @@ static const struct {
     {TOP SOLID, "a.young=sin(1 m)", "sin of a length (m)"},
     {TOP SOLID, "a.young=1 zzzz", "`zzzz` after 1 is not a unit"},
     /* Values that do not fit together. */
-    {TOP WATER "[motion m]\nstop = -1\n[wall b]\nshape = box 0, -30 mm, 0.4, 0\nmotion = m\n",
-     NULL, "must come before stop = -1 s"},
+    {TOP WATER "[motion m]\nstop = -1\n[wall b]\nshape = box 0, -30 mm, 0.4, 0\nmotion = m\n", NULL,
+     "must come before stop = -1 s"},
     {TOP SOLID
      "[load l]\nbody = a\nshape = box 0, 0, 10 mm, 10 mm\nforce = 1, 0\ntraction = 1, 0\n",
      NULL, "and has both"},

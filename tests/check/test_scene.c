@@ -207,8 +207,7 @@ static void test_a_clamp_and_a_wall_that_move_differently(void)
                                         "which is at rest, so the two will overlap or part; "
                                         "`motion = shake` moves both"),
                                  warnings);
-    snprintf(text, sizeof text, "%sclamp_motion = sway\n[motion sway]\nx = 0.1*t\n",
-             scene_text);
+    snprintf(text, sizeof text, "%sclamp_motion = sway\n[motion sway]\nx = 0.1*t\n", scene_text);
     read(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has the motion sway but touches [wall floor], "
                                                   "which moves differently"),

@@ -167,12 +167,11 @@ static void test_friction_between_two_bodies(void)
 static void test_a_hinge_is_driven(void)
 {
     rig_open(&rig,
-             FREE
-             "[motion m]\nturn = 0.5*sin(2*pi*t)\ncentre = 9, 9\n"
-             "[rigid a]\nshape = box 0, -0.05, 1, 0.05\nmass = 2\nhinge = 0, 0\n"
-             "hinge_motion = m\n"
-             "[rigid b]\nshape = box 1, -0.05, 2, 0.05\nmass = 1\nhinge = 1, 0, a\n"
-             "hinge_motion = m\n",
+             FREE "[motion m]\nturn = 0.5*sin(2*pi*t)\ncentre = 9, 9\n"
+                  "[rigid a]\nshape = box 0, -0.05, 1, 0.05\nmass = 2\nhinge = 0, 0\n"
+                  "hinge_motion = m\n"
+                  "[rigid b]\nshape = box 1, -0.05, 2, 0.05\nmass = 1\nhinge = 1, 0, a\n"
+                  "hinge_motion = m\n",
              NULL);
     rig_run(&rig, 0.6);
     const double turned = 0.5 * sin(2 * acos(-1) * 0.6);
@@ -210,7 +209,7 @@ static void test_a_hinge_on_a_carriage(void)
 static void test_drives_of_a_closed_loop(void)
 {
 #define LOOP(drive)                                                                               \
-    FREE "[motion m]\nturn = 0.2*sin(pi/2*t)\ncentre = 9, 9\n"                                     \
+    FREE "[motion m]\nturn = 0.2*sin(pi/2*t)\ncentre = 9, 9\n"                                    \
          "[rigid a]\nshape = box -0.06, 0, 0.06, 1\nmass = 2\nhinge = 0, 0\nhinge_motion = m\n"   \
          "[rigid b]\nshape = box 0.06, 0.94, 0.94, 1.06\nmass = 1\nhinge = 0.06, 0.96, a\n" drive \
          "[rigid c]\nshape = box 0.94, 0, 1.06, 1\nmass = 1\nhinge = 0.94, 0.96, b\n"             \

@@ -70,8 +70,8 @@ static double period_of(double (*place)(void), double part)
     return first;
 }
 
-#define BODY                                                                            \
-    "dp = 3 cm\nend_time = 100\n[domain]\nlower = -20, -20\nupper = 20, 20\n"           \
+#define BODY                                                                  \
+    "dp = 3 cm\nend_time = 100\n[domain]\nlower = -20, -20\nupper = 20, 20\n" \
     "[rigid a]\nshape = box 0, 0, 0.1, 0.1\nmass = 2\nguide = 1, 0\nturns = off\n"
 #define SPRING "[spring s]\nbody = a\nfrom = 0, 0.05\nto = -1, 0.05\n"
 #define TABLE "[table law]\nfile = test_spring_laws.tmp\n"
