@@ -216,15 +216,14 @@ def wet_text(sides, solid):
         load = ("shape = box 0, -1/40, 1, 0\ntraction = 0, "
                 f"{weight}force*sin(2*pi*x)" + SHAKE)
     else:
-        walls = TALL.format("-0.2")
+        walls = TALL.format("-plate - 0.2")  # their corners must not touch the plate
         if sides == 2:
             walls = "shape = polyline: 0, 1.4*H; 0, -plate - H; 1, -plate - H; 1, 1.4*H"
         body = ("[beam b]\nshape = polyline: 0, -plate/2; 1, -plate/2\nclamp = 0, -plate/2\n"
                 "clamp = 1, -plate/2\n" + SECTION)
         load = ON_BEAM.format(weight)
     return BASIN.format(fluid=fluid, walls=walls, body=body, load=load, surface="H",
-                        probe="0.25, -plate/2").replace("sides = 2",
-                                                                                f"sides = {sides}")
+                        probe="0.25, -plate/2").replace("sides = 2", f"sides = {sides}")
 
 
 def section(sides, thick, ratio):
