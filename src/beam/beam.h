@@ -165,7 +165,7 @@ double beams_stiffer_step(const struct beams *beams);
 
 /* Lengths of a step, of the one before (0: none), and for which rates act, s. */
 struct beam_times {
-    double dt, last, kick;
+    double dt, last, rates_time;
 };
 
 /* A step from a time on (T-104). */

@@ -30,7 +30,7 @@ double beam_atan_over(double z)
     return 1 - z2 * (1.0 / 3 - z2 * (1.0 / 5 - z2 * (1.0 / 7 - z2 * (1.0 / 9 - z2 / 11))));
 }
 
-/* T-104a to T-104c: the mean of the middle's position, its tangent after half of the rotation, and
+/* T-104a, T-104b: the mean of the middle's position, its tangent after half of the rotation, and
  * the exact change of the three strains as B d. */
 struct middle {
     double mean[2], tangent[2], normal[2], share[2], B[3][6];

@@ -294,9 +294,9 @@ static bool step(struct beams *beams, double time, const struct beam_times *time
         return true;
     }
     if (halvings == 0) return false;
-    const double half = 0.5 * dt, kick = 0.5 * times->kick;
-    return step(beams, time, &(struct beam_times){half, times->last, kick}, halvings - 1) &&
-           step(beams, time + half, &(struct beam_times){half, half, kick}, halvings - 1);
+    const double half = 0.5 * dt, rates_time = 0.5 * times->rates_time;
+    return step(beams, time, &(struct beam_times){half, times->last, rates_time}, halvings - 1) &&
+           step(beams, time + half, &(struct beam_times){half, half, rates_time}, halvings - 1);
 }
 
 void beams_advance(struct beams *beams, double time, const struct beam_times *times)

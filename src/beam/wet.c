@@ -189,11 +189,11 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double along[3])
         for (int c = 0; c < 6; c++) beams->added[element][r][c] += by * normal[r] * normal[c];
 }
 
-/* T-36a: the force in the middle of the step, with all that the fluid gets for `kick`. */
+/* T-36a: the force in the middle of the step, with all that the fluid gets for `rates_time`. */
 static void extrapolate(struct beams *beams, const struct beam_times *times)
 {
     const struct force_weights by =
-        force_weights(times->kick / times->dt, 0.5 - beams->stage, beams->alternates);
+        force_weights(times->rates_time / times->dt, 0.5 - beams->stage, beams->alternates);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             double *const force = &beams->step[k].fluid[c];
@@ -250,7 +250,7 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
 void beams_return_impulse(struct beams *beams, const struct beam_times *times)
 {
     const double dt = times->dt, before = beams->state[0].exchange_time,
-                 after = exchange_time_after(before, dt), left = 1 - times->kick / before,
+                 after = exchange_time_after(before, dt), left = 1 - times->rates_time / before,
                  weight =
                      acceleration_weight(beams->scene->h / beams->scene->c0, 1 + beams->stage, dt);
     for (int k = 0; k < beams->n_nodes; k++) {

@@ -7,7 +7,8 @@
 #include "geometry/sampling.h"
 #include "time/simulation.h"
 
-/* Warns of a scene that has been sampled. Sets its off_lattice, full and given_speed. */
+/* Warns of a scene that has been sampled, and completes it: off_lattice, full and given_speed, and
+ * the default of `shifting` and `shifting_speed` in a full channel with bodies that stick. */
 enum err check_scene(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
 
 /* Warns of steps that are unstable or much too short: to be called after a step. */

@@ -75,7 +75,7 @@ double expr_operate(const struct op *op, double a, double b)
     case OP_LOG: return elementary_log(a);
     case OP_ROUND: return round(a);
     case OP_TABLE: return table_at(op->table, a, false).value;
-    default: return fabs(a);
+    default: return fabs(a); /* OP_ABS */
     }
 }
 

@@ -140,27 +140,31 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
-/* What law_one_sided and law_repulsion need of the dummies. */
-SPHFSI_INLINE void pack_surface_fields(const struct fluid *fluid, const struct particles *particles,
-                                       const struct dummy_cluster *d,
-                                       const struct cell_sides *sides)
+/* What law_one_sided needs of the dummies. */
+SPHFSI_INLINE void pack_lift(const struct fluid *fluid, const struct particles *particles,
+                             const struct dummy_cluster *d)
 {
     const double lift = fluid->k.rho0 * fluid->k.h;
-    double ax[CLUSTER], ay[CLUSTER], near2[CLUSTER] = {0};
+    double ax[CLUSTER], ay[CLUSTER];
     gather(d, particles->ax, ax);
     gather(d, particles->ay, ay);
+    put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
+    put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
+}
+
+/* What law_repulsion needs of them. */
+SPHFSI_INLINE void pack_near(const struct fluid *fluid, const struct particles *particles,
+                             const struct dummy_cluster *d, bool thin)
+{
+    double near2[CLUSTER] = {0};
     for (int r = 0; r < d->count; r++)
         near2[r] = fluid->near2[d->kind][particles->body[d->index[r]]];
-    for (int r = 0; r < d->count && sides->piece; r++)
+    for (int r = 0; r < d->count && thin; r++)
         if (fluid_line_of(fluid, d->kind, d->index[r]))
             near2[r] =
                 square(fluid_repels_from(fluid, d->kind, particles, d->index[r]) / fluid->k.h) +
                 ETA2;
-    if (fluid->effects & FX_ONE_SIDED) {
-        put_four(d->packed, PACKED_LIFT_X, lift * (fluid->k.gravity[0] - FOUR(ax, 0)));
-        put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
-    }
-    if (fluid->effects & FX_REPULSION) pack_four(d, near2, PACKED_NEAR);
+    pack_four(d, near2, PACKED_NEAR);
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
@@ -297,8 +301,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         if (moves || !fluid->walls_placed) place_dummies(fluid, particles, cells, cell, &d, &sides);
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (fluid->effects & (FX_ONE_SIDED | FX_REPULSION))
-            pack_surface_fields(fluid, particles, &d, &sides);
+        if (fluid->effects & FX_ONE_SIDED) pack_lift(fluid, particles, &d);
+        if (fluid->effects & FX_REPULSION) pack_near(fluid, particles, &d, thin);
         if (thin) pack_filled(fluid, &d, &neighbours, &sides);
         if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
         if (neighbours.n > 0) {

@@ -20,11 +20,11 @@ struct force_weights {
     double force, mean, before, newest;
 };
 
-/* In steps: for `impulse` the fluid gets the force; `lead` is from the evaluation to the middle of
- * the structure's kicks. With `alternates` forces of two solutions are averaged. */
-SPHFSI_INLINE struct force_weights force_weights(double impulse, double lead, bool alternates)
+/* Times in steps: `received`, for which the fluid gets this force; `lead`, from the evaluation to
+ * the middle of the structure's kicks. With `alternates` forces of two solutions are averaged. */
+SPHFSI_INLINE struct force_weights force_weights(double received, double lead, bool alternates)
 {
-    return (struct force_weights){impulse, lead, impulse + lead - 1, alternates ? 0.5 : 1};
+    return (struct force_weights){received, lead, received + lead - 1, alternates ? 0.5 : 1};
 }
 
 /* The force in the middle of the structure's kicks; `part` of it is extrapolated. */

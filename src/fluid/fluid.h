@@ -175,7 +175,7 @@ struct fluid {
     struct fluid_constants k;
     effect_set effects;                  /* of the simulation, which this layer does not know */
     bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
-    double *volume[KIND_COUNT];          /* [sections] of a resting dummy over a fluid particle's */
+    double *volume[KIND_COUNT];          /* [sections] of a dummy at rest over that of fluid */
     double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
     bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
     const struct fluid_sweeps *sweeps;   /* of the precision */
@@ -247,13 +247,14 @@ SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, i
     return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
-/* That dummy; NULL: of no line. */
+/* What its line says of particle i; NULL: it is on no line. */
 SPHFSI_INLINE const struct line_dummy *fluid_line_dummy(const struct fluid *fluid, enum kind kind,
                                                         int64_t i)
 {
     const int32_t of = fluid_line_of(fluid, kind, i);
+    if (!of) return NULL;
     const struct thin_line *const line = &fluid->lines.line[of - 1];
-    return of ? &line->scene->dummy[i - line->first] : NULL;
+    return &line->scene->dummy[i - line->first];
 }
 
 /* The line that has to lie between fluid and particle i of a kind, from 1; 0: none. */

@@ -73,9 +73,9 @@ SPHFSI_INLINE vreal law_pressure(const struct receiver *a, const struct pair *q)
     return a->p + q->p;
 }
 
-/* -2 alpha c0 rho0/((|xi|^2 + eta^2)(rho0/rho_a + rho0/rho_b)), kg/(m^2 s), from `both`: that sum
- * over the viscosity. The one division of viscosity and of all laws with 1/(|xi|^2 + eta^2), which
- * is its product with `both`. */
+/* -2 alpha c0 rho0/((|xi|^2 + eta^2)(rho0/rho_a + rho0/rho_b)), kg/(m^2 s). `both` is the sum of
+ * the densities there over -2 alpha c0 rho0. The result times `both` is 1/(|xi|^2 + eta^2), which
+ * other laws use: one division serves all. */
 SPHFSI_INLINE vreal pair_damping(const struct pair *q, vreal both, const struct vector_constants *k)
 {
     return vset(1) / ((q->r2 + k->eta2) * both);

@@ -18,6 +18,7 @@ enum { KEEP = 2 }; /* checkpoints in the folder of a run */
 enum { OWNER_RUN = KIND_COUNT, OWNER_CASE };
 
 static const size_t item_size[ITEM_COUNT] = {8, 8, 4, 1};
+static const char *const item_name[ITEM_COUNT] = {"double", "int64", "int32", "byte"};
 
 struct file_header {
     char magic[8];
@@ -464,8 +465,9 @@ static enum err load_part(const struct image *m, const struct part *part, struct
     if (b.item != part->item || b.count != (int64_t)part->count)
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: block %s holds %" PRId64
-                         " items of type %d, but this case needs %zu of type %d",
-                         part->name, b.count, b.item, part->count, part->item);
+                         " items of type %s, but this case needs %zu of type %s",
+                         part->name, b.count, item_name[b.item], part->count,
+                         item_name[part->item]);
     for (int64_t k = 0; k < b.count && isfinite(part->low); k++) {
         const double number = number_of(&b, k);
         if (number >= part->low && number <= part->high) continue;

@@ -11,7 +11,7 @@ enum group {
     G_DENSITY = 1 << 1,        /* fluid; walls and structures in contact with fluid */
     G_RATE = 1 << 2,           /* fluid, moving walls, structures */
     G_FLUID = 1 << 3,          /* fluid */
-    G_STAGE = 1 << 4,          /* predictor-corrector: fluid and solid */
+    G_STAGE = 1 << 4,          /* start of a step: solids; fluid of the predictor-corrector */
     G_STAGE_FLUID = 1 << 5,    /* predictor-corrector: fluid */
     G_VERLET = 1 << 6,         /* Verlet: fluid */
     G_LEAPFROG = 1 << 7,       /* leapfrog: fluid */
@@ -22,8 +22,8 @@ enum group {
     G_COUPLED = 1 << 12,       /* structures in contact with fluid */
     G_MEAN_FORCE = 1 << 13,    /* Verlet, leapfrog: structures in contact with fluid */
     G_SPLIT_IMPULSE = 1 << 14, /* Verlet: structures in contact with fluid, in sub-steps */
-    G_WETTED = 1 << 15,        /* structures in contact with fluid, in sub-steps */
-    G_FORCE = 1 << 16,         /* structures in contact with fluid, moving walls */
+    G_WETTED = 1 << 15,        /* structures in sub-steps, rigid bodies and beams in fluid */
+    G_FORCE = 1 << 16,         /* structures, and walls that move or are probed, in fluid */
     G_SHIFT = 1 << 17,         /* fluid with particle shifting */
     G_DAMPER = 1 << 18,        /* fluid with an acoustic damper */
     G_MASS = 1 << 19,          /* fluid with particles of different masses */

@@ -162,7 +162,7 @@ void contact_forces(struct contact *contact, struct particles *particles, double
     }
 }
 
-/* Spacings that points may approach more than by their speeds. Twice of it: the same bits. */
+/* Spacings that points may approach more than by their speeds. Doubling it changes no bits. */
 #define GAIN 0.25
 /* Surfaces nearer than this many times their reach count in the step bound: forces may bring them
  * nearer than their present velocity does, by which their distance after the step is found. */

@@ -46,8 +46,8 @@ struct simulation;
 
 /* Reads the state between steps and changes nothing that a step depends on. */
 struct observer {
-    /* Called with the present state where `next` is in it or before `until`, the time that the
-     * coming step does not pass; sets `next`. */
+    /* Called if `next` is not after `until`, the latest time at which the coming step can end. Sets
+     * `next`. */
     enum err (*look)(void *context, struct simulation *sim, double until, struct diag *d);
     void *context; /* NULL: nobody looks */
     double next;   /* s: the states on both sides of this time are wanted */

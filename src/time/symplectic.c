@@ -22,7 +22,8 @@ static void swap_states(struct particles *particles)
     swap_fields(&particles->dens, &particles->dens_half);
 }
 
-/* Writes the predicted state to the fields, if effects read them: sweeps predict themselves. */
+/* Writes the predicted state to the fields, for effects that read it there. Otherwise the sweeps
+ * predict by themselves (`predict_by`). */
 static void predict_fields(struct particles *particles, double half)
 {
     swap_states(particles);

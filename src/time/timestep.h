@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The time step and its bounds (Sec. 2.5 of the paper; time/bounds.def). */
+ * The time step and its bounds (Sec. 2.5 of the article; time/bounds.def). */
 #pragma once
 
 #include "time/state.h"
