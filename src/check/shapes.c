@@ -214,7 +214,9 @@ static void warn_of_region(struct check *check, const struct region *region)
         for (int j = 0; j < region->add.n; j++)
             layered |= region->add.shape[j] == k && region->layered[j];
         if (region->lattice.fitted || layered) continue;
-        if (beam && check->scene->beam[k_beam].thickness > 0) continue; /* fluid is packed there */
+        if (beam && check->scene->beam[k_beam].thickness > 0 &&
+            check->scene->top.scheme == SCHEME_STANDARD)
+            continue; /* fluid is packed there */
         warn_of_edges(check, region, k);
         if (region->kind == KIND_WALL && !shape->thin)
             warn_of_thin(check, region, shape, thickness(shape));
