@@ -26,11 +26,12 @@ static void place_of(const struct scene_line *line, const struct line_dummy *dum
     place_on_part(&part, dummy->along * part.length + dummy->beyond, dummy->off, at);
 }
 
-static bool line_is_closed(const struct scene_line *line)
+static bool is_closed(int n, double (*const pt)[2])
 {
-    const double *const a = line->pt[0], *const b = line->pt[line->n - 1];
-    return a[0] == b[0] && a[1] == b[1];
+    return pt[0][0] == pt[n - 1][0] && pt[0][1] == pt[n - 1][1];
 }
+
+static bool line_is_closed(const struct scene_line *line) { return is_closed(line->n, line->pt); }
 
 static int rows_of_line(const struct scene *scene)
 {
@@ -205,10 +206,14 @@ bool geometry_in_beam(const struct scene *scene, const double at[2])
 {
     for (int j = 0; j < scene->n_line; j++)
         for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct line_part part = line_part_at(&scene->line[j], k);
-            double place[2];
+            const struct scene_line *const line = &scene->line[j];
+            const struct line_part part = line_part_at(line, k);
+            const bool closed = line_is_closed(line);
+            double place[2], left;
             relative_to_part(&part, at, place);
-            if (place[0] > 0 && place[0] < part.length && fabs(place[1]) < scene->line[j].half)
+            if ((place[0] > 0 || k > 0 || closed) &&
+                (place[0] < part.length || k + 2 < line->n || closed) &&
+                distance_from(&part, at, &left) < line->half)
                 return true;
         }
     return false;
@@ -216,7 +221,8 @@ bool geometry_in_beam(const struct scene *scene, const double at[2])
 
 static bool turns_at(const struct shape *line, int k)
 {
-    const struct line_part before = line_part(line->pt[k - 1], line->pt[k]),
+    if (k == 0 && !is_closed(line->n, line->pt)) return false;
+    const struct line_part before = line_part(line->pt[k ? k - 1 : line->n - 2], line->pt[k]),
                            after = line_part(line->pt[k], line->pt[k + 1]);
     return fabs(before.t[0] * after.t[1] - before.t[1] * after.t[0]) > 1e-9;
 }
@@ -244,7 +250,7 @@ enum err geometry_subtract_beams(struct sampler *sampler, struct outlines *minus
                 place_on_part(&part, c == 1 || c == 2 ? part.length : 0, c < 2 ? -half : half,
                               box.pt[c]);
             outlines_add(minus, &box, -1);
-            if (k > 0 && turns_at(line, k)) outlines_add(minus, &disc, -1);
+            if (turns_at(line, k)) outlines_add(minus, &disc, -1);
         }
     }
     return ERR_OK;

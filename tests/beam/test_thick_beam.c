@@ -113,11 +113,27 @@ static void test_what_is_displaced(void)
     }
 }
 
+/* No fluid begins within the thickness, beside a corner of a closed line either. */
+static void test_corners_of_a_closed_line(void)
+{
+    static const double corner[][2] = {{0.3, 0.1}, {0.5, 0.1}, {0.5, 0.3}, {0.3, 0.3}};
+    rig_open(&rig,
+             WATER "[beam b]\nshape = polyline: 0.3, 0.1; 0.5, 0.1; 0.5, 0.3; 0.3, 0.3; 0.3, 0.1\n"
+                   "thickness = 40 mm\nyoung = 1e9\ndensity = 1000\n",
+             NULL);
+    const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
+    for (size_t k = 0; k < COUNT_OF(corner); k++)
+        for (int64_t i = 0; i < fluid->n; i++)
+            TEST_ASSERT_TRUE(
+                hypot(fluid->x[i] - corner[k][0], fluid->y[i] - corner[k][1]) > 0.02);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_lift_and_rest);
     RUN_TEST(test_a_float);
     RUN_TEST(test_what_is_displaced);
+    RUN_TEST(test_corners_of_a_closed_line);
     return UNITY_END();
 }
