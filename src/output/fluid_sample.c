@@ -23,9 +23,10 @@ static void add_to_sample(struct sampling *at, const struct fluid *fluid,
     const double w = fluid_seen(fluid, v->cells, v->at, (enum kind)v->kind, i, v->x, v->y) *
                      kernel_w(v->r, k->h) * square(k->dp);
     if (v->kind != KIND_FLUID) {
-        at->sum.occupied += w;
-        at->wall_x += w * (particles->ax ? particles->ax[i] : 0);
-        at->wall_y += w * (particles->ay ? particles->ay[i] : 0);
+        const double occupied = w * fluid_volume_of(fluid, (enum kind)v->kind, particles, i);
+        at->sum.occupied += occupied;
+        at->wall_x += occupied * (particles->ax ? particles->ax[i] : 0);
+        at->wall_y += occupied * (particles->ay ? particles->ay[i] : 0);
         return;
     }
     at->sum.fill += w;

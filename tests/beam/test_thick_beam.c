@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Beams of any thickness in fluid: what they displace, how water lifts them, rest (T-110f). */
+#include "output/probes.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -128,6 +129,22 @@ static void test_corners_of_a_closed_line(void)
                 hypot(fluid->x[i] - corner[k][0], fluid->y[i] - corner[k][1]) > 0.02);
 }
 
+/* The level beside a plate of rows of any depth that stands out of the water. */
+static void test_level_beside_faces(void)
+{
+    static const double thickness[] = {0.001, 0.01, 0.02};
+    for (size_t k = 0; k < COUNT_OF(thickness); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 WATER "[beam b]\nshape = polyline: 0.4, 0; 0.4, 0.55\nclamp = 0.4, 0\n"
+                       "thickness = %g\nyoung = 1e11\ndensity = 1000\ngravity = off\n",
+                 thickness[k]);
+        rig_open(&rig, text, NULL);
+        simulation_refresh(&rig.sim);
+        assert_near(0.2 * 0.02, 0.4, fluid_level(&rig.sim, 0.415, 0.3), "level");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -135,5 +152,6 @@ int main(void)
     RUN_TEST(test_a_float);
     RUN_TEST(test_what_is_displaced);
     RUN_TEST(test_corners_of_a_closed_line);
+    RUN_TEST(test_level_beside_faces);
     return UNITY_END();
 }
