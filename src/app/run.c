@@ -419,7 +419,8 @@ static enum err begin_run(struct run *r)
     const double time = simulation_time(r->sim);
     r->due[OUT_SNAPSHOT].interval = r->session.scene.output.snapshot_interval;
     r->due[OUT_CHECKPOINT].interval = r->session.scene.output.checkpoint_interval;
-    /* A run begins with a snapshot, without a checkpoint: its case or that of the fork is it. */
+    /* A run begins with a snapshot. It needs no checkpoint, since the case or the fork gives its
+     * start. */
     if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
     due_pass(&r->due[OUT_CHECKPOINT], time);
     r->record.version = SPHFSI_VERSION;

@@ -11,7 +11,8 @@ const char *csv_next_line(const char *at);
 enum { NUMBER_TEXT = 32 };
 int number_text(char text[NUMBER_TEXT], double value);
 
-/* Field k of a line, without its quotes; NULL: there are fewer. A comma in quotes ends none. */
+/* Field k of a line, without its quotes; NULL: there are fewer. A comma in quotes is part of a
+ * field. */
 const char *csv_field(const char *line, int k, size_t *length);
 
 /* A table of numbers with a comma, a semicolon or blanks between them. What follows a # is a

@@ -35,7 +35,7 @@ SPHFSI_INLINE void point_grid_insert(struct point_grid *g, int64_t k)
 }
 
 /* The points nearer to a place than `reach`, each once: for (struct point_visit v =
- * point_grid_visit(g, x, y, reach); point_grid_next(g, &v);) ... v.k ... Row by row. */
+ * point_grid_visit(g, x, y, reach); point_grid_next(g, &v);) ... v.k ... */
 struct point_visit {
     double x, y, reach;
     int64_t i0, i1, j1, i, j; /* cells: bounds, and the present one */

@@ -210,7 +210,8 @@ bool beams_correct_pairs(struct beams *beams);
 /* After a part of the step: the work of walls that push, and the impulses on rigid bodies. */
 void beams_finish_pairs(struct beams *beams, double dt);
 
-/* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. */
+/* A particle of a solid within `reach` of the middle of a beam, and this beam; -1: none. Solids and
+ * beams have no contact. */
 int64_t beams_find_solid(const struct beams *beams, const struct particles *solid, double reach,
                          int *beam);
 

@@ -121,7 +121,7 @@ enum err case_number(struct reader *r, struct slice text, const char *unit, doub
     SPHFSI_CHECKED;
 enum err case_check_dim(struct reader *r, const struct dim *dim, const char *unit) SPHFSI_CHECKED;
 
-/* case/values.c: an entry's text to its value; case/shapes.c: adds a shape or a hinge; words. */
+/* case/values.c: an entry's text to its value; case/shapes.c: adds a shape or a hinge. */
 enum err case_value(struct reader *r, const struct param *param, void *section) SPHFSI_CHECKED;
 enum err case_shape(struct reader *r, struct shape_list *list) SPHFSI_CHECKED;
 enum err case_hinge(struct reader *r, struct hinge_list *list) SPHFSI_CHECKED;

@@ -20,7 +20,8 @@ static bool called_by(struct effect_caller *caller, enum section_id section, con
     return true;
 }
 
-/* Whether a section has a value above 0, a text, or a choice: `choice`, below 0: not the first. */
+/* Whether a section has a value above 0, a text, or the choice `choice` (below 0: any but the
+ * first). */
 static bool has_set(const struct scene *scene, struct effect_caller *caller, enum section_id id,
                     const char *key, int choice)
 {

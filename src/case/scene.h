@@ -5,7 +5,7 @@
 
 #include "expr/expr.h"
 
-/* Limits of weak compressibility, of which it is warned: speed over c0, and |rho/rho0 - 1|. */
+/* Limits of weak compressibility above which runs warn: speed over c0, and |rho/rho0 - 1|. */
 #define SPEED_WARNING 0.3
 #define DENS_WARNING 0.1
 
@@ -286,7 +286,7 @@ double scene_open_flow(const struct scene_open *o, double time);
 /* Writes the effective case, all values in SI units; reading it again gives an equal scene. */
 enum err scene_write(const struct scene *scene, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Energy and momentum of a rigid body or beam; `undelivered`: work that the fluid still gets. */
+/* Energy and momentum of a rigid body or beam; `undelivered`: work that is due to the fluid. */
 struct body_energy {
     double kinetic, potential, elastic, momentum[2], mass, undelivered;
 };
@@ -361,7 +361,7 @@ bool scene_snapshot_has(const struct scene *scene, const char *field);
 /* Target of a probe; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 
-/* The contact section of two bodies, walls after solids; NULL: they do not touch. */
+/* The contact section of two bodies or of one with itself, walls after solids; NULL: no contact. */
 const struct scene_contact *scene_contact_of(const struct scene *scene, int a, int b);
 
 /* The gap that it keeps, m: by default one layer of fluid with fluid and the standard scheme. */

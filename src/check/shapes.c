@@ -202,8 +202,8 @@ static void warn_of_region(struct check *check, const struct region *region)
         const struct shape *const shape = &region->list->item[k];
         if (shape->thin && check->scene->n_fluid && check->scene->fluid[0].wall_repulsion == 0)
             warn_at(check->diag, check->scene, shape->line,
-                    "single particles may pass through this line of %s, which has no "
-                    "thickness; wall_repulsion above 0 in [fluid %s] prevents that",
+                    "single particles may pass through this line of %s; wall_repulsion above 0 in "
+                    "[fluid %s] prevents that",
                     section_title(region->common).text, check->scene->fluid[0].common.name);
         if (shape->thin && check->scene->n_rigid && !beam)
             warn_at(check->diag, check->scene, shape->line,

@@ -283,7 +283,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particl
 
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
-/* Pressures and state of the dummies of a cell, but of clusters that no fluid is near to. */
+/* Pressures and state of the dummies of a cell: zeros where no fluid is near. */
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *particles,
                                    enum kind kind, const struct cells *cells, int32_t cell,
                                    bool thin)

@@ -56,7 +56,8 @@ int outlines_union(const struct outlines *add, const struct outlines *minus, dou
 /* The largest count of ends of intervals on a line inside the pieces, each for itself. */
 int outlines_ends(const struct outlines *o);
 
-/* Integrals over `add` less `minus` by lines at most `step` apart, exact for polygons apart. */
+/* Integrals over `add` less `minus` by lines at most `step` apart, exact for polygons that are
+ * apart. */
 struct moments {
     double area, x, y, xx, yy; /* of 1, x, y, x^2 and y^2 */
 };

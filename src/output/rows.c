@@ -91,7 +91,8 @@ static void put_mean(const struct rows *f, const struct probe *probe, double *ro
 
 /* --- rows --- */
 
-/* Writes the rows up to the present state. Those after the end are left to a restart, with it. */
+/* Writes the rows up to the present state. Those after the end are left to a restart, with the
+ * state before. */
 static enum err write_rows(const struct row_files *r, struct rows *f, struct diag *d)
 {
     double row[SERIES_MAX_COLUMNS];

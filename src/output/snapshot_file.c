@@ -128,8 +128,8 @@ static void values_of(const struct source *source, enum data what, int column, i
 
 /* --- one dataset --- */
 
-/* Rows of a chunk: those of a snapshot, or of an equal part of more than POINT_CHUNK_MOST. Chunks
- * that two snapshots share would be compressed twice: parts should divide the rows. */
+/* Rows of a chunk: those of a snapshot, or of one of its equal parts if there are more than
+ * POINT_CHUNK_MOST. Chunks that two snapshots share would be compressed twice. */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;

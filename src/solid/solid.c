@@ -77,7 +77,7 @@ static bool needs_double(const struct solid *solid, const struct scene *scene,
     return false;
 }
 
-/* The packed fields that the scene needs. Double precision uses particles' fields if there. */
+/* The packed fields that the scene needs. In double precision those of the particles serve. */
 static enum err packed_create(struct solid *solid, struct arena *a,
                               const struct particles *particles, struct diag *d)
 {

@@ -214,7 +214,8 @@ solid_kick solid_free_kick;
 /* x = X + u; returns the largest displacement by it, m. */
 double solid_set_positions(struct particles *particles);
 
-/* Gradients and stresses of the last evaluation to particles, which in double have them. */
+/* Writes gradients and stresses of the last evaluation to the particles; in double precision they
+ * are there. */
 void solid_write_stress(const struct solid *solid, struct particles *particles);
 
 /* After a kick of dt with the last forces, from the velocities vx, vy: friction slides, rigid
