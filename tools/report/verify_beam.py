@@ -391,6 +391,8 @@ SCENES = {
     "solid in a basin, 4 spacings thick": solid_wet(),
     **{f"plate on waves, {n} spacings in the depth": ("floating_plate", [[f"across={n}"]], floating)
        for n in (16, 24, 32)},
+    "plate on waves of 1 %, 32 spacings in the depth":
+        ("floating_plate", [["across=32", "steep=0.01"]], floating),
     **{f"elastic wedge, {n} spacings in a plate": ("elastic_wedge", [[f"across={n}"]], slam)
        for n in (60, 120)},
     **{name + (", h_over_dp = 1.5" if more else ""): (text, [[*sets, *more]], measure)
