@@ -260,7 +260,7 @@ static void say_next(const struct sphfsi_options *o, const struct simulation *si
     const struct scene *const scene = sim->scene;
     const bool fast = sim->effects & FX_FLUID && scene->given_speed > SPEED_WARNING * scene->c0;
     double half;
-    const char *const key = timestep_shorter(sim, &half);
+    const char *const key = timestep_key_to_halve(sim, &half);
     if (!guard)
         session_result(o, "to go on: the same command with --restart%s",
                        o->fork ? " instead of --fork" : "");

@@ -9,7 +9,7 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
     const bool impedance = effects & FX_IMPEDANCE;
     coupling->multirate = effects & FX_MULTIRATE;
     coupling->impedance = impedance ? coupling->scene->rho0 * coupling->scene->c0 : 0;
-    coupling->solid->apply_kick = impedance ? impedance_kick : solid_free_kick;
+    coupling->solid->apply_kick = impedance ? impedance_kick : solid_plain_kick;
     if (!impedance) *coupling->exchange_time = 0;
     if (impedance && *coupling->exchange_time == 0) *coupling->exchange_time = longest;
 }

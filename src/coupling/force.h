@@ -45,7 +45,8 @@ SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbour
 {
     const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
     const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
-    const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
+    const vreal near =
+        effects & FX_REPULSION ? vspread(own + PACKED_REPULSION2 * CLUSTER) : vset(0);
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {

@@ -153,18 +153,18 @@ SPHFSI_INLINE void pack_lift(const struct fluid *fluid, const struct particles *
 }
 
 /* What law_repulsion needs of them. */
-SPHFSI_INLINE void pack_near(const struct fluid *fluid, const struct particles *particles,
-                             const struct dummy_cluster *d, bool thin)
+SPHFSI_INLINE void pack_repulsion(const struct fluid *fluid, const struct particles *particles,
+                                  const struct dummy_cluster *d, bool thin)
 {
-    double near2[CLUSTER] = {0};
+    double repulsion2[CLUSTER] = {0};
     for (int r = 0; r < d->count; r++)
-        near2[r] = fluid->near2[d->kind][particles->body[d->index[r]]];
+        repulsion2[r] = fluid->repulsion2[d->kind][particles->body[d->index[r]]];
     for (int r = 0; r < d->count && thin; r++)
         if (fluid_line_of(fluid, d->kind, d->index[r]))
-            near2[r] =
+            repulsion2[r] =
                 square(fluid_repels_from(fluid, d->kind, particles, d->index[r]) / fluid->k.h) +
                 ETA2;
-    pack_four(d, near2, PACKED_NEAR);
+    pack_four(d, repulsion2, PACKED_REPULSION2);
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
@@ -302,7 +302,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, fluid, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fluid->effects & FX_ONE_SIDED) pack_lift(fluid, particles, &d);
-        if (fluid->effects & FX_REPULSION) pack_near(fluid, particles, &d, thin);
+        if (fluid->effects & FX_REPULSION) pack_repulsion(fluid, particles, &d, thin);
         if (thin) pack_filled(fluid, &d, &neighbours, &sides);
         if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
         if (neighbours.n > 0) {

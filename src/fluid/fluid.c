@@ -53,12 +53,12 @@ static enum err describe_bodies(struct fluid *fluid, struct arena *a, const stru
     const bool wall = kind == KIND_WALL;
     const size_t n = (size_t)(wall ? scene->n_wall : scene->n_solid);
     TRY(arena_array(a, &fluid->volume[kind], n, "volumes", d));
-    TRY(arena_array(a, &fluid->near2[kind], n, "distances", d));
+    TRY(arena_array(a, &fluid->repulsion2[kind], n, "distances", d));
     TRY(arena_array(a, &fluid->moves[kind], n, "motions", d));
     for (int k = 0; k < (int)n; k++) {
         fluid->volume[kind][k] = wall ? 1 : square(scene_solid_dp(scene, k) / scene->top.dp);
         const double spacing = 0.5 * (1 + sqrt(fluid->volume[kind][k])) * fluid->k.dp;
-        fluid->near2[kind][k] = square(REPULSION_REACH * spacing / fluid->k.h) + ETA2;
+        fluid->repulsion2[kind][k] = square(REPULSION_REACH * spacing / fluid->k.h) + ETA2;
         fluid->moves[kind][k] = !wall || scene->wall[k].motion[0] || k >= scene_beam_wall(scene, 0);
     }
     if (!(fluid->effects & FX_NO_SLIP)) return ERR_OK;
@@ -221,12 +221,12 @@ static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUN
         const int32_t first = fluid_chunk_start(n_active, m),
                       end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
-        struct fluid_extremes largest = {acceleration2, approach};
+        struct rate_extremes largest = {acceleration2, approach};
         fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &largest);
         acceleration2 = largest.acceleration2;
         approach = largest.approach;
     }
-    fluid->extremes = (struct fluid_extremes){acceleration2, approach};
+    fluid->extremes = (struct rate_extremes){acceleration2, approach};
 }
 
 static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],

@@ -47,7 +47,7 @@ SPHFSI_INLINE double particle_energy(const struct fluid_constants *k, const doub
 }
 
 /* Largest values over all fluid particles of the last evaluation; order-free maxima. */
-struct fluid_extremes {
+struct rate_extremes {
     double acceleration2; /* |a|^2 */
     double approach;      /* max |h v.x/(r^2 + eta^2)| of Eq. 28b, m/s */
 };
@@ -74,7 +74,7 @@ enum packed_field {
     PACKED_LIFT_Y,
     PACKED_ONE_SIDED_FIELDS,
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of law_repulsion. */
-    PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
+    PACKED_REPULSION2 = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
     /* Of walls and solids, with thin lines: the line that has to lie between (T-110), or 0; the
      * share phi of its place that fluid fills. The direction in which fluid slides along it, times
@@ -107,7 +107,7 @@ struct fluid;
 /* The fluid's rates (Eqs. 4, 6, 7, 21a) in active cells first to end - 1, and their extremes. */
 typedef void fluid_rates(const struct fluid *fluid, struct particles *particles,
                          const struct cells *cells, int32_t first, int32_t end,
-                         struct fluid_extremes *largest);
+                         struct rate_extremes *largest);
 
 /* The sweeps for a set of pair effects. */
 struct fluid_variant {
@@ -176,7 +176,7 @@ struct fluid {
     effect_set effects;                  /* of the simulation, which this layer does not know */
     bool never_skip;                     /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];          /* [sections] of a dummy at rest over that of fluid */
-    double *near2[KIND_COUNT];           /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
+    double *repulsion2[KIND_COUNT];      /* [sections]: (r0^2 + eta^2)/h^2 of law_repulsion */
     bool *moves[KIND_COUNT];             /* [sections]: structures, and walls that have a motion */
     const struct fluid_sweeps *sweeps;   /* of the precision */
     const struct fluid_variant *variant; /* for the effects */
@@ -196,7 +196,7 @@ struct fluid {
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
     int threads;
-    struct fluid_extremes extremes;
+    struct rate_extremes extremes;
 };
 
 /* Whether any of some dummies of a kind can move. */

@@ -123,9 +123,10 @@ SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t
     if (PAIR_HAS(effects, ONE_SIDED))
         stress = stress + law_one_sided(a->p, a->dens, q->x, q->y, lane(b, PACKED_LIFT_X),
                                         lane(b, PACKED_LIFT_Y), k);
-    if (PAIR_HAS(effects, REPULSION)) stress = stress + law_repulsion(lane(b, PACKED_NEAR), inv, k);
+    if (PAIR_HAS(effects, REPULSION))
+        stress = stress + law_repulsion(lane(b, PACKED_REPULSION2), inv, k);
     if (PAIR_HAS(effects, WALL_DAMPING))
-        stress = stress + law_wall_damping(lane(b, PACKED_NEAR), inv, q->v_xi, k);
+        stress = stress + law_wall_damping(lane(b, PACKED_REPULSION2), inv, q->v_xi, k);
     e.radial = q->weight * stress;
     *approach = vmax(*approach, law_approach(q, inv));
     if (PAIR_HAS(effects, THIN)) law_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));

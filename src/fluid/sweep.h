@@ -173,7 +173,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *particles,
                                   const struct cells *cells, int32_t first, int32_t end,
                                   const struct vector_constants *k, struct pair_set effects,
-                                  struct fluid_extremes *largest)
+                                  struct rate_extremes *largest)
 {
     const struct cell_list *const list = &cells->list[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
@@ -191,7 +191,7 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *fluid, struct particles *p
 #define VARIANT(variant, set)                                                                     \
     static void SWEEP(rates_##variant)(const struct fluid *fluid, struct particles *particles,    \
                                        const struct cells *cells, int32_t first, int32_t end,     \
-                                       struct fluid_extremes *largest)                            \
+                                       struct rate_extremes *largest)                             \
     {                                                                                             \
         const struct vector_constants k = constants_of_sweep(fluid);                              \
         rates_of_chunk(fluid, particles, cells, first, end, &k, (struct pair_set){set}, largest); \

@@ -152,7 +152,7 @@ double implicit_residual(struct solid *solid, struct particles *particles, doubl
         particles->vx[i] = 2 / dt * (particles->ux[i] - start[START_UX][i]);
         particles->vy[i] = 2 / dt * (particles->uy[i] - start[START_UY][i]);
     }
-    solid_forces_at(solid, particles, time);
+    solid_stress_and_forces(solid, particles, time);
     if (solid->hinges)
         hinges_push(solid->hinges, solid->implicit->hinge_force, particles->sx, particles->sy);
     for (int64_t i = 0; i < particles->n; i++)

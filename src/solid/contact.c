@@ -163,7 +163,7 @@ void contact_forces(struct contact *contact, struct particles *particles, double
 }
 
 /* Spacings that points may approach more than by their speeds. Doubling it changes no bits. */
-#define GAIN 0.25
+#define APPROACH_MARGIN 0.25
 /* Surfaces nearer than this many times their reach count in the step bound: forces may bring them
  * nearer than their present velocity does, by which their distance after the step is found. */
 #define NEAR 1.25
@@ -237,7 +237,8 @@ static void find_depth(struct contact *contact, const struct contact_closest *cl
 /* Distance beyond the reach within which a pair matters in the coming time `span`. */
 static double distance_near(const struct contact *contact, double speed, double span)
 {
-    return max2((NEAR - 1) * contact->reach, GAIN * contact->spacing) + 1.5 * span * speed;
+    return max2((NEAR - 1) * contact->reach, APPROACH_MARGIN * contact->spacing) +
+           1.5 * span * speed;
 }
 
 static void watch_pair(struct contact *contact, const struct particles *particles,

@@ -119,7 +119,7 @@ enum err solid_create(struct solid *solid, struct arena *a, const struct scene *
     solid->n_bodies = scene->n_solid;
     solid->dp = INFINITY;
     solid->coupled = particles->groups & G_COUPLED;
-    solid->apply_kick = solid_free_kick;
+    solid->apply_kick = solid_plain_kick;
     TRY(arena_array(a, &solid->body, solid->n_bodies, "bodies", d));
     solid->acoustic_step = INFINITY;
     for (int k = 0; k < solid->n_bodies; k++) {
@@ -262,7 +262,7 @@ static void outer_forces(const struct solid *solid, struct particles *particles,
     if (FX_HINGE != 0 && solid->hinges) {
 #pragma omp single
         hinges_forces(solid->hinges, particles, time, dt,
-                      dt > 0 && solid->apply_kick != solid_free_kick);
+                      dt > 0 && solid->apply_kick != solid_plain_kick);
     }
 }
 
@@ -273,8 +273,8 @@ static void pack_all_motion(const struct pack_range *own)
 #pragma omp barrier
 }
 
-void solid_free_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                     double drift, double next)
+void solid_plain_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
+                      double drift, double next)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
@@ -317,7 +317,7 @@ void solid_gradient(const struct solid *solid, struct particles *particles)
     }
 }
 
-void solid_forces_at(const struct solid *solid, struct particles *particles, double time)
+void solid_stress_and_forces(const struct solid *solid, struct particles *particles, double time)
 {
 #pragma omp parallel num_threads(solid->threads) if (!calls_program(solid))
     {
@@ -393,7 +393,7 @@ static void substeps(struct solid *solid, struct particles *particles, double dt
     const struct pack_range packs = packs_of_thread(solid, particles), *const own = &packs;
     const double first = solid->centred ? 0.5 * dt : 0;
     double time = solid->time;
-    kick_and_drift(own, solid_free_kick, 0, 0, first);
+    kick_and_drift(own, solid_plain_kick, 0, 0, first);
     if (solid->centred) place_clamps(own, time + first);
     for (int k = 0; k < n; k++) {
         const bool last = k + 1 == n;

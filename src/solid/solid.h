@@ -187,7 +187,7 @@ void solid_gradient(const struct solid *solid, struct particles *particles);
 
 /* Stress and acceleration for the present displacements and velocities, with actions from outside
  * at a time. */
-void solid_forces_at(const struct solid *solid, struct particles *particles, double time);
+void solid_stress_and_forces(const struct solid *solid, struct particles *particles, double time);
 
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
  * other results only the packed fields are updated. displaced: not only velocities have changed
@@ -209,7 +209,7 @@ struct held_forces solid_held_forces(struct solid *solid, struct particles *part
 void solid_advance(struct solid *solid, struct particles *particles, double dt, int n);
 
 /* Kick and drift where no fluid resists them. */
-solid_kick solid_free_kick;
+solid_kick solid_plain_kick;
 
 /* x = X + u; returns the largest displacement by it, m. */
 double solid_set_positions(struct particles *particles);

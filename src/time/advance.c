@@ -14,26 +14,27 @@ void advance_solids(struct simulation *sim, double dt, double rates_time)
     sim->state.solid_evaluations += n;
 }
 
-void begin_rigid(struct simulation *sim, double time, double dt, double rates_time)
+void begin_rigid(struct simulation *sim, double dt, double rates_time)
 {
+    const double time = sim->state.time;
     double gravity[2];
     scene_gravity_at(sim->scene, time + (sim->rigid.mid_step ? 0.5 * dt : 0), gravity);
     rigid_begin(&sim->rigid, gravity, time, dt, rates_time);
 }
 
-void advance_rigid(struct simulation *sim, double time, double dt, double rates_time)
+void advance_rigid(struct simulation *sim, double dt, double rates_time)
 {
-    rigid_advance(&sim->rigid, time, dt, rates_time);
+    rigid_advance(&sim->rigid, sim->state.time, dt, rates_time);
     for (int k = 0; k < sim->rigid.n; k++) {
         const struct rigid_body *const b = &sim->rigid.body[k];
         energy_book_body(sim, scene_rigid_wall(sim->scene, k), b->received, b->driven, b->passed);
     }
 }
 
-void advance_beams(struct simulation *sim, double time, double dt, double rates_time)
+void advance_beams(struct simulation *sim, double dt, double rates_time)
 {
     const struct beam_times times = {dt, sim->state.dt, rates_time};
-    beams_advance(&sim->beams, time, &times);
+    beams_advance(&sim->beams, sim->state.time, &times);
     for (int k = 0; k < sim->beams.n; k++) {
         const struct beam *const b = &sim->beams.beam[k];
         energy_book_body(sim, scene_beam_wall(sim->scene, k), b->received, b->driven, 0);
@@ -65,8 +66,8 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
     return e;
 }
 
-/* With their extremes, while the blocks are in the caches; `range` NULL: they stay. */
-static void advance_blocks(struct simulation *sim, advance_range *range, const void *parameters)
+/* With their extremes, while the blocks are in the caches. */
+void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
 {
     enum { BLOCK = 256 }; /* particles whose fields stay in the first-level cache */
     struct particles *const particles = &sim->particles[KIND_FLUID];
@@ -85,12 +86,7 @@ static void advance_blocks(struct simulation *sim, advance_range *range, const v
     sim->extremes = (struct extremes){low, high, speed2, nan_probe};
 }
 
-void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
-{
-    advance_blocks(sim, range, parameters);
-}
-
-void update_extremes(struct simulation *sim) { advance_blocks(sim, NULL, NULL); }
+void update_extremes(struct simulation *sim) { advance_fluid(sim, NULL, NULL); }
 
 void find_speed(struct simulation *sim)
 {
@@ -112,17 +108,17 @@ void step_of_one_stage(struct simulation *sim, double t_limit)
     evaluate_start(sim);
     double clock = phase_clock();
     bool hits;
-    const double dt = timestep_choose(sim, t_limit, &hits), time = sim->state.time;
+    const double dt = timestep_choose(sim, t_limit, &hits);
     const double rates_time = 0.5 * (sim->state.dt + dt);
     energy_book_step(sim, dt);
     integrator->update(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
-    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, rates_time);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, dt, rates_time);
     /* Solids get Verlet's force for dt (T-35b), rigid bodies and beams over the mean step. */
     if (sim->effects & FX_COUPLING)
         advance_solids(sim, dt, integrator->alternates ? dt : rates_time);
-    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, rates_time);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, rates_time);
+    if (sim->effects & FX_BEAM) advance_beams(sim, dt, rates_time);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, dt, rates_time);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

@@ -27,7 +27,8 @@ void move_walls(struct simulation *sim, double time);
 
 /* --- advance.c --- */
 
-/* Advances the fluid by `range`, which updates particles `from` to `end` - 1; finds extremes. */
+/* Advances the fluid by `range`, which updates particles `from` to `end` - 1 (NULL:
+ * they stay), and finds its extremes. */
 typedef void advance_range(struct particles *particles, const void *parameters, int64_t from,
                            int64_t end);
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters);
@@ -35,13 +36,13 @@ void advance_fluid(struct simulation *sim, advance_range *range, const void *par
 /* The sub-steps of solids in a fluid step of dt, whose rates act for `rates_time`. */
 void advance_solids(struct simulation *sim, double dt, double rates_time);
 
-/* The step of rigid bodies from a time on. begin_rigid: before the sub-steps of solids, which may
+/* The step of rigid bodies. begin_rigid: before the sub-steps of solids, which may
  * push bodies. advance_rigid: after them. */
-void begin_rigid(struct simulation *sim, double time, double dt, double rates_time);
-void advance_rigid(struct simulation *sim, double time, double dt, double rates_time);
+void begin_rigid(struct simulation *sim, double dt, double rates_time);
+void advance_rigid(struct simulation *sim, double dt, double rates_time);
 
-/* The step of beams from a time on. */
-void advance_beams(struct simulation *sim, double time, double dt, double rates_time);
+/* The step of beams. */
+void advance_beams(struct simulation *sim, double dt, double rates_time);
 
 /* A step with one evaluation at its start, in which the integrator updates the fluid. */
 void step_of_one_stage(struct simulation *sim, double t_limit);
@@ -59,11 +60,11 @@ enum err sort_particles(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 bool sorting_due(struct simulation *sim);
 
 /* Measures the skin that is left. */
-void find_skin_left(struct simulation *sim);
+void measure_skin(struct simulation *sim);
 
 /* Subtracts the largest distance that two particles can have moved in the last step from the
  * skin that is left; `speed2_before`: of the fluid before it. */
-void use_skin_left(struct simulation *sim, double speed2_before);
+void spend_skin(struct simulation *sim, double speed2_before);
 
 /* Clears what particles of walls or structures have from the fluid. Evaluations skip those
  * without fluid nearby, so this is done before the cells change. */

@@ -527,7 +527,7 @@ static void write_remedy(const struct simulation *sim, enum energy_term term, ch
 {
     double half;
     const struct scene_numerics *const n = &sim->scene->numerics;
-    const char *const key = timestep_shorter(sim, &half);
+    const char *const key = timestep_key_to_halve(sim, &half);
     const bool fluid = term == TERM_FLUID, held = n->fixed_step > 0;
     /* Between bodies that meet the layer of fluid may be too thin. */
     const bool gap = fluid && sim->effects & FX_CONTACT && sim->contact.near;

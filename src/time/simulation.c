@@ -91,7 +91,7 @@ static enum err step_and_check(struct simulation *sim, double t_limit, struct di
     if (guards_strain_due(sim)) timestep_recheck_solid(sim);
     clock = phase_add(sim, PHASE_update, clock);
     if (!(sim->effects & FX_FLUID)) return ERR_OK;
-    use_skin_left(sim, speed2_before);
+    spend_skin(sim, speed2_before);
     /* Sorted here so that the cells are valid for output between two steps. */
     if (sorting_due(sim)) TRY(sort_particles(sim, d));
     clock = phase_add(sim, PHASE_sort, clock);
@@ -130,7 +130,7 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         if (sim->effects & (FX_RIGID | FX_BEAM | FX_COUPLING)) /* the run has warned */
             guards_warn_of_leaving(sim, &(struct diag){.warn = NULL});
         fluid_find_near(&sim->fluid, &sim->cells);
-        find_skin_left(sim);
+        measure_skin(sim);
         if (sim->effects & FX_COUPLING) forget_fluid(&sim->particles[KIND_SOLID]);
         if (sim->effects & FX_WALL) forget_fluid(&sim->particles[KIND_WALL]);
         if (cells_fullest(&sim->cells) > CELL_CAPACITY)

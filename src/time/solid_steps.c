@@ -45,10 +45,10 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
             part = (int)max2(1, min2(floor((sim->observer.next - st->time) / step - 1e-6), part));
         if (k && sim->observer.context) solid_set_positions(&sim->particles[KIND_SOLID]);
         TRY(observe(sim, st->time + (part + 1e-6) * step, d));
-        if (sim->effects & FX_RIGID) begin_rigid(sim, st->time, step, step);
+        if (sim->effects & FX_RIGID) begin_rigid(sim, step, step);
         advance_lone(sim, step, part);
-        if (sim->effects & FX_BEAM) advance_beams(sim, st->time, step, step);
-        if (sim->effects & FX_RIGID) advance_rigid(sim, st->time, step, step);
+        if (sim->effects & FX_BEAM) advance_beams(sim, step, step);
+        if (sim->effects & FX_RIGID) advance_rigid(sim, step, step);
         *cut += dt - step;
         st->time = start + ((k + part) * dt - *cut);
         st->dt_min = st->steps || k ? min2(st->dt_min, step) : step;

@@ -26,7 +26,7 @@ void forget_fluid(struct particles *particles)
 /* Sets the cells' skin from a new measurement. The next evaluation uses the present state. The
  * predictor's second one is half a step later, in which two particles approach by a step of the
  * largest velocity; 1.1 leaves a margin for accelerations (T-30). */
-void find_skin_left(struct simulation *sim)
+void measure_skin(struct simulation *sim)
 {
     const bool predicts = sim->integrator->stage > 0;
     const double moved = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->sorting.speed2) : 0;
@@ -61,7 +61,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     sim->state.sorts++;
     const int32_t fullest = cells_fullest(&sim->cells);
     sim->cells_overfull = fullest > CELL_CAPACITY;
-    find_skin_left(sim);
+    measure_skin(sim);
     if (sim->cells_overfull && sim->state.steps == 0)
         return diag_fail(
             d, ERR_INPUT,
@@ -78,7 +78,7 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
 }
 
 /* For the fluid: the larger of both speeds, half a step of its acceleration, and its shift. */
-void use_skin_left(struct simulation *sim, double speed2_before)
+void spend_skin(struct simulation *sim, double speed2_before)
 {
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
                  moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
@@ -95,7 +95,7 @@ static void measure_overhangs(struct simulation *sim, enum kind first)
     for (int kind = (int)first; kind < KIND_COUNT; kind++)
         if (moves[kind])
             cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->particles[kind]);
-    find_skin_left(sim);
+    measure_skin(sim);
 }
 
 /* Where displacements are bounded, cells need not be measured at every step. The predictor moves

@@ -138,7 +138,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     sim->fluid.predict_by = 0;
     energy_book_evaluation(sim, dt);
     clock = phase_clock();
-    if (sim->effects & FX_RIGID) begin_rigid(sim, time, dt, dt);
+    if (sim->effects & FX_RIGID) begin_rigid(sim, dt, dt);
     if (multirate) advance_solids(sim, dt, dt);
     if (single_rate) rates_of_solid(sim);
     clock = phase_add(sim, PHASE_solid, clock);
@@ -147,8 +147,8 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     advance_fluid(sim, correct_range, &dt);
     if (single_rate) correct_at_single_rate(sim, dt);
     clock = phase_add(sim, PHASE_update, clock);
-    if (sim->effects & FX_BEAM) advance_beams(sim, time, dt, dt);
-    if (sim->effects & FX_RIGID) advance_rigid(sim, time, dt, dt);
+    if (sim->effects & FX_BEAM) advance_beams(sim, dt, dt);
+    if (sim->effects & FX_RIGID) advance_rigid(sim, dt, dt);
     clock = phase_add(sim, PHASE_solid, clock);
     timestep_end_fluid_step(sim, dt, t_limit, hits);
     phase_add(sim, PHASE_update, clock);

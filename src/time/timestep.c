@@ -23,7 +23,7 @@ static double bound_solid(const struct simulation *sim)
 
 /* What bound k of time/bounds.def allows by the fluid's extremes `now`, zero at rest. */
 static double bound_value(const struct simulation *sim, enum bound k,
-                          const struct fluid_extremes *now)
+                          const struct rate_extremes *now)
 {
     const struct scene_numerics *const n = &sim->scene->numerics;
     const struct fluid_constants *const f = &sim->fluid.k;
@@ -74,7 +74,7 @@ static double bound_value(const struct simulation *sim, enum bound k,
     return never;
 }
 
-static double bound_at(const struct simulation *sim, int k, const struct fluid_extremes *now)
+static double bound_at(const struct simulation *sim, int k, const struct rate_extremes *now)
 {
     const bool fixed = sim->scene->numerics.fixed_step > 0;
     const effect_set effect = bound_table[k].effect;
@@ -88,7 +88,7 @@ static double bound_at(const struct simulation *sim, int k, const struct fluid_e
 
 double timestep_fluid_limit(const struct simulation *sim)
 {
-    static const struct fluid_extremes rest = {0};
+    static const struct rate_extremes rest = {0};
     double limit = (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT; k++)
         if (k != BOUND_solid && k != BOUND_contact) limit = min2(limit, bound_at(sim, k, &rest));
@@ -111,7 +111,7 @@ double timestep_longest(const struct simulation *sim)
     return min2(sim->dt_solid, bound_at(sim, BOUND_spring, &sim->fluid.extremes));
 }
 
-const char *timestep_shorter(const struct simulation *sim, double *half)
+const char *timestep_key_to_halve(const struct simulation *sim, double *half)
 {
     const struct scene_numerics *const n = &sim->scene->numerics;
     const double *const bound = sim->dt_bound, step = bound[timestep_binding(sim)];

@@ -14,7 +14,7 @@ enum bound timestep_binding(const struct simulation *sim);
 
 /* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step,
  * with half of the smallest bound, if neither cfl nor solid_safety sets that step. */
-const char *timestep_shorter(const struct simulation *sim, double *half);
+const char *timestep_key_to_halve(const struct simulation *sim, double *half);
 
 /* Finds all bounds of the next step, sim->dt_bound; returns the smallest, s. */
 double timestep_bound(struct simulation *sim);

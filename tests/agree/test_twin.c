@@ -99,7 +99,7 @@ static void compare_fluid(double tolerance)
     assert_at_most(tolerance, top_rho / size_rho, "rate of density");
     /* The state is double in both precisions. */
     assert_at_most(1e-13, top_p / size_p, "pressure of the fluid");
-    const struct fluid_extremes *const top = &rig.sim.fluid.extremes;
+    const struct rate_extremes *const top = &rig.sim.fluid.extremes;
     assert_near(tolerance, 1, sqrt(top->acceleration2) / twin.top_acceleration, "largest |a|");
     assert_near(tolerance, 1, top->approach / twin.top_approach, "largest rate of approach");
 }

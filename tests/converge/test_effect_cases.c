@@ -135,14 +135,14 @@ static double angular_momentum(double x, double y)
 static double clumped(void)
 {
     const struct particles *const particles = &sim.particles[KIND_FLUID];
-    const double near2 = square(0.5 * scene.top.dp);
+    const double repulsion2 = square(0.5 * scene.top.dp);
     int64_t count = 0;
     for (int64_t i = 0; i < particles->n; i++) {
         bool close = false;
         for (int64_t j = 0; j < particles->n && !close; j++)
             close = j != i && square(particles->x[i] - particles->x[j]) +
                                       square(particles->y[i] - particles->y[j]) <
-                                  near2;
+                                  repulsion2;
         count += close;
     }
     return (double)count / (double)particles->n;

@@ -84,7 +84,7 @@ static void forces_beside(double factor, const double *dx, const double *dy)
         p->ux[i] += factor * dx[i];
         p->uy[i] += factor * dy[i];
     }
-    solid_forces_at(&rig.sim.solid, p, 0);
+    solid_stress_and_forces(&rig.sim.solid, p, 0);
     for (int64_t i = 0; i < p->n; i++) {
         p->ux[i] -= factor * dx[i];
         p->uy[i] -= factor * dy[i];

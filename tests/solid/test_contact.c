@@ -450,7 +450,7 @@ static void test_with_fluid(void)
                "[domain]\nlower = -0.2, -0.1\nupper = 0.3, 0.15\n",
         "numerics.multirate=on");
     rig.sim.coupling.impedance = 0; /* no interface impulse to be returned */
-    rig.sim.solid.apply_kick = solid_free_kick;
+    rig.sim.solid.apply_kick = solid_plain_kick;
     const struct sums before = sums();
     double most = 0;
     while (rig.sim.state.time < 0.02) {

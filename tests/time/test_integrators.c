@@ -36,7 +36,7 @@ static void open(const char *integrator, const char *rate)
 {
     rig_open(&rig, gate, integrator, rate, NULL);
     rig.sim.coupling.impedance = 0;
-    rig.sim.solid.apply_kick = solid_free_kick;
+    rig.sim.solid.apply_kick = solid_plain_kick;
     fluid = &rig.sim.particles[KIND_FLUID];
     solid = &rig.sim.particles[KIND_SOLID];
     TEST_ASSERT_TRUE(fluid->n <= MOST && solid->n <= MOST);

@@ -34,14 +34,14 @@ static void test_bounds_by_hand(void)
 {
     rig_open(&rig, gate, "numerics.multirate=off", "integrator=symplectic", NULL);
     bool hits;
-    rig.sim.fluid.extremes = (struct fluid_extremes){10000, 5};
+    rig.sim.fluid.extremes = (struct rate_extremes){10000, 5};
     rig.sim.dt_solid = 1;
     assert_near(1e-16, 1.08e-4, timestep_choose(&rig.sim, 10, &hits), "dt");
     TEST_ASSERT_FALSE(hits);
     assert_near(1e-15, 2.32379000772445e-3, rig.sim.dt_bound[BOUND_force], "Eq. 28a");
     assert_near(1e-18, 1.08e-4, rig.sim.dt_bound[BOUND_acoustic], "Eq. 28b");
     assert_near(1e-18, 1.35e-4, timestep_fluid_limit(&rig.sim), "Eq. 28b at rest");
-    rig.sim.fluid.extremes = (struct fluid_extremes){1e16, 5};
+    rig.sim.fluid.extremes = (struct rate_extremes){1e16, 5};
     assert_near(1e-15, 0.2 * sqrt(0.0135 / 1e8), timestep_choose(&rig.sim, 10, &hits),
                 "force binds");
     rig.sim.dt_solid = 1e-7;
