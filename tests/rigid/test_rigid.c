@@ -237,7 +237,8 @@ static void test_bodies_rest_on_the_floor(void)
     TEST_ASSERT_EQUAL_STRING("", said);
 }
 
-/* An overlap at the start stays: to part the bodies would lift one, with energy from nowhere. */
+/* An overlap at the start stays: to part the bodies would lift one, with energy that nothing
+ * supplies. */
 static void test_a_body_rests_in_an_overlap(void)
 {
     static const char *const depth[] = {"1e-9", "1e-6", "1e-3", "-1e-3"};
