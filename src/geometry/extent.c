@@ -9,7 +9,7 @@ static struct box2 box_of(const struct scene *scene, int kind, int body)
     const struct scene_points *p = &scene->points[kind];
     struct box2 box = box2_empty();
     for (int64_t k = 0; k < p->n; k++)
-        if (body < 0 || p->body[k] == body) box2_include(&box, p->x[k], p->y[k]);
+        if (p->body[k] == body) box2_include(&box, p->x[k], p->y[k]);
     return box;
 }
 
@@ -32,17 +32,23 @@ static void include_motion(const struct scene *scene, int wall, struct box2 *box
 }
 
 /* All initial positions and those of prescribed motion. Around them the kernel's reach, or the size
- * of the largest solid, which may swing that far; above them the scene's height once more. */
+ * of all solids, rigid bodies and beams, which may swing that far; above them the scene's height
+ * once more. */
 static void default_domain(struct scene *scene)
 {
-    struct box2 all = box2_empty();
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t k = 0; k < scene->points[kind].n; k++)
-            box2_include(&all, scene->points[kind].x[k], scene->points[kind].y[k]);
+    struct box2 all = box2_empty(), bodies = all;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct scene_points *p = &scene->points[kind];
+        for (int64_t k = 0; k < p->n; k++) {
+            box2_include(&all, p->x[k], p->y[k]);
+            if (kind == KIND_SOLID ||
+                (kind == KIND_WALL && p->body[k] >= scene_rigid_wall(scene, 0)))
+                box2_include(&bodies, p->x[k], p->y[k]);
+        }
+    }
     for (int k = 0; k < scene->n_wall; k++) include_motion(scene, k, &all);
-    const struct box2 solids = box_of(scene, KIND_SOLID, -1);
     double margin = 2 * scene->h + scene->top.dp;
-    for (int c = 0; c < 2; c++) margin = max2(margin, solids.high[c] - solids.low[c]);
+    for (int c = 0; c < 2; c++) margin = max2(margin, bodies.high[c] - bodies.low[c]);
     for (int c = 0; c < 2; c++) {
         scene->domain_lower[c] = all.low[c] - margin;
         scene->domain_upper[c] = all.high[c] + margin + (c == 1 ? all.high[1] - all.low[1] : 0);

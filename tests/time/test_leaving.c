@@ -89,11 +89,32 @@ static void test_a_body_that_comes_back_is_in_cells(void)
     for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_GREATER_OR_EQUAL_INT(0, p->cell[i]);
 }
 
+/* A tub of 0.36 m that carries water by 0.28 m: the default domain holds its path, as a solid's. */
+static void test_the_default_domain_counts_bodies(void)
+{
+    static const char *const tub[] = {
+        "[rigid tub]\nmass = 50\nshape = polyline thickness -0.08: ",
+        "[beam tub]\nthickness = 5 mm\nyoung = 2e11\ndensity = 8000\nshape = polyline: ",
+    };
+    for (size_t k = 0; k < COUNT_OF(tub); k++) {
+        char text[600];
+        snprintf(text, sizeof text,
+                 "dp = 2 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.2, 0.2\n"
+                 "sound_speed = 10\nvelocity = 0.7, 0\n%s0, 0.36; 0, 0; 0.2, 0; 0.2, 0.36\n"
+                 "velocity = 0.7, 0\n",
+                 tub[k]);
+        run(text, 0.4);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, rig.sim.state.lost, tub[k]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_each_body_is_named_once);
     RUN_TEST(test_others_are_not);
     RUN_TEST(test_a_body_that_comes_back_is_in_cells);
+    RUN_TEST(test_the_default_domain_counts_bodies);
     return UNITY_END();
 }
