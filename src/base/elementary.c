@@ -210,11 +210,9 @@ double elementary_atan2(double y, double x)
 double elementary_hypot(double x, double y)
 {
     const double top = max2(fabs(x), fabs(y));
-    if (!isfinite(x) || !isfinite(y) || top == 0) return hypot(x, y);
-    const int n = ilogb(top);
-    const double a = ldexp(x, -n), b = ldexp(y, -n);
-    const struct dd square = add(product(a, a), product(b, b));
+    if (!(top > 0x1p-400 && top < 0x1p400)) return hypot(x, y); /* the squares would be 0 or inf */
+    const struct dd square = add(product(x, x), product(y, y));
     const double root = sqrt(square.hi);
     const struct dd rest = add(square, scaled(product(root, root), -1));
-    return ldexp(root + (rest.hi + rest.lo) / (2 * root), n);
+    return root + (rest.hi + rest.lo) / (2 * root);
 }
