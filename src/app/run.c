@@ -41,12 +41,6 @@ static const double progress_seconds = 0.25;
 
 /* --- output --- */
 
-/* Whether a restart continues files of rows: a run stopped while it seeks rest has none. */
-static bool continues_rows(const struct run *r)
-{
-    return r->options->restart && !r->sim->state.seeks_rest;
-}
-
 /* Compares the probes with their references; a failure is only a warning. */
 static void score_references(struct run *r)
 {
@@ -139,17 +133,6 @@ static double since(double *mark)
     return now - *mark;
 }
 
-/* While rest is sought no simulated time passes. */
-static void show_search(struct run *r)
-{
-    enum { EVERY = 10 }; /* s of wall time */
-    char text[RELAX_TEXT];
-    if (since(&r->wall_progress) < EVERY) return;
-    r->wall_progress = wall_clock();
-    relax_progress(r->sim, text);
-    session_say(r->options, "%s", text);
-}
-
 static void show_progress(struct run *r, bool finished)
 {
     const struct sphfsi_options *o = r->options;
@@ -187,37 +170,17 @@ static enum err between_steps(struct run *r)
         TRY(write_checkpoint(r));
         r->sim->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
-    if (r->sim->state.seeks_rest)
-        show_search(r);
-    else
-        show_progress(r, false);
+    show_progress(r, false);
     if (!request || !request->stop) return ERR_OK;
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,
                      "stopped by signal %d at %.6g s; --restart continues from %s",
-                     (int)request->stop, simulation_time(r->sim), r->checkpoint);
-}
-
-/* T-78. The rows begin with the state that is found. */
-static enum err relax(struct run *r)
-{
-    char found[RELAX_TEXT];
-    if (!r->sim->state.seeks_rest) return ERR_OK;
-    session_say(r->options, "seeking a state of rest before t = 0");
-    while (r->sim->state.seeks_rest) {
-        TRY(relax_step(r->sim, r->diag));
-        TRY(between_steps(r));
-    }
-    relax_text(r->sim, found);
-    session_say(r->options, "%s", found);
-    r->record.first = simulation_ledger(r->sim);
-    return ERR_OK;
+                     (int)request->stop, r->sim->state.time, r->checkpoint);
 }
 
 /* A run ends with the first step at or after its end: no output moves a step. */
 static enum err advance(struct run *r)
 {
-    TRY(relax(r));
     rows_follow(&r->rows, r->sim);
     TRY(observe(r->sim, r->sim->state.time, r->diag));
     TRY(write_due(r));
@@ -344,7 +307,7 @@ static enum err replace_case(struct run *r, const char *part)
 static enum err start_fresh(struct run *r)
 {
     TRY(snapshots_create(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, r->diag));
-    TRY(rows_start(&r->rows, r->dir.path, simulation_time(r->sim), r->diag));
+    TRY(rows_start(&r->rows, r->dir.path, r->sim->state.time, r->diag));
     for (int k = 0; k < OUT_COUNT; k++) r->written[k] = -1;
     r->record.first = simulation_ledger(r->sim);
     return ERR_OK;
@@ -393,13 +356,13 @@ static enum err load_checkpoint(struct run *r)
              : checkpoint_apply(&r->image, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
     const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : SOLID_BATCH);
-    if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
+    if (r->sim->state.time - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,
             "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
             what, r->restarted_from, r->sim->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
-                simulation_time(r->sim), (long long)r->sim->state.steps);
+                r->sim->state.time, (long long)r->sim->state.steps);
     return ERR_OK;
 }
 
@@ -415,13 +378,13 @@ static enum err begin_run(struct run *r)
         return e;
     }
     TRY(replace_case(r, part));
-    TRY(continues_rows(r) ? start_restart(r) : start_fresh(r));
-    const double time = simulation_time(r->sim);
+    TRY(r->options->restart ? start_restart(r) : start_fresh(r));
+    const double time = r->sim->state.time;
     r->due[OUT_SNAPSHOT].interval = r->session.scene.output.snapshot_interval;
     r->due[OUT_CHECKPOINT].interval = r->session.scene.output.checkpoint_interval;
     /* A run begins with a snapshot. It needs no checkpoint, since the case or the fork gives its
      * start. */
-    if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
+    if (r->options->restart) due_pass(&r->due[OUT_SNAPSHOT], time);
     due_pass(&r->due[OUT_CHECKPOINT], time);
     r->record.version = SPHFSI_VERSION;
     r->record.restarted_from = r->options->fork ? "" : r->restarted_from;

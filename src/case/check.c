@@ -462,19 +462,6 @@ static enum err check_output(struct reader *r, const void *section)
     return ERR_OK;
 }
 
-/* Motions are at rest before t = 0. */
-static enum err check_relax(struct reader *r, const void *section)
-{
-    const struct scene *const scene = r->scene;
-    const bool sought = ((const struct scene_relax *)section)->tolerance > 0;
-    for (int k = 0; sought && k < scene->n_motion; k++)
-        if (scene->motion[k].start < 0)
-            return problem(r, (struct problem_place){.section = &scene->motion[k]},
-                           "start = %g s: with [relax] no motion may begin before t = 0",
-                           scene->motion[k].start);
-    return ERR_OK;
-}
-
 /* A reference is for a column: <probe>_<quantity>_<unit>. */
 static enum err check_reference(struct reader *r, const void *section)
 {
@@ -506,7 +493,6 @@ enum err case_check(struct reader *r)
         {SECTION_top, check_top},
         {SECTION_numerics, check_numerics},
         {SECTION_output, check_output},
-        {SECTION_relax, check_relax},
         {SECTION_fluid, check_fluid},
         {SECTION_solid, check_solid},
         {SECTION_rigid, case_check_rigid},

@@ -77,6 +77,7 @@ enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LE
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 /* As presets need it. SCENE_STREAM: fluid enters through an [inflow], without gravity. */
 enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_STREAM, SCENE_COUPLED, SCENE_KINDS };
+enum start { START_GIVEN, START_EQUILIBRIUM };
 enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };

@@ -325,7 +325,7 @@ static void write_head(struct json *j, const struct simulation *sim, const struc
     json_text(j, "version", r->version);
     json_text(j, "exit_reason", r->exit_reason);
     json_text(j, "message", r->message);
-    json_number(j, "time", simulation_time(sim));
+    json_number(j, "time", sim->state.time);
     json_number(j, "end_time", sim->scene->top.end_time);
     json_number(j, "start_time", r->start_time);
     json_text(j, "restarted_from", r->restarted_from);
