@@ -24,7 +24,6 @@ struct run {
     struct arena arena;
     struct probes probes;
     struct row_files rows;
-    struct references references;
     struct snapshots snapshots;
     struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
@@ -40,19 +39,6 @@ static const double image_fraction = 0.0025;
 static const double progress_seconds = 0.25;
 
 /* --- output --- */
-
-/* Compares the probes with their references; a failure is only a warning. */
-static void score_references(struct run *r)
-{
-    struct diag why = session_diag(r->options);
-    r->references.scored = r->references.n > 0;
-    for (int k = 0; k < r->references.n && r->references.scored; k++) {
-        struct reference *const reference = &r->references.item[k];
-        const char *const path = r->rows.file[reference->file].series.path;
-        r->references.scored = reference_score(reference, path, &why) == ERR_OK;
-    }
-    if (why.code) diag_warn(&why, "the references were not compared: %s", why.text);
-}
 
 static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
                               struct diag *d)
@@ -194,11 +180,10 @@ static enum err advance(struct run *r)
 
 /* --- end --- */
 
-/* Speed, energy gained, particles lost, and errors against references. */
+/* Speed, energy gained, particles lost. */
 static void say_end(const struct sphfsi_options *o, const struct simulation *sim,
                     const struct record *r)
 {
-    char text[1024];
     if (sim->state.particle_steps > r->start_particle_steps)
         session_say(o, "%.3g million particle steps a second", 1e-6 * report_rate(sim, r));
     if (sim->effects & FX_ENERGY_ACCOUNT)
@@ -209,10 +194,6 @@ static void say_end(const struct sphfsi_options *o, const struct simulation *sim
                     "fluid particles lost: %lld; largest number inside walls and solids at the "
                     "same time: %lld",
                     (long long)sim->state.lost, (long long)sim->state.entered);
-    for (int k = 0; r->references->scored && k < r->references->n; k++) {
-        reference_line(&r->references->item[k], text, sizeof text);
-        session_say(o, "%s", text);
-    }
 }
 
 /* Says how a stopped run continues: by a restart; after a guard, by a fork with steps half as long.
@@ -405,7 +386,6 @@ static enum err simulate(struct run *r)
         save_last_state(r, failed);
         return failed;
     }
-    score_references(r);
     r->record.probes = &r->probes;
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
@@ -431,9 +411,6 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
 {
     TRY(probes_create(&r->probes, r->sim, &r->arena, r->diag));
     TRY(rows_create(&r->rows, &r->probes, r->sim, true, &r->arena, r->diag));
-    TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
-                        &r->arena, r->diag));
-    r->record.references = &r->references;
     if (r->options->requests) r->options->requests->begun = 1;
     TRY(run_dir_open(&r->dir, path, use, r->diag));
     TRY(begin_run(r));

@@ -470,8 +470,6 @@ static enum err check_reference(struct reader *r, const void *section)
     if (!*ref->file == !formula)
         return bad_section(r, "needs either `file` or `formula`, and has %s",
                            formula ? "both" : "neither");
-    if (!(ref->from < ref->until))
-        return bad_section(r, "from = %g s must come before until = %g s", ref->from, ref->until);
     for (int p = 0; p < r->scene->n_probe; p++) {
         const char *const name = r->scene->probe[p].common.name;
         const size_t length = strlen(name);
