@@ -45,7 +45,6 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 {
     r->record.exit_reason = exit_reason;
     r->record.message = message;
-    r->record.snapshots_missed = r->image.snapshots_missed;
     r->record.wall_seconds = wall_clock() - r->wall_start;
     r->record.last = simulation_ledger(r->sim);
     return report_summary(r->dir.path, r->sim, &r->record, d);
@@ -67,19 +66,6 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->dir.path, r->checkpoint, d);
 }
 
-/* The next snapshot is tried unless snapshot_failure = stop; the file keeps the earlier ones. */
-static enum err write_snapshot(struct run *r)
-{
-    struct diag why = session_diag(r->options);
-    const enum err e = snapshots_write(&r->snapshots, r->sim, &why);
-    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
-        return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
-    r->image.snapshots_missed++;
-    diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->sim->state.time,
-              why.text);
-    return ERR_OK;
-}
-
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
@@ -98,7 +84,8 @@ static enum err write_due(struct run *r)
         const bool due = due_time(&r->due[k]) <= time, of_end = at_end && r->written[k] < time;
         if (k == OUT_SNAPSHOT) r->image.snapshot_of_end = of_end && !due;
         if (!due && !of_end) continue;
-        TRY(k == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r));
+        TRY(k == OUT_SNAPSHOT ? snapshots_write(&r->snapshots, r->sim, r->diag)
+                              : write_checkpoint(r));
         r->written[k] = time;
         due_pass(&r->due[k], time);
     }

@@ -80,37 +80,15 @@ static enum err inherit(struct reader *r, const struct param *like, struct scene
 
 /* --- keys --- */
 
-/* What another key of a section says instead of these, which older cases have. */
-static const char *instead_of(enum section_id id, const char *key)
-{
-    static const struct {
-        enum section_id section;
-        const char *keys, *instead;
-    } gone[] = {
-        {SECTION_top, " gravity_file ",
-         "; write gravity = NAME(t), OTHER(t) - 9.81 m/s^2 with a [table] for each component"},
-        {SECTION_motion, " angle angle_amplitude ",
-         "; write turn, the angle about `centre`, such as turn = 2 rad/s*t"},
-        {SECTION_motion, " kind velocity poly_x poly_y amplitude period phase file ",
-         "; write displacements x, y, such as y = 1.5 m/s*t, or y = NAME(t) with a [table]"},
-    };
-    char word[SCENE_NAME + 2];
-    snprintf(word, sizeof word, " %s ", key);
-    for (size_t k = 0; k < COUNT_OF(gone); k++)
-        if (gone[k].section == id && strstr(gone[k].keys, word)) return gone[k].instead;
-    return NULL;
-}
-
 static enum err unknown_key(struct reader *r, int id)
 {
     char title[SCENE_NAME];
     struct nearest near = {0};
-    const char *const instead = instead_of((enum section_id)id, r->entry->key);
     snprintf(title, sizeof title, "in [%s]", section_table[id].word);
     r->incomplete = true;
     return bad_entry(r, "unknown key `%s` %s%s", r->entry->key,
                      id == SECTION_top ? "at the top of the file" : title,
-                     instead ? instead : param_hint((enum section_id)id, r->entry->key, &near));
+                     param_hint((enum section_id)id, r->entry->key, &near));
 }
 
 static enum err read_section(struct reader *r, int section)

@@ -87,7 +87,6 @@ enum suction { SUCTION_OFF, SUCTION_ON };
 enum sides { SIDES_BOTH, SIDES_ONE };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum slip { SLIP_FREE, SLIP_NONE };
-enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
 enum shifting_speed { SHIFTING_OWN, SHIFTING_LARGEST };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS, DIFFUSION_ANTUONO };

@@ -360,7 +360,6 @@ static void write_head(struct json *j, const struct simulation *sim, const struc
     json_number(j, "start_time", r->start_time);
     json_text(j, "restarted_from", r->restarted_from);
     json_text(j, "forked_from", r->forked_from);
-    json_integer(j, "snapshots_missed", r->snapshots_missed);
 }
 
 enum err report_summary(const char *folder, struct simulation *sim, const struct record *r,

@@ -12,7 +12,6 @@ struct record {
     const char *version;
     const char *restarted_from; /* checkpoint, or "" */
     const char *forked_from;    /* checkpoint of another run, or "" */
-    int64_t snapshots_missed;   /* not written, with [output] snapshot_failure = go_on */
     int threads;
     double wall_seconds; /* of this process, from the first step on */
     double start_time;   /* s, simulated, at which this process began */

@@ -169,9 +169,6 @@ static const struct {
     {TOP "gravity = 0, 1/(t - 0.5)\n" SOLID, NULL,
      "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be "
      "finite at all times up to end_time"},
-    {TOP "gravity_file = none.csv\n" SOLID, NULL,
-     "bad.cfg:3: unknown key `gravity_file` at the top of the file; write gravity = NAME(t), "
-     "OTHER(t) - 9.81 m/s^2 with a [table] for each component"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
@@ -284,12 +281,6 @@ static const struct {
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; leave one out"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
      "bad.cfg:7: motion = lift: there is no [motion] of that name"},
-    {TOP FLUID "[motion lift]\npoly_y = 0, 1\n", NULL,
-     "bad.cfg:7: unknown key `poly_y` in [motion]; write displacements x, y, such as y = 1.5 "
-     "m/s*t, or y = NAME(t) with a [table]"},
-    {TOP FLUID "[motion lift]\nangle = 0, 2\n", NULL,
-     "bad.cfg:7: unknown key `angle` in [motion]; write turn, the angle about `centre`, such as "
-     "turn = 2 rad/s*t"},
     {TOP FLUID "[table lift]\nfile = none/such.txt\n", NULL,
      "bad.cfg:7: [table lift] file: none/such.txt: cannot be read: No such file or directory"},
     {TOP FLUID "[motion lift]\nstart = 2\nstop = 1\n", NULL,

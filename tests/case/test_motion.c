@@ -206,9 +206,6 @@ static void test_bad_expressions(void)
     refuses("x = sqrt(t^2)\n",
             "motion.cfg:9: [motion move] sqrt(t^2): displacement, velocity or acceleration is not "
             "finite 0 s after `start`; change the expression");
-    refuses("velocity = 1, 0\nx = t\n",
-            "motion.cfg:10: unknown key `velocity` in [motion]; write displacements x, y, such as "
-            "y = 1.5 m/s*t, or y = NAME(t) with a [table]");
 }
 
 /* A body is nowhere moved without a velocity; what is steep, quick or has a kink is not a jump. */
