@@ -206,7 +206,7 @@ def references(run):
     """The references that the run's effective case names."""
     found = []
     for kind, name, keys in run.case():
-        if kind != "reference" or keys.get("formula"):
+        if kind != "reference" or keys.get("formula"):  # the program compares formulas itself
             continue
         if not keys.get("probe") or not keys.get("file"):
             raise BadFile(f"{run.folder / 'case.cfg'}: [reference {name}] lacks probe or file")

@@ -117,12 +117,13 @@ static enum err step(struct sphfsi_simulation *handle, double limit, struct diag
         return diag_fail(d, ERR_GUARD,
                          "step: this simulation was stopped because its state is not valid, as the "
                          "earlier error says; create a new one");
-    if (!(limit > sim->state.time))
+    if (!(limit > simulation_time(sim)))
         return diag_fail(d, ERR_INPUT,
                          "step: the limit of %.17g s must be later than the simulated time, %.17g "
                          "s",
-                         limit, sim->state.time);
-    const enum err e = simulation_step(sim, limit, d);
+                         limit, simulation_time(sim));
+    enum err e = relax_to_rest(sim, d);
+    if (!e) e = simulation_step(sim, limit, d);
     handle->stopped = e == ERR_GUARD;
     return e;
 }
@@ -149,7 +150,7 @@ enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *handle, double time)
 
 double sphfsi_time(const struct sphfsi_simulation *handle)
 {
-    return handle ? handle->session.simulation.state.time : (double)NAN;
+    return handle ? simulation_time(&handle->session.simulation) : (double)NAN;
 }
 
 double sphfsi_end_time(const struct sphfsi_simulation *handle)
@@ -168,7 +169,7 @@ double sphfsi_next_output(const struct sphfsi_simulation *handle)
     const struct scene_output *const out = &handle->session.scene.output;
     const double interval[] = {out->ledger_interval, out->snapshot_interval,
                                out->checkpoint_interval};
-    const double time = handle->session.simulation.state.time;
+    const double time = simulation_time(&handle->session.simulation);
     double next = handle->session.scene.top.end_time;
     for (int k = -(int)COUNT_OF(interval); k < handle->probes.n_files; k++) {
         struct due due = {k < 0 ? interval[k + (int)COUNT_OF(interval)]

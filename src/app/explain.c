@@ -162,6 +162,8 @@ static void say_cost(const struct simulation *sim, const struct forecast *f,
     session_say(o, "  nine of ten runs take %s to %s; more on a busy machine",
                 text_of_seconds(least_of_forecast * f->seconds).text,
                 text_of_seconds(most_of_forecast * f->seconds).text);
+    if (sim->effects & FX_RELAX)
+        session_say(o, "  this is without the time that [relax] needs to find the state of rest");
 }
 
 static enum err forecast_cost(struct forecast *f, struct session *session,

@@ -126,13 +126,14 @@ struct outputs {
     struct row_files rows;
 };
 
-/* From now on rows are read and formatted as in a run. */
+/* From now on rows are read and formatted as in a run, after the search for rest. */
 static enum err follow_rows(struct simulation *sim, struct diag *d)
 {
     struct outputs *const to = arena_alloc(&sim->arena, 1, sizeof *to, "rows", d);
     if (!to) return ERR_MEMORY;
     TRY(probes_create(&to->probes, sim, &sim->arena, d));
     TRY(rows_create(&to->rows, &to->probes, sim, true, &sim->arena, d));
+    sim->state.seeks_rest = false;
     rows_follow(&to->rows, sim);
     return ERR_OK;
 }

@@ -24,6 +24,7 @@ struct run {
     struct arena arena;
     struct probes probes;
     struct row_files rows;
+    struct references references;
     struct snapshots snapshots;
     struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
@@ -40,11 +41,31 @@ static const double progress_seconds = 0.25;
 
 /* --- output --- */
 
+/* Whether a restart continues files of rows: a run stopped while it seeks rest has none. */
+static bool continues_rows(const struct run *r)
+{
+    return r->options->restart && !r->sim->state.seeks_rest;
+}
+
+/* Compares the probes with their references; a failure is only a warning. */
+static void score_references(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    r->references.scored = r->references.n > 0;
+    for (int k = 0; k < r->references.n && r->references.scored; k++) {
+        struct reference *const reference = &r->references.item[k];
+        const char *const path = r->rows.file[reference->file].series.path;
+        r->references.scored = reference_score(reference, path, &why) == ERR_OK;
+    }
+    if (why.code) diag_warn(&why, "the references were not compared: %s", why.text);
+}
+
 static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
                               struct diag *d)
 {
     r->record.exit_reason = exit_reason;
     r->record.message = message;
+    r->record.snapshots_missed = r->image.snapshots_missed;
     r->record.wall_seconds = wall_clock() - r->wall_start;
     r->record.last = simulation_ledger(r->sim);
     return report_summary(r->dir.path, r->sim, &r->record, d);
@@ -66,6 +87,19 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->dir.path, r->checkpoint, d);
 }
 
+/* The next snapshot is tried unless snapshot_failure = stop; the file keeps the earlier ones. */
+static enum err write_snapshot(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_write(&r->snapshots, r->sim, &why);
+    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
+        return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
+    r->image.snapshots_missed++;
+    diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->sim->state.time,
+              why.text);
+    return ERR_OK;
+}
+
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
@@ -84,8 +118,7 @@ static enum err write_due(struct run *r)
         const bool due = due_time(&r->due[k]) <= time, of_end = at_end && r->written[k] < time;
         if (k == OUT_SNAPSHOT) r->image.snapshot_of_end = of_end && !due;
         if (!due && !of_end) continue;
-        TRY(k == OUT_SNAPSHOT ? snapshots_write(&r->snapshots, r->sim, r->diag)
-                              : write_checkpoint(r));
+        TRY(k == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r));
         r->written[k] = time;
         due_pass(&r->due[k], time);
     }
@@ -104,6 +137,17 @@ static double since(double *mark)
     const double now = wall_clock();
     if (now < *mark) *mark = now;
     return now - *mark;
+}
+
+/* While rest is sought no simulated time passes. */
+static void show_search(struct run *r)
+{
+    enum { EVERY = 10 }; /* s of wall time */
+    char text[RELAX_TEXT];
+    if (since(&r->wall_progress) < EVERY) return;
+    r->wall_progress = wall_clock();
+    relax_progress(r->sim, text);
+    session_say(r->options, "%s", text);
 }
 
 static void show_progress(struct run *r, bool finished)
@@ -143,17 +187,37 @@ static enum err between_steps(struct run *r)
         TRY(write_checkpoint(r));
         r->sim->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
-    show_progress(r, false);
+    if (r->sim->state.seeks_rest)
+        show_search(r);
+    else
+        show_progress(r, false);
     if (!request || !request->stop) return ERR_OK;
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,
                      "stopped by signal %d at %.6g s; --restart continues from %s",
-                     (int)request->stop, r->sim->state.time, r->checkpoint);
+                     (int)request->stop, simulation_time(r->sim), r->checkpoint);
+}
+
+/* T-78. The rows begin with the state that is found. */
+static enum err relax(struct run *r)
+{
+    char found[RELAX_TEXT];
+    if (!r->sim->state.seeks_rest) return ERR_OK;
+    session_say(r->options, "seeking a state of rest before t = 0");
+    while (r->sim->state.seeks_rest) {
+        TRY(relax_step(r->sim, r->diag));
+        TRY(between_steps(r));
+    }
+    relax_text(r->sim, found);
+    session_say(r->options, "%s", found);
+    r->record.first = simulation_ledger(r->sim);
+    return ERR_OK;
 }
 
 /* A run ends with the first step at or after its end: no output moves a step. */
 static enum err advance(struct run *r)
 {
+    TRY(relax(r));
     rows_follow(&r->rows, r->sim);
     TRY(observe(r->sim, r->sim->state.time, r->diag));
     TRY(write_due(r));
@@ -167,10 +231,11 @@ static enum err advance(struct run *r)
 
 /* --- end --- */
 
-/* Speed, energy gained, particles lost. */
+/* Speed, energy gained, particles lost, and errors against references. */
 static void say_end(const struct sphfsi_options *o, const struct simulation *sim,
                     const struct record *r)
 {
+    char text[1024];
     if (sim->state.particle_steps > r->start_particle_steps)
         session_say(o, "%.3g million particle steps a second", 1e-6 * report_rate(sim, r));
     if (sim->effects & FX_ENERGY_ACCOUNT)
@@ -181,6 +246,10 @@ static void say_end(const struct sphfsi_options *o, const struct simulation *sim
                     "fluid particles lost: %lld; largest number inside walls and solids at the "
                     "same time: %lld",
                     (long long)sim->state.lost, (long long)sim->state.entered);
+    for (int k = 0; r->references->scored && k < r->references->n; k++) {
+        reference_line(&r->references->item[k], text, sizeof text);
+        session_say(o, "%s", text);
+    }
 }
 
 /* Says how a stopped run continues: by a restart; after a guard, by a fork with steps half as long.
@@ -275,7 +344,7 @@ static enum err replace_case(struct run *r, const char *part)
 static enum err start_fresh(struct run *r)
 {
     TRY(snapshots_create(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, r->diag));
-    TRY(rows_start(&r->rows, r->dir.path, r->sim->state.time, r->diag));
+    TRY(rows_start(&r->rows, r->dir.path, simulation_time(r->sim), r->diag));
     for (int k = 0; k < OUT_COUNT; k++) r->written[k] = -1;
     r->record.first = simulation_ledger(r->sim);
     return ERR_OK;
@@ -324,13 +393,13 @@ static enum err load_checkpoint(struct run *r)
              : checkpoint_apply(&r->image, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
     const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : SOLID_BATCH);
-    if (r->sim->state.time - last >= r->session.scene.top.end_time)
+    if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,
             "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
             what, r->restarted_from, r->sim->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
-                r->sim->state.time, (long long)r->sim->state.steps);
+                simulation_time(r->sim), (long long)r->sim->state.steps);
     return ERR_OK;
 }
 
@@ -346,13 +415,13 @@ static enum err begin_run(struct run *r)
         return e;
     }
     TRY(replace_case(r, part));
-    TRY(r->options->restart ? start_restart(r) : start_fresh(r));
-    const double time = r->sim->state.time;
+    TRY(continues_rows(r) ? start_restart(r) : start_fresh(r));
+    const double time = simulation_time(r->sim);
     r->due[OUT_SNAPSHOT].interval = r->session.scene.output.snapshot_interval;
     r->due[OUT_CHECKPOINT].interval = r->session.scene.output.checkpoint_interval;
     /* A run begins with a snapshot. It needs no checkpoint, since the case or the fork gives its
      * start. */
-    if (r->options->restart) due_pass(&r->due[OUT_SNAPSHOT], time);
+    if (continues_rows(r)) due_pass(&r->due[OUT_SNAPSHOT], time);
     due_pass(&r->due[OUT_CHECKPOINT], time);
     r->record.version = SPHFSI_VERSION;
     r->record.restarted_from = r->options->fork ? "" : r->restarted_from;
@@ -373,6 +442,7 @@ static enum err simulate(struct run *r)
         save_last_state(r, failed);
         return failed;
     }
+    score_references(r);
     r->record.probes = &r->probes;
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
@@ -398,6 +468,9 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
 {
     TRY(probes_create(&r->probes, r->sim, &r->arena, r->diag));
     TRY(rows_create(&r->rows, &r->probes, r->sim, true, &r->arena, r->diag));
+    TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
+                        &r->arena, r->diag));
+    r->record.references = &r->references;
     if (r->options->requests) r->options->requests->begun = 1;
     TRY(run_dir_open(&r->dir, path, use, r->diag));
     TRY(begin_run(r));

@@ -462,6 +462,19 @@ static enum err check_output(struct reader *r, const void *section)
     return ERR_OK;
 }
 
+/* Motions are at rest before t = 0. */
+static enum err check_relax(struct reader *r, const void *section)
+{
+    const struct scene *const scene = r->scene;
+    const bool sought = ((const struct scene_relax *)section)->tolerance > 0;
+    for (int k = 0; sought && k < scene->n_motion; k++)
+        if (scene->motion[k].start < 0)
+            return problem(r, (struct problem_place){.section = &scene->motion[k]},
+                           "start = %g s: with [relax] no motion may begin before t = 0",
+                           scene->motion[k].start);
+    return ERR_OK;
+}
+
 /* A reference is for a column: <probe>_<quantity>_<unit>. */
 static enum err check_reference(struct reader *r, const void *section)
 {
@@ -470,6 +483,8 @@ static enum err check_reference(struct reader *r, const void *section)
     if (!*ref->file == !formula)
         return bad_section(r, "needs either `file` or `formula`, and has %s",
                            formula ? "both" : "neither");
+    if (!(ref->from < ref->until))
+        return bad_section(r, "from = %g s must come before until = %g s", ref->from, ref->until);
     for (int p = 0; p < r->scene->n_probe; p++) {
         const char *const name = r->scene->probe[p].common.name;
         const size_t length = strlen(name);
@@ -491,6 +506,7 @@ enum err case_check(struct reader *r)
         {SECTION_top, check_top},
         {SECTION_numerics, check_numerics},
         {SECTION_output, check_output},
+        {SECTION_relax, check_relax},
         {SECTION_fluid, check_fluid},
         {SECTION_solid, check_solid},
         {SECTION_rigid, case_check_rigid},

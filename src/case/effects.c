@@ -157,9 +157,6 @@ const struct phase_info phase_table[PHASE_COUNT] = {
 
 /* --- checks --- */
 
-#define BY_MOTION \
-    "it is found of solids alone; let `mass_damping` bring bodies to rest, then start by --fork"
-
 /* What goes together and what does not: the one needs the other in the case, or excludes it. */
 static const struct rule {
     enum effect effect;
@@ -177,12 +174,16 @@ static const struct rule {
     {EFFECT_OUTFLOW, NEEDS, EFFECT_FLUID, "fluid leaves through it"},
     {EFFECT_DAMPING_ZONE, NEEDS, EFFECT_FLUID, "it damps the fluid"},
     {EFFECT_RIGID, EXCLUDES, EFFECT_PERIODIC, "a rigid body does not pass through periodic sides"},
-    {EFFECT_EQUILIBRIUM, EXCLUDES, EFFECT_FLUID, BY_MOTION},
-    {EFFECT_EQUILIBRIUM, EXCLUDES, EFFECT_RIGID, BY_MOTION},
-    {EFFECT_EQUILIBRIUM, EXCLUDES, EFFECT_BEAM, BY_MOTION},
+    {EFFECT_RIGID, EXCLUDES, EFFECT_RELAX,
+     "[relax] does not find the state of rest of a rigid body; leave [relax] out"},
+    {EFFECT_BEAM, EXCLUDES, EFFECT_RELAX,
+     "[relax] does not find the state of rest of a beam; leave [relax] out and let `mass_damping` "
+     "of the [beam] and `artificial_viscosity` bring the beam to rest"},
     {EFFECT_BEAM, EXCLUDES, EFFECT_PERIODIC,
      "a beam does not pass through periodic sides; use walls or a longer [domain] without "
      "`periodic`"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary never comes to rest"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary never comes to rest"},
 };
 
 /* A key that means nothing without its effect: refused where the effect is off and the key has a
@@ -192,6 +193,7 @@ static const struct owned {
     const char *key;
     enum effect effect;
 } owned[] = {
+    {SECTION_relax, "limit", EFFECT_RELAX},
     {SECTION_fluid, "diffusion_form", EFFECT_DIFFUSION},
     {SECTION_fluid, "diffusion_limiter", EFFECT_DIFFUSION},
     {SECTION_fluid, "wall_damping", EFFECT_REPULSION},

@@ -112,5 +112,8 @@ void case_apply_defaults(struct scene *scene)
 {
     static const double cfl[] = {
         [INTEGRATOR_SYMPLECTIC] = 0.2, [INTEGRATOR_VERLET] = 0.2, [INTEGRATOR_LEAPFROG] = 0.4};
+    struct scene_relax *const relax = &scene->relax;
     if (scene->numerics.cfl == 0) scene->numerics.cfl = cfl[scene->top.integrator];
+    if (relax->common.line > 0 && !scene_given(scene, SECTION_relax, 0, "tolerance"))
+        relax->tolerance = scene->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
 }

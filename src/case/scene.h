@@ -77,7 +77,6 @@ enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LE
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 /* As presets need it. SCENE_STREAM: fluid enters through an [inflow], without gravity. */
 enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_STREAM, SCENE_COUPLED, SCENE_KINDS };
-enum start { START_GIVEN, START_EQUILIBRIUM };
 enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
@@ -87,6 +86,7 @@ enum suction { SUCTION_OFF, SUCTION_ON };
 enum sides { SIDES_BOTH, SIDES_ONE };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum slip { SLIP_FREE, SLIP_NONE };
+enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
 enum shifting_speed { SHIFTING_OWN, SHIFTING_LARGEST };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS, DIFFUSION_ANTUONO };

@@ -149,7 +149,7 @@ static void warn_of_weight(struct check *check, int fluid)
             "has a `surface`, but nothing to stand on: the pressure at its lower end begins with "
             "up to %.3g Pa and drives a jet; move the fluid to the floor, or leave out `surface`",
             pressure);
-    const bool at_rest = isnan(f->surface) && !f->velocity.e[0];
+    const bool at_rest = isnan(f->surface) && !f->velocity.e[0] && !(scene->relax.tolerance > 0);
     const bool upright = scene->top.gravity[1] < 0 && scene->top.gravity[0] == 0;
     if (held && at_rest && scene_open_count(scene) == 0)
         warn_section(

@@ -13,7 +13,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
 {
     for (int c = 0; c < 2; c++) {
         const struct expr *const e = scene->top.gravity_in_time.e[c];
-        g[c] = e ? expr_of(e, t) : scene->top.gravity[c];
+        g[c] = e ? expr_of(e, max2(t, 0)) : scene->top.gravity[c]; /* < 0: T-78 seeks rest */
     }
 }
 
@@ -78,7 +78,8 @@ static struct motion_state prescribed_at(const struct scene *scene, int motion_i
     const struct motion_hook *const hook =
         scene->motion_hook ? &scene->motion_hook[motion_index] : NULL;
     if (hook && hook->move) {
-        hook->move(hook->context, time, m.d, m.v, m.a);
+        if (time >= 0)
+            hook->move(hook->context, time, m.d, m.v, m.a); /* < 0: rest is sought (T-78) */
         return m;
     }
     if (motion_index >= scene_rigid_motion(scene, 0))

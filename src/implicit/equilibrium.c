@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Static equilibrium of solids by Newton's method (T-78). Where it does not converge at once, a
+ * Static equilibrium of solids by Newton's method (T-78a). Where it does not converge at once, a
  * part of the forces of the start is left out at first: load steps. */
 #include "implicit/implicit.h"
 #include "solid/contact.h"
@@ -13,11 +13,14 @@
 
 enum { ITERATIONS = 25 };
 
+/* T-78b: bodies with this many more particles across than along, whose factors cost too much. */
+static const double dear = 80;
+
 static const double shortest_part = 1.0 / 256;
 
-/* T-78: Newton's method from the present displacements. Pieces that nothing holds get a little of
+/* T-78a: Newton's method from the present displacements. Pieces that nothing holds get a little of
  * their mass, with which their rigid motions have a solution. */
-static bool balance(struct solid *solid, struct particles *particles)
+static bool balance(struct solid *solid, struct particles *particles, struct equilibrium *found)
 {
     struct implicit *const implicit = solid->implicit;
     const double shift = implicit->n_free ? 1e-12 * square(solid->omega_max) : 0;
@@ -31,6 +34,7 @@ static bool balance(struct solid *solid, struct particles *particles)
         if (!(residual <= FAST * last))
             negative = implicit_factor(solid, particles, (double)INFINITY, shift, NULL, NULL);
         if (negative < 0 || !implicit_correct(solid, particles)) return false;
+        found->corrections++;
         last = residual;
     }
     return false;
@@ -61,7 +65,8 @@ static bool comes_near(const struct solid *solid, struct particles *particles,
 }
 
 /* Load steps: those that fail are halved, those that succeed are doubled. */
-static bool load(struct solid *solid, struct particles *particles, struct contact *contact)
+static bool load(struct solid *solid, struct particles *particles, struct contact *contact,
+                 struct equilibrium *found)
 {
     double *const *const start = solid->scratch;
     double done = 0, part = 1;
@@ -69,10 +74,11 @@ static bool load(struct solid *solid, struct particles *particles, struct contac
         implicit_keep_start(solid, particles);
         solid->implicit->left_out = 1 - done - part;
         if (solid->hinges) constraint_begin(solid->implicit, solid->hinges, particles, 0, false);
-        if (balance(solid, particles)) {
+        if (balance(solid, particles, found)) {
             if (comes_near(solid, particles, start, contact)) return false;
             done += part;
             part = min2(2 * part, 1 - done);
+            found->load_steps++;
             continue;
         }
         memcpy(particles->ux, start[0], (size_t)particles->n * sizeof *particles->ux);
@@ -113,36 +119,49 @@ static int find_fallen(struct solid *solid, const struct particles *particles, d
     return -1;
 }
 
-static enum err find(struct solid *solid, struct particles *particles, const struct scene *scene,
-                     struct contact *contact, struct diag *d)
+static enum err find(struct equilibrium *found, struct solid *solid, struct particles *particles,
+                     const struct scene *scene, struct contact *contact, struct diag *d)
 {
     double sum[2];
-    const bool near = contact && contact_watch(contact, particles, 0, 0, 0);
+    if (contact && contact_watch(contact, particles, 0, 0, 0)) return ERR_OK;
     implicit_keep_start(solid, particles);
-    if (!near && implicit_residual(solid, particles, (double)INFINITY, 0) == 0) return ERR_OK;
-    const int fallen = near ? -1 : find_fallen(solid, particles, sum);
-    if (fallen >= 0)
-        return fail_at(d, scene, scene->solid[fallen].common.line,
-                       "start = equilibrium: nothing holds [solid %s] against a force of (%.3g, "
-                       "%.3g) N/m; give it a `clamp` or a `hinge`, or leave `start` out",
-                       scene->solid[fallen].common.name, sum[0], sum[1]);
-    if (!near && load(solid, particles, contact)) return ERR_OK;
-    return fail_at(d, scene, scene_line(scene, SECTION_numerics, 0, "start"),
-                   "start = equilibrium: Newton's method finds no stable equilibrium without "
-                   "contact; leave `start` out, and let `mass_damping` bring the bodies to rest");
+    if (implicit_residual(solid, particles, (double)INFINITY, 0) == 0) {
+        found->found = true;
+        return ERR_OK;
+    }
+    const int fallen = find_fallen(solid, particles, sum);
+    if (fallen < 0) {
+        found->found = load(solid, particles, contact, found);
+        return ERR_OK;
+    }
+    if (contact && (solid->n_bodies > 1 || scene->n_wall > 0)) return ERR_OK;
+    return diag_fail(
+        d, ERR_GUARD,
+        "%s: [relax]: nothing holds [solid %s] against a force of (%.3g, %.3g) N/m, so there "
+        "is no state of rest; give it a `clamp` or a `hinge`, put a [wall] below it, or "
+        "leave [relax] out",
+        scene_place(scene, scene->solid[fallen].common.line).text, scene->solid[fallen].common.name,
+        sum[0], sum[1]);
 }
 
-enum err equilibrium_find(const struct solid *from, struct particles *particles,
-                          const struct scene *scene, struct contact *contact, struct diag *d)
+enum err equilibrium_find(struct equilibrium *found, const struct solid *from,
+                          struct particles *particles, const struct scene *scene,
+                          struct contact *contact, struct diag *d)
 {
+    const size_t bytes = (size_t)particles->n * sizeof *particles->ux;
     struct arena arena = {0};
     struct solid solid;
+    *found = (struct equilibrium){0};
+    const double across = implicit_across(from, particles);
+    if (from->external || across * across * across > dear * (double)particles->n) return ERR_OK;
     for (int k = 0; k < from->n_bodies; k++)
-        if (from->body[k].kappa > 0 && !from->body[k].variational)
-            return fail_at(d, scene, scene_line(scene, SECTION_solid, k, "hourglass_form"),
-                           "start = equilibrium needs hourglass_form = variational");
+        if (from->body[k].kappa > 0 && !from->body[k].variational) return ERR_OK;
     enum err e = solid_create(&solid, &arena, scene, particles, true, d);
+    double *start[2] = {NULL, NULL};
+    for (int c = 0; c < 2 && !e; c++) e = arena_array(&arena, &start[c], particles->n, "start", d);
     if (!e) {
+        memcpy(start[0], particles->ux, bytes);
+        memcpy(start[1], particles->uy, bytes);
         solid.loads = from->loads;
         solid.hinges = from->hinges;
         solid.gravity_scene = from->gravity_scene;
@@ -151,8 +170,12 @@ enum err equilibrium_find(const struct solid *from, struct particles *particles,
         e = implicit_create(&solid, &arena, particles, d);
     }
     if (from->hinges) from->hinges->released = true;
-    if (!e) e = find(&solid, particles, scene, contact, d);
+    if (!e) e = find(found, &solid, particles, scene, contact, d);
     if (from->hinges) from->hinges->released = false;
+    if (!e && !found->found) {
+        memcpy(particles->ux, start[0], bytes);
+        memcpy(particles->uy, start[1], bytes);
+    }
     arena_free(&arena);
     return e;
 }

@@ -109,11 +109,18 @@ bool constraint_solve(struct implicit *implicit, struct hinges *hinges,
 void constraint_end(const struct implicit *implicit, struct hinges *hinges,
                     const struct particles *particles, double dt);
 
-/* --- equilibrium.c: static equilibrium of solids without fluid (T-78) --- */
+/* --- equilibrium.c: static equilibrium of solids without fluid (T-78a) --- */
 
-/* Gives the particles the displacements at which all forces at t = 0 balance. `contact`: of the
- * solid, or NULL. ERR_INPUT: there are none that are stable, without surfaces near each other on
- * the way, or nothing holds a body. */
-enum err equilibrium_find(const struct solid *solid, struct particles *particles,
-                          const struct scene *scene, struct contact *contact, struct diag *d)
-    SPHFSI_CHECKED;
+struct equilibrium {
+    bool found;
+    int corrections; /* solutions with the matrix */
+    int load_steps;
+};
+
+/* Seeks the displacements without velocity at which all forces at t = 0 balance. If none is found,
+ * the particles are as they were. It may not exist or be unstable, surfaces may come near each
+ * other, or something may act that the matrix lacks. `contact`: of the solid, or NULL. ERR_GUARD: a
+ * body that nothing holds or could hold. */
+enum err equilibrium_find(struct equilibrium *found, const struct solid *solid,
+                          struct particles *particles, const struct scene *scene,
+                          struct contact *contact, struct diag *d) SPHFSI_CHECKED;

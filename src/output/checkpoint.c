@@ -112,6 +112,8 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
     struct state *const state = &sim->state;
     struct open *const open = &sim->open;
     const size_t n_open = (size_t)open->n;
+    add_part(list, (struct part){"snapshots_missed", OWNER_RUN, ITEM_INT64, &m->snapshots_missed, 1,
+                                 FORK_SKIPS, 0, COUNTS});
     add_part(list, (struct part){"snapshot_of_end", OWNER_RUN, ITEM_INT64, &m->snapshot_of_end, 1,
                                  FORK_SKIPS, 0, 1});
 #define STATE(type, name, low, high, unit, meaning) \

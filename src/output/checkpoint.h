@@ -10,8 +10,9 @@
 struct image {
     unsigned char *bytes;
     size_t size, capacity;
-    /* Captured with the state. 1: there is a snapshot of it only because the run ended with it. */
-    int64_t snapshot_of_end;
+    /* Captured with the state: snapshots missed so far; 1: there is a snapshot of this state only
+     * because the run ended with it. */
+    int64_t snapshots_missed, snapshot_of_end;
 };
 
 enum { CHECKPOINT_VERSION_TEXT = 48 };

@@ -15,7 +15,7 @@ static enum err check_jump(const struct simulation *sim, const char *what, const
         d, ERR_INPUT,
         "fork: %s %s] would jump at %.6g s from (%.6g, %.6g) m in the checkpoint to "
         "(%.6g, %.6g) m of [motion %s]; let the motion begin where the checkpoint ends",
-        what, name, sim->state.time, from[0], from[1], to[0], to[1], motion);
+        what, name, simulation_time(sim), from[0], from[1], to[0], to[1], motion);
 }
 
 static enum err fork_walls(struct simulation *sim, struct diag *d)
@@ -32,7 +32,7 @@ static enum err fork_walls(struct simulation *sim, struct diag *d)
         }
         if (i == 0 || particles->body[i] != particles->body[i - 1])
             m = motion_at(sim->scene, scene_wall_motion(sim->scene, particles->body[i]),
-                          sim->state.time);
+                          simulation_time(sim));
         const struct motion_point to = motion_of_point(&m, particles->X[i], particles->Y[i]);
         TRY(check_jump(sim, "a particle of [wall", w->common.name, w->motion,
                        (double[]){particles->x[i], particles->y[i]}, to.x, sim->scene->top.dp, d));
@@ -56,7 +56,7 @@ static enum err fork_clamps(struct simulation *sim, const double *free, struct d
             particles->wx[i] = particles->wy[i] = particles->ax[i] = particles->ay[i] =
                 particles->recent_ax[i] = particles->recent_ay[i] = 0;
     }
-    solid_place_clamps(&sim->solid, particles, sim->state.time);
+    solid_place_clamps(&sim->solid, particles, simulation_time(sim));
     for (int64_t i = 0; i < particles->n; i++) {
         const struct scene_solid *const b = &sim->scene->solid[particles->body[i]];
         TRY(check_jump(sim, "the displacement of the clamp of [solid", b->common.name,
@@ -114,6 +114,9 @@ enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d
     if ((sim->effects & FX_FLUID) && !order_fits(sim)) TRY(sort_again(sim, d));
     TRY(simulation_resume(sim, d));
     memset(sim->guard.warned_left, 0, sizeof sim->guard.warned_left); /* a run of its own */
-    energy_begin(sim);
+    if (sim->state.seeks_rest && !(sim->effects & FX_RELAX))
+        relax_end(sim); /* a search that was cut */
+    else
+        energy_begin(sim);
     return ERR_OK;
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * summary.json, and the parts of it that --explain prints as JSON, too. */
 #include "output/report.h"
-#include "base/csv.h"
 #include "base/files.h"
 
 #include <stdlib.h>
@@ -258,48 +257,20 @@ static void write_counters(struct json *j, const struct state *st)
 
 /* --- loads: the largest means of forces over time, and their impulse (T-76b) --- */
 
-/* Values over time; `t` holds all. */
-struct curve {
-    int n;
-    double *t, *value, *sum;
-};
-
-/* Reads the complete rows of a column, and provides for its integral up to each row. */
-static enum err curve_read(struct curve *curve, const char *path, int column, struct diag *d)
-{
-    char *csv;
-    size_t size, rows = 1, length;
-    TRY(file_read(path, &csv, &size, d));
-    for (const char *at = csv; *at; at = csv_next_line(at)) rows++;
-    *curve = (struct curve){.t = calloc(3 * rows, sizeof *curve->t)};
-    curve->value = curve->t + rows;
-    curve->sum = curve->value + rows;
-    for (const char *line = csv_next_line(csv); curve->t && *line; line = csv_next_line(line)) {
-        const char *const field = csv_field(line, column, &length);
-        if (!strchr(line, '\n')) break; /* incomplete */
-        if (!field) continue;
-        curve->t[curve->n] = strtod(line, NULL);
-        curve->value[curve->n++] = strtod(field, NULL);
-    }
-    free(csv);
-    return curve->t ? ERR_OK
-                    : diag_fail(d, ERR_MEMORY, "%s: no memory for its column %d", path, column);
-}
-
 /* The mean of largest magnitude over as many intervals between rows as come next to the window, two
- * at least, and where it begins. */
-static double largest_mean(const struct curve *c, double window, double *from)
+ * at least, and where it begins. `sum` is the integral up to each row. */
+static double largest_mean(const struct curve *c, const double *sum, double window, double *from)
 {
     const double n = c->n > 1 ? nearbyint(window / (c->t[1] - c->t[0])) : 0;
     double mean = *from = (double)NAN;
     for (int k = 0, end = (int)n; n >= 2 && n < c->n && end < c->n; k++, end++) {
-        const double here = (c->sum[end] - c->sum[k]) / (c->t[end] - c->t[k]);
+        const double here = (sum[end] - sum[k]) / (c->t[end] - c->t[k]);
         if (!(fabs(here) <= fabs(mean))) mean = here, *from = c->t[k];
     }
     return mean;
 }
 
-static void write_column(struct json *j, const struct curve *c, double window)
+static void write_column(struct json *j, const struct curve *c, double *sum, double window)
 {
     const double windows[] = {1e-3, 5e-3, 20e-3, window};
     const int n = window > 0 ? 4 : 3;
@@ -307,18 +278,17 @@ static void write_column(struct json *j, const struct curve *c, double window)
     for (int k = 0; k < c->n; k++) {
         if (fabs(c->value[k]) > fabs(top[0])) top[0] = c->value[k], top[1] = c->t[k];
         if (k > 0)
-            c->sum[k] =
-                c->sum[k - 1] + 0.5 * (c->t[k] - c->t[k - 1]) * (c->value[k] + c->value[k - 1]);
+            sum[k] = sum[k - 1] + 0.5 * (c->t[k] - c->t[k - 1]) * (c->value[k] + c->value[k - 1]);
     }
     for (int k = 0; k < n; k++) {
-        mean[k] = largest_mean(c, windows[k], &from[k]);
+        mean[k] = largest_mean(c, sum, windows[k], &from[k]);
         impulse[k] = mean[k] * windows[k];
     }
     json_numbers(j, "window", windows, n);
     json_numbers(j, "largest_mean", mean, n);
     json_numbers(j, "from", from, n);
     json_numbers(j, "impulse", impulse, n);
-    json_number(j, "impulse_of_run", c->n > 0 ? c->sum[c->n - 1] : 0);
+    json_number(j, "impulse_of_run", c->n > 0 ? sum[c->n - 1] : 0);
     json_number(j, "largest_single_row", top[0]);
     json_number(j, "largest_single_row_time", top[1]);
 }
@@ -336,9 +306,9 @@ static enum err write_loads(struct json *j, const char *folder, const struct pro
         TRY(path_join(path, folder, probes->file[probe->file].name, d));
         for (int c = 0; probe_column(&scene->probe[p], c, name, sizeof name); c++) {
             struct curve curve;
-            TRY(curve_read(&curve, path, probe->column + c, d));
+            TRY(curve_read(&curve, path, probe->column + c, 1, d));
             json_open(j, name, '{');
-            write_column(j, &curve, scene->probe[p].load_window);
+            write_column(j, &curve, curve.value + curve.n, scene->probe[p].load_window);
             json_close(j, '}');
             free(curve.t);
         }
@@ -355,11 +325,12 @@ static void write_head(struct json *j, const struct simulation *sim, const struc
     json_text(j, "version", r->version);
     json_text(j, "exit_reason", r->exit_reason);
     json_text(j, "message", r->message);
-    json_number(j, "time", sim->state.time);
+    json_number(j, "time", simulation_time(sim));
     json_number(j, "end_time", sim->scene->top.end_time);
     json_number(j, "start_time", r->start_time);
     json_text(j, "restarted_from", r->restarted_from);
     json_text(j, "forked_from", r->forked_from);
+    json_integer(j, "snapshots_missed", r->snapshots_missed);
 }
 
 enum err report_summary(const char *folder, struct simulation *sim, const struct record *r,
@@ -386,6 +357,7 @@ enum err report_summary(const char *folder, struct simulation *sim, const struct
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(sim));
     json_text(&j, "state_hash", hash);
+    if (r->references->scored) references_write(&j, r->references);
     json_open(&j, "loads", '{');
     struct diag why = {.warn = NULL};
     if (r->probes && write_loads(&j, folder, r->probes, sim->scene, &why))

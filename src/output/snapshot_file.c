@@ -104,7 +104,7 @@ static void values_of(const struct source *source, enum data what, int column, i
     double *real = values;
     int64_t *integer = values;
     switch (what) {
-    case D_TIME: *real = sim->state.time; return;
+    case D_TIME: *real = simulation_time(sim); return;
     case D_PARTS_BEFORE: *integer = source->steps_before; return;
     case D_PARTS: *integer = 1; return;
     case D_POINTS_BEFORE: *integer = source->points_before; return;

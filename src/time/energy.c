@@ -80,7 +80,8 @@ static double add_solids(struct simulation *sim, struct energies *solid)
         if (!(det >= lowest)) lowest = det; /* also one that is not a number */
     }
     if (sim->effects & FX_CONTACT)
-        solid->row.contact = contact_energy(&sim->contact, particles, sim->state.time);
+        solid->row.contact =
+            contact_energy(&sim->contact, particles, scene_time(sim, sim->state.time));
     return lowest;
 }
 
@@ -255,7 +256,7 @@ static double gravity_work(struct simulation *sim)
 {
     const struct scene *const scene = sim->scene;
     double g[2], sum = 0;
-    scene_gravity_at(scene, sim->state.time - 0.5 * sim->state.dt, g);
+    scene_gravity_at(scene, scene_time(sim, sim->state.time - 0.5 * sim->state.dt), g);
     for (int c = 0; c < 2; c++) g[c] = sim->state.dt * (g[c] - scene->top.gravity[c]);
     for (int solid = 0; solid < 2; solid++) {
         const enum kind kind = solid ? KIND_SOLID : KIND_FLUID;

@@ -7,7 +7,8 @@
 void move_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->particles[KIND_WALL], time);
+    wall_motion_apply(&sim->wall_motion, sim->scene, &sim->particles[KIND_WALL],
+                      scene_time(sim, time));
     for (int j = 0; j < sim->fluid.lines.n; j++) {
         struct thin_line *const line = &sim->fluid.lines.line[j];
         if (line->bends || !(line->own || line->into[0] || line->into[1])) continue;
@@ -24,8 +25,8 @@ void find_external(struct simulation *sim, enum kind kind, double time)
     const size_t bytes = (size_t)sim->particles[kind].n * sizeof *external->ax;
     memset(external->ax, 0, bytes);
     memset(external->ay, 0, bytes);
-    external->accelerate(external->context, time, &sim->particles[kind], external->ax,
-                         external->ay);
+    external->accelerate(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
+                         external->ax, external->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
@@ -61,7 +62,8 @@ void evaluate_rates(struct simulation *sim, double time)
 {
     if (sim->evaluated) return;
     if (sim->effects & FX_MOTION) move_walls(sim, time);
-    if (sim->gravity_varies) scene_gravity_at(sim->scene, time, sim->fluid.k.gravity);
+    if (sim->gravity_varies)
+        scene_gravity_at(sim->scene, scene_time(sim, time), sim->fluid.k.gravity);
     if (sim->effects & FX_OPEN) {
         const double start = phase_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */

@@ -182,19 +182,6 @@ static enum err create_solids(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* T-78: the run begins at rest, but for clamps that move from t = 0 on. */
-static enum err start_at_rest(struct simulation *sim, struct diag *d)
-{
-    struct particles *const particles = &sim->particles[KIND_SOLID];
-    TRY(equilibrium_find(&sim->solid, particles, sim->scene,
-                         sim->effects & FX_CONTACT ? &sim->contact : NULL, d));
-    solid_set_positions(particles);
-    particles_clear(particles->vx, particles->n);
-    particles_clear(particles->vy, particles->n);
-    solid_place_clamps(&sim->solid, particles, 0);
-    return ERR_OK;
-}
-
 /* The step of rigid bodies and beams alone; beside solids the step is that of solids. */
 static void set_step_of_bodies(struct simulation *sim)
 {
@@ -232,7 +219,6 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .exchange_time = &sim->state.exchange_time,
     };
     if (sim->effects & FX_SOLID) TRY(create_solids(sim, d));
-    if (sim->effects & FX_EQUILIBRIUM) TRY(start_at_rest(sim, d));
     if (sim->effects & FX_MOTION) {
         TRY(wall_motion_create(&sim->wall_motion, a, sim->scene, walls, d));
         if (sim->effects & FX_RIGID)

@@ -18,6 +18,7 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     sim->effects = effects_of_scene(scene);
     sim->fluid.effects = sim->effects;
     sim->integrator = integrators[scene->top.integrator];
+    sim->state.seeks_rest = (sim->effects & FX_RELAX) != 0;
     team_begin(&sim->team, thread_count());
     const enum err e = initial_state(sim, d);
     if (e) {
@@ -106,7 +107,7 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     thread_use(sim->team.now);
     sim->fluid.threads = sim->team.now;
     solid_use_threads(&sim->solid, &sim->particles[KIND_SOLID], sim->team.now);
-    sim->solid.time = sim->state.time;
+    sim->solid.time = scene_time(sim, sim->state.time);
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     enum err e = ERR_OK;
     if (sim->effects & FX_FLUID) e = observe(sim, sim->state.time + timestep_longest(sim), d);

@@ -39,3 +39,21 @@ void simulation_wall_forces(struct simulation *sim);
 
 /* Particles within the kernel's reach of a point, of the first `kinds` kinds. */
 int particles_near(const struct simulation *sim, double x, double y, int kinds);
+
+/* --- relax.c: the search for a state of rest before a run (T-78) --- */
+
+/* A step of the search, whose clock is the state's time. Without motion for long enough the search
+ * is over. ERR_GUARD: a guard, or no rest within relax.limit. */
+enum err relax_step(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+/* Ends the search: the run begins at rest in the present positions; time and account begin anew. */
+void relax_end(struct simulation *sim);
+
+/* All steps of the search. */
+enum err relax_to_rest(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+
+enum { RELAX_TEXT = 320 };
+/* Says how far the search has come. */
+void relax_progress(const struct simulation *sim, char text[RELAX_TEXT]);
+/* Says what was found and by which criterion. */
+void relax_text(const struct simulation *sim, char text[RELAX_TEXT]);

@@ -10,17 +10,28 @@ const struct bound_info bound_table[BOUND_COUNT] = {
 #undef FX_NONE
 };
 
+double scene_time(const struct simulation *sim, double time)
+{
+    return sim->state.seeks_rest ? -(double)INFINITY : time;
+}
+
+double simulation_time(const struct simulation *sim)
+{
+    return max2(0, scene_time(sim, sim->state.time));
+}
+
 struct time_text time_text(const struct simulation *sim)
 {
     struct time_text time;
-    snprintf(time.text, sizeof time.text, "t = %.6g s", sim->state.time);
+    snprintf(time.text, sizeof time.text, "%s%.6g s",
+             sim->state.seeks_rest ? "while rest is sought, after " : "t = ", sim->state.time);
     return time;
 }
 
 enum err observe(struct simulation *sim, double until, struct diag *d)
 {
     struct observer *const observer = &sim->observer;
-    if (!observer->context || until < observer->next) return ERR_OK;
+    if (!observer->context || sim->state.seeks_rest || until < observer->next) return ERR_OK;
     const double begin = phase_clock(), before = phases_so_far(sim);
     const enum err e = observer->look(observer->context, sim, until, d);
     /* Evaluations, which the coming step uses, are counted in their own phases. */

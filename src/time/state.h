@@ -100,6 +100,7 @@ struct simulation {
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */
     struct contact contact;         /* of the solid; unused without it */
+    struct equilibrium rest;        /* of solids without fluid, with [relax] */
     effect_set effects;             /* bits of case/effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
@@ -124,9 +125,15 @@ struct simulation {
     struct energy_gain gain;              /* of the last test of the energy account */
 };
 
-/* "t = 0.1 s" for a message. */
+/* While rest is sought (T-78), the state's time is how long it has been sought. Motions, loads and
+ * gravity are taken at scene_time: at `time` of the run, and before all of it while rest is sought,
+ * when nothing is driven and all else is as at t = 0. The run's own time is 0 then. */
+double scene_time(const struct simulation *sim, double time);
+double simulation_time(const struct simulation *sim);
+
+/* "t = 0.1 s" for a message, or how long rest has been sought. */
 struct time_text {
-    char text[32];
+    char text[64];
 };
 struct time_text time_text(const struct simulation *sim);
 

@@ -16,6 +16,8 @@ grep -q '^M1_dy_m' "$dir/table" && ! grep -q '^run 1' "$dir/table" ||
 [ "$(find "$dir/r" -name summary.json | wc -l)" = 3 ] || fail "there are not three runs"
 grep -q '"M1_dy_m"' "$dir/r/refine.json" || fail "refine.json has no probe"
 whole=$(cat "$dir/r/refine.json")
+grep -A4 '"references": {' "$dir/r/dp-0.01/summary.json" | grep -q '"points": [1-9]' ||
+    fail "a run is not compared with its references"
 fine=$dir/r/dp-0.0025 middle=$dir/r/dp-0.005
 [ -d "$fine" ] && [ -d "$middle" ] || fail "folders are not named after dp: $(ls "$dir/r")"
 

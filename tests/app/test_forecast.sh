@@ -10,6 +10,11 @@ explain() { "$SPHFSI" --explain "${still[@]}" 2>/dev/null; }
 
 explain | grep -q 'cost with 1 thread, measured in 0.3 s of trial steps' || fail "no measurement"
 explain | grep -q 'nine of ten runs take .* s to .* s;' || fail "no band of the time"
+explain | grep -q 'without the time that \[relax\] needs' &&
+    fail "time of a search for rest that is not asked for"
+"$SPHFSI" --explain "${still[@]}" --set relax.tolerance=0.02 2>/dev/null |
+    grep -q 'without the time that \[relax\] needs' ||
+        fail "the search for rest is counted in silence"
 # Water without a floor leaves the domain within the trial steps; a run of 5 s has some thousands.
 "$SPHFSI" --explain "${still[@]}" --until 5 --set tank.shape='box -0.1, -0.1, 0, 0.4' \
     >"$work/said" 2>/dev/null

@@ -64,8 +64,8 @@ static void test_checks_go_on_after_the_first(void)
         "whose particles carry the load (m)\n"
         "bad.cfg:11: [load l] needs either `force` or `traction`, and has neither\n"
         "bad.cfg:13: [motion m] start = 0 s must come before stop = -1 s\n"
-        "bad.cfg:16: [reference r] lacks `probe`: column that it is shown beside, "
-        "such as M1_dx_m\n"
+        "bad.cfg:16: [reference r] lacks `probe`: column that the reference is compared "
+        "with, such as M1_dx_m\n"
         "bad.cfg:16: [reference r] needs either `file` or `formula`, and has neither\n");
 }
 

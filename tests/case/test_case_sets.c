@@ -73,6 +73,9 @@ static const struct {
      "0.1/(t/s - 0.5), ...: component 1 is not finite at t = 0.5 s"},
     {TOP SOLID PROBE "[reference r]\nprobe = Mx\nformula = 1\n", NULL,
      "no probe has such a column"},
+    {TOP SOLID "clamp = box 0, 0, 50 mm, 10 mm\nclamp_motion = m\n[motion m]\nx = t\n"
+               "start = -1\n[relax]\n",
+     NULL, "with [relax] no motion may begin before"},
     {TOP SOLID, "numerics.solid_h_over_dp=0.5", "solid_h_over_dp = 0.5 is too small"},
 };
 

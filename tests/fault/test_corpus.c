@@ -56,6 +56,8 @@ static void expressions(void) { replay("expr", fuzz_expr); }
 
 static void motion_tables(void) { replay("motion", fuzz_motion); }
 
+static void references(void) { replay("reference", fuzz_reference); }
+
 static void rows_of_a_run(void) { replay("series", fuzz_series); }
 
 static void checkpoints(void) { replay("checkpoint", fuzz_checkpoint); }
@@ -87,6 +89,7 @@ int main(int argc, char **argv)
     RUN_TEST(cases);
     RUN_TEST(expressions);
     RUN_TEST(motion_tables);
+    RUN_TEST(references);
     RUN_TEST(rows_of_a_run);
     RUN_TEST(checkpoints);
     RUN_TEST(a_fresh_checkpoint);

@@ -94,14 +94,23 @@ arguments=(tests/fault/tiny.cfg --threads 1 --quiet --set output.snapshot_interv
 rm -rf "$dir/whole"
 "$sphfsi" "${arguments[@]}" --out "$dir/whole" >"$dir/output" 2>&1 || fail "the run itself"
 
-# --- a snapshot that cannot be written stops the run ---
-# A limit on the size of a file stands for a quota: HDF5's alone is too large.
+# --- a run that goes on without snapshots, where the user wants it so ---
+# Only HDF5's file is too large: a limit on the size of a file stands for a quota.
+(
+    ulimit -f 120
+    exec "$sphfsi" "${arguments[@]}" --out "$dir/rows" --set output.snapshot_failure=go_on
+) >"$dir/output" 2>&1 || fail "snapshot_failure = go_on: exit status $?"
+grep -q 'warning: the snapshot at .* is missing, the run continues' "$dir/output" ||
+    fail "snapshot_failure = go_on: no warning"
+grep -q '"snapshots_missed": [1-9]' "$dir/rows/summary.json" || fail "snapshots_missed"
+[ "$(hash "$dir/rows")" = "$(hash "$dir/whole")" ] || fail "snapshot_failure = go_on: other bits"
+cmp "$dir/rows/probes.csv" "$dir/whole/probes.csv" || fail "snapshot_failure = go_on: probes.csv"
 (
     ulimit -f 120
     exec "$sphfsi" "${arguments[@]}" --out "$dir/stop"
 ) >"$dir/output" 2>&1
-[ $? = 2 ] || fail "a missing snapshot does not stop the run"
-[ "$(reason "$dir/stop")" = input_output ] || fail "a missing snapshot: exit_reason"
+[ $? = 2 ] || fail "snapshot_failure = stop: the run did not stop"
+[ "$(reason "$dir/stop")" = input_output ] || fail "snapshot_failure = stop: exit_reason"
 
 # --- the folder removed under the run ---
 cp tests/fault/still.cfg "$dir/still.cfg"

@@ -52,6 +52,8 @@ if [ "$(id -u)" != 0 ]; then
 fi
 sed 's/^point.*/&\n[table way]\nfile = fifo.cfg/' "$case" >"$dir/table.cfg"
 expect 1 'is not a file' "$dir/table.cfg" --out "$dir/no"
+sed 's/^point.*/&\n[reference r]\nprobe = M1_dx_m\nfile = fifo.cfg/' "$case" >"$dir/reference.cfg"
+expect 1 'is not a file' "$dir/reference.cfg" --out "$dir/no"
 [ ! -e "$dir/no" ] || fail "wrong input left a folder"
 
 # --- the same case in other dress ---

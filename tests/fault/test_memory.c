@@ -85,7 +85,10 @@ static const char rich[] = "dp = 10 mm\n"
                            "average = 1 ms\n"
                            "[probe both]\n"
                            "quantity = force\n"
-                           "body = post, block\n";
+                           "body = post, block\n"
+                           "[reference r]\n"
+                           "probe = tip_dx_m\n"
+                           "file = memory-reference.tmp\n";
 
 static void write_file(const char *path, const char *text)
 {
@@ -95,9 +98,17 @@ static void write_file(const char *path, const char *text)
     fclose(file);
 }
 
-static void write_files(void) { write_file("memory-table.tmp", "0, 0\n0.5, -0.001\n1, -0.002\n"); }
+static void write_files(void)
+{
+    write_file("memory-table.tmp", "0, 0\n0.5, -0.001\n1, -0.002\n");
+    write_file("memory-reference.tmp", "0, 0\n0.5, 1e-3\n");
+}
 
-static void remove_files(void) { remove("memory-table.tmp"); }
+static void remove_files(void)
+{
+    remove("memory-table.tmp");
+    remove("memory-reference.tmp");
+}
 
 static void no_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay)
 {

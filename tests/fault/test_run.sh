@@ -110,6 +110,18 @@ for blocks in 1 100 400 480 600; do
 done
 [ "$(ls "$dir"/full-1/*.ckpt 2>/dev/null)" = "" ] || fail "a checkpoint in half a kilobyte"
 
+# --- snapshots that were missed are counted across a restart ---
+missed() { sed -n 's/.*"snapshots_missed": \([0-9]*\).*/\1/p' "$1/summary.json"; }
+(ulimit -f 120; exec "$sphfsi" "$case" --quiet --out "$dir/missed" --until 0.015 \
+    --set output.snapshot_interval=1ms --set output.snapshot_failure=go_on) >"$dir/output" 2>&1 ||
+    fail "snapshot_failure = go_on: exit status $?"
+before=$(missed "$dir/missed")
+[ "$before" -gt 0 ] || fail "no snapshot was missed"
+expect 0 'restart from' "$case" --out "$dir/missed" --restart --set output.snapshot_interval=1ms \
+    --set output.snapshot_failure=go_on
+[ "$(missed "$dir/missed")" = "$before" ] ||
+    fail "missed: $before, restarted $(missed "$dir/missed")"
+
 # --- signals ---
 still=tests/fault/still.cfg
 wait_for() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes the readers with libFuzzer, ASan and UBSan: tests/fuzz/fuzz.sh [SECONDS for each target]
-# [TARGET...] Targets: case expr motion series checkpoint. Needs clang with its runtime
+# [TARGET...] Targets: case expr motion reference series checkpoint. Needs clang with its runtime
 # (Debian: clang libclang-rt-14-dev).
 # What was run is appended to tests/fuzz/counts.txt, from the fuzzer's own log; failing inputs land
 # in build/fuzz/found. Found inputs grow in build/fuzz/; KEEP=1 adds those that reach new code to
@@ -15,7 +15,7 @@ fi
 seconds=${1:-60}
 shift || true
 targets=("$@")
-[ $# -gt 0 ] || targets=(case expr motion series checkpoint)
+[ $# -gt 0 ] || targets=(case expr motion reference series checkpoint)
 build=build/fuzz
 counts=tests/fuzz/counts.txt
 corpus=tests/fuzz/corpus.tar.gz

@@ -211,6 +211,21 @@ static void numbers_that_no_run_has_are_refused(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &second, &diag), diag.text);
 }
 
+static void missed_snapshots_are_counted_on(void)
+{
+    open_with(0, NULL);
+    image.snapshots_missed = 7;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    image.snapshots_missed = -1;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_apply(&image, &second, &diag));
+    TEST_ASSERT_EQUAL_INT64(7, image.snapshots_missed);
+    image.snapshots_missed = -2;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_apply(&image, &second, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed of run, item 0, is -2"),
+                                 diag.text);
+}
+
 /* --- damage: two checkpoints of a small run, of which the newer one is damaged --- */
 
 static int warnings;
@@ -397,6 +412,7 @@ int main(void)
     RUN_TEST(says_what_it_is);
     RUN_TEST(cells_of_another_grid_are_refused);
     RUN_TEST(numbers_that_no_run_has_are_refused);
+    RUN_TEST(missed_snapshots_are_counted_on);
     RUN_TEST(a_flipped_byte_in_a_file_is_found);
     RUN_TEST(every_changed_byte_is_found);
     RUN_TEST(a_cut_is_found);

@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "output/checkpoint.h"
+#include "output/report.h"
 #include "output/rows.h"
 #include "expr/expr.h"
 #include "case/scene.h"
@@ -130,6 +131,38 @@ static const char *write_rows(const char *name, const uint8_t *data, size_t size
     if (!file || fwrite(data, 1, size, file) != size) abort();
     fclose(file);
     return path[next];
+}
+
+/* Up to the first byte of value 0 the file of a reference, behind it the probes that are compared.
+ */
+int fuzz_reference(const uint8_t *data, size_t size)
+{
+    static const char header[] = "time_s,P_dx_m,P_dy_m";
+    const uint8_t *const zero = size ? memchr(data, 0, size) : NULL;
+    const size_t first = zero ? (size_t)(zero - data) : size;
+    char text[512];
+    snprintf(text, sizeof text,
+             "dp = 1 cm\nend_time = 1\n[solid s]\nshape = box 0, 0, 0.05, 0.05\n"
+             "density = 1000\nyoung = 1e6\npoisson = 0.3\n[probe P]\nbody = s\n"
+             "point = 0.05, 0.05\n[reference r]\nprobe = P_dy_m\nfile = %s\n",
+             write_rows("rows.csv", data, first));
+    const char *const probes =
+        write_rows("probes.csv", zero ? zero + 1 : data, zero ? size - first - 1 : size);
+    static struct scene scene;
+    struct references r = {0};
+    struct diag d = {.code = ERR_OK};
+    if (scene.top.dp == 0 && scene_load_text(&scene, text, "/x.cfg", 0, NULL, &d)) abort();
+    struct arena a = {0};
+    const struct probe_file file = {.header = header};
+    enum err e = references_open(&r, &scene, 1, &file, &a, &d);
+    judge(e, &d);
+    if (!e) {
+        e = reference_score(r.item, probes, &d);
+        judge(e, &d);
+        if (!e && r.item->score.points < 0) abort();
+    }
+    arena_free(&a);
+    return 0;
 }
 
 /* The rows of a run that is continued at half a second. */

@@ -10,6 +10,7 @@
 int fuzz_case(const uint8_t *data, size_t size);       /* a case file */
 int fuzz_expr(const uint8_t *data, size_t size);       /* the value of a key, in x and y */
 int fuzz_motion(const uint8_t *data, size_t size);     /* the table of a motion */
+int fuzz_reference(const uint8_t *data, size_t size);  /* a reference, and the probes of a run */
 int fuzz_series(const uint8_t *data, size_t size);     /* the rows of a run that is continued */
 int fuzz_checkpoint(const uint8_t *data, size_t size); /* a checkpoint; see fuzz.c */
 
