@@ -127,6 +127,7 @@ struct scene_points {
     double *x, *y;
     int32_t *body;    /* index of the section among those of its kind */
     uint8_t *clamped; /* solids: 1 if a clamp holds the particle; otherwise NULL */
+    double *volume;   /* walls: of a particle, over dp^2, if there are thin lines; otherwise NULL */
     int32_t *open; /* fluid: the open boundary, from 1, whose buffer it belongs to, or 0; or NULL */
 };
 

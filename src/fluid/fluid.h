@@ -268,8 +268,8 @@ SPHFSI_INLINE int32_t fluid_line_before(const struct fluid *fluid, enum kind kin
 SPHFSI_INLINE double fluid_volume_of(const struct fluid *fluid, enum kind kind,
                                      const struct particles *particles, int64_t i)
 {
-    const struct line_dummy *const dummy = fluid_line_dummy(fluid, kind, i);
-    return dummy ? dummy->width : fluid->volume[kind][particles->body[i]];
+    return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.volume[i]
+                                                         : fluid->volume[kind][particles->body[i]];
 }
 
 /* r0 of L-7, m. A particle that has passed a line would be pushed on by the other side. */

@@ -205,6 +205,7 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
 {
     static const char what[] = "thin walls";
     lines->n = scene->n_line;
+    lines->volume = scene->points[KIND_WALL].volume;
     TRY(arena_array(a, &lines->line, lines->n, what, d));
     TRY(arena_array(a, &lines->of_wall, walls->n, what, d));
     TRY(arena_array(a, &lines->filled, walls->n, what, d));

@@ -44,6 +44,7 @@ struct lines {
     int32_t *of_wall; /* [particles of walls]: 1 + number of the line that a dummy belongs to, or
                          0 */
     double *filled;   /* [particles of walls]: phi of T-110c */
+    const double *volume; /* [particles of walls], over dp^2 */
 };
 
 enum err lines_create(struct lines *lines, struct arena *a, const struct scene *scene,

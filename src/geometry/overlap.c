@@ -123,6 +123,8 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
     TRY(arena_array(a, &to->y, n, what, sampler->diag));
     TRY(arena_array(a, &to->body, n, what, sampler->diag));
     if (kind == KIND_SOLID) TRY(arena_array(a, &to->clamped, n, what, sampler->diag));
+    if (kind == KIND_WALL && sampler->scene->n_line)
+        TRY(arena_array(a, &to->volume, n, what, sampler->diag));
     if (open) TRY(arena_array(a, &to->open, n, what, sampler->diag));
     return ERR_OK;
 }
@@ -134,19 +136,24 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
     struct scene *const scene = sampler->scene;
     struct scene_points *const to = &scene->points[kind];
     int64_t n = 0, k = 0;
+    double part[2][3];
     for (int64_t j = 0; j < samples->n; j++)
-        n += kept[j] && sampler->regions[samples->region[j]].kind == kind;
+        if (kept[j] && sampler->regions[samples->region[j]].kind == kind)
+            n += geometry_cut(scene, samples->x[j], samples->y[j], part);
     for (int j = 0; j < scene->n_line && kind == KIND_WALL; j++) n += scene->line[j].n_dummies;
     TRY(geometry_points(sampler, kind, n, false, to));
     for (int r = 0; r < sampler->n_regions; r++) {
         const struct region *const region = &sampler->regions[r];
         for (; k < samples->n && samples->region[k] == r; k++) {
             if (!kept[k] || region->kind != kind) continue;
-            to->x[to->n] = samples->x[k];
-            to->y[to->n] = samples->y[k];
-            to->body[to->n] = region->body;
-            if (to->clamped) to->clamped[to->n] = samples->clamped[k];
-            to->n++;
+            const int parts = geometry_cut(scene, samples->x[k], samples->y[k], part);
+            for (int p = 0; p < parts; p++, to->n++) {
+                to->x[to->n] = part[p][0];
+                to->y[to->n] = part[p][1];
+                to->body[to->n] = region->body;
+                if (to->clamped) to->clamped[to->n] = samples->clamped[k];
+                if (to->volume) to->volume[to->n] = part[p][2];
+            }
         }
         if (kind == KIND_WALL && region->kind == kind) geometry_thin_store(scene, region->body);
     }

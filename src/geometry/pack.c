@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Fluid beside edges that are not along its lattice. The cells with their centre inside the shape
  * and not too near to a wall cover less than its area, and the level falls. So as many of the
- * cells that such edges cut are filled as their parts inside the shape add up to. Then the
- * particles there are moved until a uniform pressure pushes none of them (T-80; particle packing,
- * Colagrossi et al. 2012). */
+ * cells that such edges cut are filled as their parts inside the shape add up to, on each side of
+ * thin lines. Then the particles there are moved until a uniform pressure pushes none of them
+ * (T-80; particle packing, Colagrossi et al. 2012). */
 #include "geometry/thin.h"
 #include "geometry/sampling.h"
 #include "base/point_grid.h"
@@ -25,8 +25,9 @@ struct cut_cells {
     const struct region *region;
     struct point_grid grid; /* their centres */
     int64_t n_slanted;      /* of them; faces of beams along the lattice cut the others */
-    double *share;          /* part of the cell that is in the shape */
-    double (*middle)[2];    /* centre of that part */
+    struct cut_part {       /* of a cell in the shape, on the right and left of the nearest line */
+        double share, middle[2];
+    } (*part)[2];
 };
 
 /* --- cells --- */
@@ -97,12 +98,11 @@ static enum err visit_outlines(struct cut_cells *c, struct sampler *sampler,
     return ERR_OK;
 }
 
-/* Share of the cell with this centre, and its middle. `line` and `scratch`: see outlines_union. */
-static double share_of(const struct region *r, const double centre[2], int lines, double middle[2],
-                       double *line, double *scratch)
+/* The parts of the cell with this centre, from zeros. `line` and `scratch`: see outlines_union. */
+static void find_parts(const struct scene *scene, const struct region *r, const double centre[2],
+                       int lines, struct cut_part part[2], double *line, double *scratch)
 {
     const struct scene_lattice *const l = &r->lattice;
-    double area = 0, moment[2] = {0, 0};
     for (int n = 0; n < lines; n++) {
         const double y = centre[1] - 0.5 + (n + 0.5) / lines;
         const int ends =
@@ -110,14 +110,17 @@ static double share_of(const struct region *r, const double centre[2], int lines
         for (int e = 0; e + 1 < ends; e += 2) {
             const double low = max2((line[e] - l->origin[0]) / l->spacing[0], centre[0] - 0.5),
                          high = min2((line[e + 1] - l->origin[0]) / l->spacing[0], centre[0] + 0.5);
+            double at[2], left;
             if (high <= low) continue;
-            area += high - low;
-            moment[0] += (high - low) * 0.5 * (low + high);
-            moment[1] += (high - low) * y;
+            place_of_cell(l, (const double[]){0.5 * (low + high), y}, at);
+            geometry_line_distance(scene, at, &left);
+            struct cut_part *const to = &part[left > 0];
+            to->share += (high - low) / lines;
+            to->middle[0] += (high - low) / lines * 0.5 * (low + high);
+            to->middle[1] += (high - low) / lines * y;
         }
     }
-    for (int c = 0; c < 2; c++) middle[c] = area > 0 ? moment[c] / area : centre[c];
-    return area / lines;
+    for (int k = 0; k < 4; k++) part[k / 2].middle[k % 2] /= max2(part[k / 2].share, 1e-300);
 }
 
 static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
@@ -132,12 +135,10 @@ static enum err find_cells(struct cut_cells *c, struct sampler *sampler,
     const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
     double *line;
     TRY(geometry_array(sampler, &line, 2 * ends));
-    TRY(geometry_array(sampler, &c->share, n));
-    TRY(geometry_array(sampler, &c->middle, n));
+    TRY(geometry_array(sampler, &c->part, n));
     for (int64_t k = 0; k < c->grid.n; k++)
-        c->share[k] =
-            share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]},
-                     k < c->n_slanted ? LINES : LEVEL_LINES, c->middle[k], line, line + ends);
+        find_parts(sampler->scene, region, (const double[]){c->grid.x[k], c->grid.y[k]},
+                   k < c->n_slanted ? LINES : LEVEL_LINES, c->part[k], line, line + ends);
     return ERR_OK;
 }
 
@@ -158,7 +159,8 @@ struct settling {
  * along the lattice, cells that keep their particle have it where it was. */
 static enum err refill(struct settling *s, const struct cut_cells *c, struct scene_points *to)
 {
-    const struct scene_points *const from = &s->sampler->scene->points[KIND_FLUID];
+    const struct scene *const scene = s->sampler->scene;
+    const struct scene_points *const from = &scene->points[KIND_FLUID];
     const struct scene_lattice *const l = &c->region->lattice;
     for (int64_t k = 0; k < from->n; k++) {
         double cell[2];
@@ -169,18 +171,21 @@ static enum err refill(struct settling *s, const struct cut_cells *c, struct sce
         to->y[to->n] = from->y[k];
         to->body[to->n++] = from->body[k];
     }
-    double excess = 0; /* sum of the shares less the filled cells */
-    for (int64_t k = 0; k < c->grid.n; k++) {
-        const double cell[2] = {c->grid.x[k], c->grid.y[k]};
-        double at[2];
+    double excess[2] = {0, 0}; /* sum of the shares less the filled parts, on each side */
+    for (int64_t k = 0; k < 2 * c->grid.n; k++) {
+        const double cell[2] = {c->grid.x[k / 2], c->grid.y[k / 2]};
+        const struct cut_part *const part = &c->part[k / 2][k % 2];
+        double at[2], left;
         place_of_cell(l, cell, at);
-        const bool drawn = k >= c->n_slanted && geometry_covers(c->region, at[0], at[1]);
-        const bool filled = (excess += c->share[k]) >= 0.5;
-        if (k < c->n_slanted || drawn != filled)
+        geometry_line_distance(scene, at, &left);
+        const bool level = k >= 2 * c->n_slanted,
+                   drawn = level && (left > 0) == k % 2 && geometry_covers(c->region, at[0], at[1]),
+                   filled = (excess[k % 2] += part->share) >= 0.5;
+        if (!level || drawn != filled)
             TRY(point_grid_add(&s->cells, cell[0], cell[1], &s->sampler->temp, s->sampler->diag));
         if (!filled) continue;
-        excess--;
-        if (!drawn) place_of_cell(l, c->middle[k], at);
+        excess[k % 2]--;
+        if (!drawn) place_of_cell(l, part->middle, at);
         to->x[to->n] = at[0];
         to->y[to->n] = at[1];
         to->body[to->n++] = c->region->body;
@@ -196,8 +201,8 @@ static enum err visit_lines(struct settling *s)
     const double near = (0.5 - beside_line) * scene->top.dp;
     for (int64_t k = 0; k < p->n && scene->n_line; k++) {
         const double at[2] = {p->x[k], p->y[k]};
-        double cell[2];
-        if (geometry_line_distance(scene, at) >= near) continue;
+        double cell[2], left;
+        if (geometry_line_distance(scene, at, &left) >= near) continue;
         cell_of_place(&scene->lattice, at[0], at[1], cell);
         TRY(point_grid_add(&s->cells, cell[0], cell[1], &s->sampler->temp, s->sampler->diag));
     }
@@ -228,22 +233,34 @@ static enum cover cover_of(const struct sampler *sampler, const double cell[2])
     return found;
 }
 
-/* Share of the cell with this centre that is air. Beside fluid alone its centre decides, as for
- * fluid. Beside walls and bodies, whose particles are not in the lattice, it is the share of
- * points in it. Their rows and columns differ in number, so that an edge along the diagonal meets
- * one of them at most. */
-static double air_share(const struct sampler *sampler, const double cell[2])
+/* The parts of the cell with this centre on both sides of the nearest line, with their shares of
+ * air. Beside fluid alone the middle of a part decides, as for fluid. Beside walls and bodies,
+ * whose particles are not in the lattice, it is the share of points in it. Their rows and columns
+ * differ in number, so that an edge along the diagonal meets one of them at most. */
+static void find_air(const struct sampler *sampler, const double cell[2], struct cut_part part[2])
 {
-    enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
-    int air = 0, body = 0;
-    for (int k = 0; k < COLUMNS * ROWS_OF_CELL; k++) {
-        const double part[2] = {cell[0] + (k % COLUMNS + 0.5) / COLUMNS - 0.5,
-                                cell[1] + (k / COLUMNS + 0.5) / ROWS_OF_CELL - 0.5};
-        const enum cover cover = cover_of(sampler, part);
-        air += cover == COVER_NONE;
+    enum { COLUMNS = 8, ROWS_OF_CELL = 7, POINTS = COLUMNS * ROWS_OF_CELL };
+    int air[2] = {0, 0}, n[2] = {0, 0}, body = 0;
+    double sum[2][2] = {{0}};
+    for (int k = 0; k < POINTS; k++) {
+        const double off[2] = {(k % COLUMNS - 0.5 * (COLUMNS - 1)) / COLUMNS,
+                               (k / COLUMNS - 0.5 * (ROWS_OF_CELL - 1)) / ROWS_OF_CELL},
+                     of_cell[2] = {cell[0] + off[0], cell[1] + off[1]};
+        double at[2], left;
+        place_of_cell(&sampler->scene->lattice, of_cell, at);
+        geometry_line_distance(sampler->scene, at, &left);
+        const int side = left > 0;
+        const enum cover cover = cover_of(sampler, of_cell);
+        air[side] += cover == COVER_NONE;
         body += cover == COVER_BODY;
+        n[side]++;
+        for (int c = 0; c < 2; c++) sum[side][c] += off[c];
     }
-    return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : cover_of(sampler, cell) == COVER_NONE;
+    for (int k = 0; k < 2; k++) {
+        for (int c = 0; c < 2; c++) part[k].middle[c] = cell[c] + sum[k][c] / max2(n[k], 1);
+        if (!body) air[k] = cover_of(sampler, part[k].middle) == COVER_NONE ? n[k] : 0;
+        part[k].share = (double)air[k] / POINTS;
+    }
 }
 
 /* Lattice cells count as points by their share outside shapes: nothing moves into the air. */
@@ -274,7 +291,7 @@ static enum err gather(struct settling *s)
 {
     struct sampler *const sampler = s->sampler;
     const struct scene *const scene = sampler->scene;
-    size_t n = (size_t)s->air.n;
+    size_t n = 2 * (size_t)s->air.n;
     for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)scene->points[kind].n;
     TRY(geometry_array(sampler, &s->x, n));
     TRY(geometry_array(sampler, &s->y, n));
@@ -297,16 +314,21 @@ static enum err gather(struct settling *s)
                 if (dummy && !dummy->same_side) s->line[s->n] = line;
                 const double dp =
                     kind == KIND_SOLID ? scene_solid_dp(scene, from->body[k]) : scene->top.dp;
-                add_point(s, from->x[k], from->y[k], square(dp) * (dummy ? dummy->width : 1));
+                add_point(s, from->x[k], from->y[k],
+                          square(dp) * (from->volume ? from->volume[k] : 1));
             }
         }
         if (!fixed) s->n_free = s->n;
     }
     for (int64_t k = 0; k < s->air.n; k++) {
-        const double cell[2] = {s->air.x[k], s->air.y[k]}, share = air_share(sampler, cell);
-        double at[2];
-        place_of_cell(&scene->lattice, cell, at);
-        if (share > 0) add_point(s, at[0], at[1], share * square(scene->top.dp));
+        struct cut_part part[2];
+        find_air(sampler, (const double[]){s->air.x[k], s->air.y[k]}, part);
+        for (int side = 0; side < 2; side++) {
+            double at[2];
+            place_of_cell(&scene->lattice, part[side].middle, at);
+            if (part[side].share > 0)
+                add_point(s, at[0], at[1], part[side].share * square(scene->top.dp));
+        }
     }
     return ERR_OK;
 }

@@ -191,13 +191,16 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     return ERR_OK;
 }
 
-double geometry_line_distance(const struct scene *scene, const double at[2])
+double geometry_line_distance(const struct scene *scene, const double at[2], double *left)
 {
-    double nearest = (double)INFINITY, left;
+    double nearest = (double)INFINITY, its_left;
+    *left = 0;
     for (int j = 0; j < scene->n_line; j++)
         for (int k = 0; k + 1 < scene->line[j].n; k++) {
             const struct line_part part = line_part_at(&scene->line[j], k);
-            nearest = min2(nearest, distance_from(&part, at, &left));
+            const double distance = distance_from(&part, at, &its_left);
+            if (distance < nearest) *left = its_left;
+            nearest = min2(nearest, distance);
         }
     return nearest;
 }
@@ -313,6 +316,35 @@ enum err geometry_thin(struct sampler *sampler)
     return ERR_OK;
 }
 
+int geometry_cut(const struct scene *scene, double x, double y, double to[2][3])
+{
+    const struct scene_lattice *const l = &scene->lattice;
+    const double at[2] = {x, y}, nothing = 1e-6;
+    for (int k = 0; k < 2 * scene->n_line; k++) {
+        const struct scene_line *const line = &scene->line[k / 2];
+        const bool last = k % 2;
+        const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
+        const double along = part.t[0] * l->turn[0] + part.t[1] * l->turn[1],
+                     across = part.t[1] * l->turn[0] - part.t[0] * l->turn[1],
+                     width = scene->top.dp * (fabs(along) + fabs(across));
+        double place[2];
+        relative_to_part(&part, at, place);
+        const double beyond = last ? place[0] - part.length : -place[0],
+                     left = 0.5 + place[1] / width;
+        if (beyond < 0 || beyond > line->extend[last] || left < nothing || left > 1 - nothing)
+            continue;
+        for (int side = 0; side < 2; side++) {
+            to[side][2] = side ? 1 - left : left;
+            place_on_part(&part, place[0], (side ? -0.5 : 0.5) * width * to[side][2], to[side]);
+        }
+        return 2;
+    }
+    to[0][0] = x;
+    to[0][1] = y;
+    to[0][2] = 1;
+    return 1;
+}
+
 void geometry_thin_store(struct scene *scene, int wall)
 {
     struct scene_points *const to = &scene->points[KIND_WALL];
@@ -324,6 +356,7 @@ void geometry_thin_store(struct scene *scene, int wall)
             place_of(line, &line->dummy[j], at);
             to->x[to->n] = at[0];
             to->y[to->n] = at[1];
+            to->volume[to->n] = line->dummy[j].width;
             to->body[to->n++] = wall;
         }
     }

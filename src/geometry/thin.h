@@ -46,5 +46,6 @@ SPHFSI_INLINE void place_on_part(const struct line_part *part, double along, dou
 int geometry_between(const struct scene *scene, const double from[2], const double to[2]);
 /* Whether a place lies within the thickness of a beam. */
 bool geometry_in_beam(const struct scene *scene, const double at[2]);
-/* Distance of a place from the nearest line, m; INFINITY: there are none. */
-double geometry_line_distance(const struct scene *scene, const double at[2]);
+/* Distance of a place from the nearest line, m; INFINITY: there are none. `left` of it by so much.
+ */
+double geometry_line_distance(const struct scene *scene, const double at[2], double *left);

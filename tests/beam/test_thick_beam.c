@@ -125,8 +125,7 @@ static void test_corners_of_a_closed_line(void)
     const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
     for (size_t k = 0; k < COUNT_OF(corner); k++)
         for (int64_t i = 0; i < fluid->n; i++)
-            TEST_ASSERT_TRUE(
-                hypot(fluid->x[i] - corner[k][0], fluid->y[i] - corner[k][1]) > 0.02);
+            TEST_ASSERT_TRUE(hypot(fluid->x[i] - corner[k][0], fluid->y[i] - corner[k][1]) > 0.02);
 }
 
 /* The level beside a plate of rows of any depth that stands out of the water. */
@@ -145,6 +144,32 @@ static void test_level_beside_faces(void)
     }
 }
 
+/* Water at rest on both sides of a plate keeps its level, wherever the line goes on into the bed or
+ * a side wall: it shares their particles and cells of fluid and air (T-110g). */
+static void test_rest_beside_a_line_into_a_wall(void)
+{
+    static const struct {
+        const char *line, *end[2];
+        double thickness;
+    } scenes[] = {{"0.405, 0; 0.405, 0.55", {"0.405, 0", "0.405, 0.55"}, 0.0005},
+                  {"0.41, 0; 0.41, 0.55", {"0.41, 0", "0.41, 0.55"}, 0.0005},
+                  {"0.41, 0; 0.41, 0.55", {"0.41, 0", "0.41, 0.55"}, 0.01},
+                  {"0.41, 0; 0.41, 0.55", {"0.41, 0", "0.41, 0.55"}, 0.04},
+                  {"0, 0.21; 0.4, 0.21", {"0, 0.21", "0.4, 0.21"}, 0.04}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 WATER "[beam b]\nshape = polyline: %s\nclamp = %s\nclamp = %s\n"
+                       "thickness = %g\nyoung = 1e12\ndensity = 1000\ngravity = off\n",
+                 scenes[k].line, scenes[k].end[0], scenes[k].end[1], scenes[k].thickness);
+        rig_open(&rig, text, NULL);
+        const double start = simulation_ledger(&rig.sim).potential;
+        rig_run(&rig, 0.6);
+        assert_near(5e-4 * start, start, simulation_ledger(&rig.sim).potential, scenes[k].line);
+        assert_at_most(square(0.02), mean_square_speed(), scenes[k].line);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -153,5 +178,6 @@ int main(void)
     RUN_TEST(test_what_is_displaced);
     RUN_TEST(test_corners_of_a_closed_line);
     RUN_TEST(test_level_beside_faces);
+    RUN_TEST(test_rest_beside_a_line_into_a_wall);
     return UNITY_END();
 }
