@@ -518,8 +518,9 @@ static bool inside_body(const struct simulation *sim, double x, double y)
         cells_visit(&sim->cells, sim->particles, KIND_WALL, KIND_COUNT, at, reach);
     while (cells_next(&v)) {
         const struct particles *const p = v.particles;
-        double limit = taken;
-        if (fluid_line_of(&sim->fluid, (enum kind)v.kind, v.i)) continue;
+        const struct line_dummy *const dummy =
+            fluid_line_dummy(&sim->fluid, (enum kind)v.kind, v.i);
+        double limit = taken * (dummy ? dummy->same_side * dummy->width : 1);
         if (v.kind == KIND_SOLID) {
             const double xx = 1 + p->Uxx[v.i], xy = p->Uxy[v.i], yx = p->Uyx[v.i],
                          yy = 1 + p->Uyy[v.i];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Fluid inside of walls: at any size, on any side of their particles, and across joined sides. */
+ * Fluid inside of walls, solids and beams: at any size, on any side of their particles, and across
+ * joined sides. */
 #include "time/advance.h"
 #include "time/guards.h"
 #include "rig.h"
@@ -79,10 +80,38 @@ static void test_fluid_in_a_stretched_body(void)
     }
 }
 
+/* Of a beam the inside is between its faces: rows of a spacing each, or of half its thickness. */
+static void test_fluid_in_a_beam(void)
+{
+    static const struct {
+        double thickness, off, along; /* dp */
+        int inside;
+    } row[] = {{4, 0.5, 0, 1},   {4, -1.5, 0, 1},   {4, 1.7, 0, 1},     {4, 2.1, 0, 0},
+               {1, 0.25, 0, 1},  {1, -0.4, 0, 1},   {1, 0.25, 0.15, 1}, {1, 0.6, 0, 0},
+               {0.1, 0.3, 0, 0}, {0.1, -0.3, 0, 0}, {4, 2.6, 0, 0}};
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        char text[500], what[64];
+        snprintf(text, sizeof text,
+                 "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.2, 0.2\n"
+                 "sound_speed = 20\n[beam b]\nshape = polyline: 0.05, 0.1; 0.15, 0.1\n"
+                 "young = 1e9\ndensity = 1000\nthickness = %g cm\n",
+                 row[k].thickness);
+        rig_open(&rig, text, NULL);
+        rig.sim.particles[KIND_FLUID].x[0] = 0.105 + 0.01 * row[k].along;
+        rig.sim.particles[KIND_FLUID].y[0] = 0.1 + 0.01 * row[k].off;
+        rig_sort(&rig);
+        int64_t first;
+        snprintf(what, sizeof what, "thickness %g, %g", row[k].thickness, row[k].off);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, guards_count_entered(&rig.sim, &first),
+                                        what);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_fluid_in_a_bed);
     RUN_TEST(test_fluid_in_a_stretched_body);
+    RUN_TEST(test_fluid_in_a_beam);
     return UNITY_END();
 }
