@@ -25,8 +25,17 @@ def load_panel(run, snapshots, time, entries):
     step, dp = snapshots.nearest(time), run.spacing()
     panel = {"time": snapshots.times[step], "step": step, "dp": dp, "failure": run.failure()}
     kinds, bodies, points = (snapshots.load(step, name) for name in ("kind", "body", "Points"))
+    line = np.zeros(len(kinds), bool)
+    panel["beams"] = []
+    if snapshots.has("thickness"):  # of beams; NaN: only stiffness and mass are given
+        thickness = snapshots.load(step, "thickness")
+        line = thickness != 0
+        for body in np.unique(bodies[line]):
+            here = line & (bodies == body)
+            panel["beams"].append((points[here, :2].astype(float),
+                                   np.nan_to_num(thickness[here][0])))
     for name, number in KINDS.items():
-        here = kinds == number
+        here = (kinds == number) & ~line
         x = points[here, :2].astype(float)
         panel[name] = {"x": x, "body": bodies[here], "value": np.empty(0)}
         if name in entries and len(x):
@@ -66,7 +75,9 @@ def frame(panels):
     """Box around all particles but the fluid's outermost 0.1 %, which may be single drops."""
     cut = {"fluid": 0.1, "wall": 0, "solid": 0}
     boxes = np.array([np.percentile(panel[name]["x"], [cut[name], 100 - cut[name]], axis=0)
-                      for panel in panels for name in KINDS if len(panel[name]["x"])])
+                      for panel in panels for name in KINDS if len(panel[name]["x"])] +
+                     [(x.min(axis=0), x.max(axis=0))
+                      for panel in panels for x, _ in panel["beams"]])
     pad = 3 * max(panel["dp"] for panel in panels)
     (x0, y0), (x1, y1) = boxes[:, 0].min(axis=0) - pad, boxes[:, 1].max(axis=0) + pad
     return x0, x1, y0, y1
@@ -89,6 +100,18 @@ def draw_outline(axes, x, dp, **style):
     axes.contour(corner[0] + step * np.arange(size[0]), corner[1] + step * np.arange(size[1]),
                  share.reshape(size).T, [0.5],
                  **{"colors": "black", "linewidths": 0.5, "zorder": 4, **style})
+
+
+def draw_beam(axes, x, thickness):
+    """A beam to scale, at least a hairline, along the places on its line in their order."""
+    step = np.diff(x, axis=0)
+    length = np.hypot(*step.T)
+    parts = length > 1e-3 * length.max()
+    start, step = x[:-1][parts], step[parts]
+    side = step @ [[0, 1], [-1, 0]] * (0.5 * thickness / length[parts])[:, None]
+    faces = np.stack([start - side, start + step - side, start + step + side, start + side], axis=1)
+    axes.add_collection(PolyCollection(faces, linewidths=0.5, edgecolor="black",
+                                       facecolor="black", zorder=4))
 
 
 def draw_panel(axes, panel, scales, window):
@@ -115,6 +138,8 @@ def draw_panel(axes, panel, scales, window):
             bodies = panel[name]["body"][seen]
             for body in np.unique(bodies):
                 draw_outline(axes, x[bodies == body], dp)
+    for beam in panel["beams"]:
+        draw_beam(axes, *beam)
     axes.set(xlim=window[:2], ylim=window[2:])
     words = f"$t$ = {panel['time']:.4g} s" + (f"\n{panel['failure']}" if panel["failure"] else "")
     axes.text(0.985, 0.96, words, transform=axes.transAxes, ha="right", va="top", zorder=5,

@@ -60,13 +60,17 @@ class Snapshots:
         """Index of the snapshot nearest to a time (s)."""
         return int(np.argmin(np.abs(self.times - time)))
 
+    def has(self, name: str) -> bool:
+        """Whether there is an array of PointData of this name."""
+        return name in self.root["PointData"]
+
     def load(self, step: int, name: str) -> np.ndarray:
         """The positions ("Points", m) or an array of PointData at a step; docs/formats.md has the
         units."""
         start = self.starts[step]
         if name == "Points":
             data = self.root[name]
-        elif name in self.root["PointData"]:
+        elif self.has(name):
             data = self.root["PointData"][name]
             own = self.root.get("Steps/PointDataOffsets/" + name)
             start = start if own is None else own[step]

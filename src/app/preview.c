@@ -40,9 +40,13 @@ static void put_text(struct drawing *g, double x, double y, const char *class, c
     fputs("</text>\n", g->file);
 }
 
-static void put_path(struct drawing *g, const char *class, const char *of, int n, double (*pt)[2])
+/* `width` of the stroke, m; 0: that of its class. */
+static void put_path(struct drawing *g, const char *class, const char *of, double width, int n,
+                     double (*pt)[2])
 {
-    fprintf(g->file, "<path class=\"%s %s\" d=\"", class, of);
+    fprintf(g->file, "<path class=\"%s %s\" ", class, of);
+    if (width > 0) fprintf(g->file, "style=\"stroke-width:%.2f\" ", max2(1, width * g->scale));
+    fputs("d=\"", g->file);
     for (int k = 0; k < n; k++) {
         fprintf(g->file, "%c%.1f %.1f", k ? 'L' : 'M', px(g, 0, pt[k][0]), px(g, 1, pt[k][1]));
         box2_include(&g->view, pt[k][0], pt[k][1]);
@@ -99,7 +103,8 @@ static void put_body(struct drawing *g, enum kind kind, int body,
     double place[2] = {g->view.low[0], g->view.low[1]};
     for (const struct shape *line = lines->item; line < lines->item + lines->n; line++) {
         if (id != SECTION_beam && !line->thin) continue;
-        put_path(g, "line", class, line->n, line->pt);
+        const double thickness = id == SECTION_beam ? g->scene->beam[common->index].thickness : 0;
+        put_path(g, "line", class, thickness, line->n, line->pt);
         memcpy(place, line->pt[line->n / 2], sizeof place);
     }
     const bool held = put_particles(g, kind, body, true, "clamped", place);
@@ -118,9 +123,9 @@ static void put_mark(struct drawing *g, const struct scene_section_common *commo
     for (size_t k = 0; k < COUNT_OF(keys); k++) {
         if (!scene_given(g->scene, id, common->index, keys[k])) continue;
         memcpy(end[n], (const char *)common + param_find(id, keys[k])->offset, sizeof end[n]);
-        put_path(g, "point", "", 1, &end[n++]);
+        put_path(g, "point", "", 0, 1, &end[n++]);
     }
-    put_path(g, "line", "", n, end);
+    put_path(g, "line", "", 0, n, end);
     put_legend(g, n > 0 ? end[0] : NULL, common, probe ? quantity_table[probe->quantity].name : "");
 }
 
@@ -152,7 +157,7 @@ static void put_grid(struct drawing *g)
             double end[2][2];
             memcpy(end, &g->view, sizeof end);
             end[0][c] = end[1][c] = k == 0 ? 0 : k * step;
-            put_path(g, "grid", "", 2, end);
+            put_path(g, "grid", "", 0, 2, end);
             snprintf(text, sizeof text, "%.6g m", end[0][c]);
             put_text(g, px(g, 0, end[0][0]) - (c ? 9 : 0), px(g, 1, end[0][1]) + (c ? 4 : 19),
                      c ? "end" : "middle", text);

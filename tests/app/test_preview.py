@@ -191,11 +191,14 @@ def check(picture):
 
 
 def check_beam(picture):
-    """A beam without fluid has its line, points at the ends of its spring, and no particles."""
+    """A beam without fluid has its line, as thick as it is, points at the ends of its spring, and
+    no particles."""
     pixel = 1 / picture.scale
     lines = picture.places("line wall") + picture.places("line moving")
     assert len(lines) == 1, lines
     near(sum(lines[0], ()), (0, 0, 0.3, 0, 0.4, 0.3), pixel)
+    style, = (path.get("style") for path in picture.root.iter(NAME + "path") if path.get("style"))
+    near((float(style.removeprefix("stroke-width:")) * pixel,), (0.004,), 0.01 * pixel)
     assert [t.text for t in picture.texts() if t.text.endswith("  beam plate")]
     points = sum(picture.places("point "), [])
     assert len(points) == 2, points

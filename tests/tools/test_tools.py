@@ -248,6 +248,29 @@ def test_fields(tmp, good, halted):
     refuses("not a temporal VTKHDF file", "plot_fields", broken)
 
 
+def test_beams(tmp):
+    """A beam is drawn along the places of its dummies, row after row, as thick as it is."""
+    from sphfsi import draw_fields
+    from sphfsi.run import Run
+    from sphfsi.snapshots import Snapshots
+    folder = write_run(tmp / "beam")
+    row = np.linspace(0.1, 0.2, 11)
+    with h5py.File(folder / "fields.vtkhdf", "a") as file:
+        root = file["VTKHDF"]
+        walls = np.flatnonzero(root["PointData/kind"][:] == 1)[:33]
+        points = root["Points"][:]
+        points[walls, :2] = np.stack([np.tile(row, 3), np.full(33, 0.3)], axis=1)
+        root["Points"][...] = points
+        root["PointData/thickness"] = np.where(np.isin(np.arange(len(points)), walls), 0.006, 0)
+    panel = draw_fields.load_panel(Run(folder), Snapshots(folder / "fields.vtkhdf"), 0, {})
+    (x, thickness), = panel["beams"]
+    assert len(x) == 33 and not (panel["wall"]["x"][:, 1] > 0.2).any()
+    axes = matplotlib.figure.Figure().add_subplot()
+    draw_fields.draw_beam(axes, x, thickness)
+    drawn = np.concatenate([path.vertices for path in axes.collections[0].get_paths()])
+    assert np.allclose([drawn.min(axis=0), drawn.max(axis=0)], [[0.1, 0.297], [0.2, 0.303]])
+
+
 def test_animate(tmp, good, halted):
     out = draws(good / "fields.gif", "animate", good, "--out", good / "fields.gif", "--dpi", 60)
     assert f"{STEPS} frames" in out and "t = 0 to 0.4 s" in out, out
@@ -325,6 +348,7 @@ def main():
         test_case_sections(good)
         test_m1(tmp, good, halted)
         test_fields(tmp, good, halted)
+        test_beams(tmp)
         test_animate(tmp, good, halted)
         test_probes(tmp)
         test_refinement(tmp)
