@@ -42,10 +42,10 @@ static void say_effects(const struct simulation *sim, const struct sphfsi_option
     session_say(o, "enabled effects, and the setting that enables each");
     for (int k = 0; k < EFFECT_COUNT; k++) {
         if (!(sim->effects & EFFECT_BIT(k))) continue;
-        struct effect_caller caller;
-        const bool called = effect_called(sim->scene, (enum effect)k, &caller);
+        struct effect_source source;
+        const bool enabled = effect_enabled(sim->scene, (enum effect)k, &source);
         session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name,
-                    called ? effect_caller_text(sim->scene, &caller).text : effect_table[k].key,
+                    enabled ? effect_source_text(sim->scene, &source).text : effect_table[k].key,
                     effect_table[k].meaning, effect_table[k].equation[0] ? "; " : "",
                     effect_table[k].equation);
     }

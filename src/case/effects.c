@@ -12,17 +12,17 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 /* --- conditions of effects --- */
 
 /* Stores the place of the condition if `at` is one, and returns whether it is. */
-static bool called_by(struct effect_caller *caller, enum section_id section, const char *key,
-                      int at)
+static bool enabled_by(struct effect_source *source, enum section_id section, const char *key,
+                       int at)
 {
     if (at < 0) return false;
-    *caller = (struct effect_caller){section, at, key};
+    *source = (struct effect_source){section, at, key};
     return true;
 }
 
 /* Whether a section has a value above 0, a text, or the choice `choice` (below 0: any but the
  * first). */
-static bool has_set(const struct scene *scene, struct effect_caller *caller, enum section_id id,
+static bool has_set(const struct scene *scene, struct effect_source *source, enum section_id id,
                     const char *key, int choice)
 {
     const struct param *const param = param_find(id, key);
@@ -30,29 +30,29 @@ static bool has_set(const struct scene *scene, struct effect_caller *caller, enu
         const char *const section = section_at(scene, id, k);
         const double set =
             param->type == PARAM_TEXT ? section[param->offset] : param_number(param, section);
-        if (choice < 0 ? set > 0 : set == choice) return called_by(caller, id, param->key, k);
+        if (choice < 0 ? set > 0 : set == choice) return enabled_by(source, id, param->key, k);
     }
     return false;
 }
 
 /* The first two bodies in contact, the second from `first` on, walls after solids. */
-static bool meets(const struct scene *scene, struct effect_caller *caller, int first)
+static bool meets(const struct scene *scene, struct effect_source *source, int first)
 {
     for (int a = 0; a < scene->n_solid; a++)
         for (int b = a > first ? a : first; b < scene->n_solid + scene->n_wall; b++) {
             const struct scene_contact *const c = scene_contact_of(scene, a, b);
-            if (c == &scene->contact_default) return called_by(caller, SECTION_solid, "", a);
-            if (c) return called_by(caller, SECTION_contact, "", (int)(c - scene->contact));
+            if (c == &scene->contact_default) return enabled_by(source, SECTION_solid, "", a);
+            if (c) return enabled_by(source, SECTION_contact, "", (int)(c - scene->contact));
         }
     return false;
 }
 
-static bool has_gravity(const struct scene *scene, struct effect_caller *caller)
+static bool has_gravity(const struct scene *scene, struct effect_source *source)
 {
     const struct scene_expr *const e = &scene->top.gravity_in_time;
     const bool acts =
         scene->top.gravity[0] != 0 || scene->top.gravity[1] != 0 || e->e[0] || e->e[1];
-    return called_by(caller, SECTION_top, "gravity", acts ? 0 : -1);
+    return enabled_by(source, SECTION_top, "gravity", acts ? 0 : -1);
 }
 
 /* The first probe of the force on a wall; -1: none. */
@@ -67,27 +67,27 @@ static int first_wall_force(const struct scene *scene)
     return -1;
 }
 
-static bool compressed_at_start(const struct scene *scene, struct effect_caller *caller)
+static bool compressed_at_start(const struct scene *scene, struct effect_source *source)
 {
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].particle_mass == MASS_HYDROSTATIC &&
             (!isnan(scene->fluid[k].surface) || scene->fluid[k].pressure.e[0]))
-            return called_by(caller, SECTION_fluid, "particle_mass", k);
+            return enabled_by(source, SECTION_fluid, "particle_mass", k);
     return false;
 }
 
-bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *caller)
+bool effect_enabled(const struct scene *scene, enum effect effect, struct effect_source *source)
 {
-#define SOME(section) called_by(caller, SECTION_##section, "", scene->n_##section > 0 ? 0 : -1)
-#define SET(section, key) has_set(scene, caller, SECTION_##section, #key, -1)
-#define CHOSEN(section, key, choice) has_set(scene, caller, SECTION_##section, #key, choice)
-#define COMPRESSED_AT_START compressed_at_start(scene, caller)
-#define MEETS meets(scene, caller, 0)
-#define MEETS_WALL meets(scene, caller, scene->n_solid)
-#define HAS_GRAVITY has_gravity(scene, caller)
-#define PROBES_WALL called_by(caller, SECTION_probe, "quantity", first_wall_force(scene))
+#define SOME(section) enabled_by(source, SECTION_##section, "", scene->n_##section > 0 ? 0 : -1)
+#define SET(section, key) has_set(scene, source, SECTION_##section, #key, -1)
+#define CHOSEN(section, key, choice) has_set(scene, source, SECTION_##section, #key, choice)
+#define COMPRESSED_AT_START compressed_at_start(scene, source)
+#define MEETS meets(scene, source, 0)
+#define MEETS_WALL meets(scene, source, scene->n_solid)
+#define HAS_GRAVITY has_gravity(scene, source)
+#define PROBES_WALL enabled_by(source, SECTION_probe, "quantity", first_wall_force(scene))
 #define THIN_LINES \
-    called_by(caller, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
+    enabled_by(source, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
 #define LATER false
 #define EFFECT(name, when, ...) \
     if (effect == EFFECT_##name) return when;
@@ -103,38 +103,38 @@ static const effect_set effect_bits[EFFECT_COUNT] = {
 effect_set effects_of_scene(const struct scene *scene)
 {
     effect_set effects = 0;
-    struct effect_caller caller;
+    struct effect_source source;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_called(scene, (enum effect)k, &caller)) effects |= effect_bits[k];
+        if (effect_enabled(scene, (enum effect)k, &source)) effects |= effect_bits[k];
     return effects;
 }
 
 /* "[wall bed] slip", or "integrator". */
-static struct section_title caller_name(const struct scene *scene,
-                                        const struct effect_caller *caller)
+static struct section_title source_name(const struct scene *scene,
+                                        const struct effect_source *source)
 {
     struct section_title name;
-    const bool top = caller->section == SECTION_top;
+    const bool top = source->section == SECTION_top;
     snprintf(name.text, sizeof name.text, "%.90s%s%.60s",
-             top ? "" : section_title(section_at(scene, caller->section, caller->index)).text,
-             !top && *caller->key ? " " : "", caller->key);
+             top ? "" : section_title(section_at(scene, source->section, source->index)).text,
+             !top && *source->key ? " " : "", source->key);
     return name;
 }
 
-struct caller_text effect_caller_text(const struct scene *scene, const struct effect_caller *caller)
+struct source_text effect_source_text(const struct scene *scene, const struct effect_source *source)
 {
     const struct scene_given *const given =
-        scene_given(scene, caller->section, caller->index, caller->key);
+        scene_given(scene, source->section, source->index, source->key);
     const struct scene_section_common *const section =
-        section_at(scene, caller->section, caller->index);
-    struct caller_text to;
+        section_at(scene, source->section, source->index);
+    struct source_text to;
     char line[32];
     snprintf(line, sizeof line, "line %d", given ? given->line : section->line);
     snprintf(to.text, sizeof to.text, "%s: %s",
              given && given->line == 0                       ? "--set"
-             : given || section_table[caller->section].named ? line
+             : given || section_table[source->section].named ? line
                                                              : "default",
-             caller_name(scene, caller).text);
+             source_name(scene, source).text);
     return to;
 }
 
@@ -203,28 +203,28 @@ static const struct owned {
 };
 
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
-static int line_of(const struct scene *scene, const struct effect_caller *caller)
+static int line_of(const struct scene *scene, const struct effect_source *source)
 {
-    const int line = scene_line(scene, caller->section, caller->index, caller->key);
+    const int line = scene_line(scene, source->section, source->index, source->key);
     return line == LINE_NONE ? 1 : line;
 }
 
 static enum err check_rule(struct reader *r, const struct rule *rule)
 {
     const struct scene *const scene = r->scene;
-    struct effect_caller caller, other;
-    if (!effect_called(scene, rule->effect, &caller)) return ERR_OK;
-    if (effect_called(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
+    struct effect_source source, other;
+    if (!effect_enabled(scene, rule->effect, &source)) return ERR_OK;
+    if (effect_enabled(scene, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
     const struct effect_info *const effect = &effect_table[rule->effect],
                                     *const its = &effect_table[rule->other];
-    const struct section_title text = caller_name(scene, &caller);
+    const struct section_title text = source_name(scene, &source);
     if (rule->verb == NEEDS)
-        return bad_line(r, line_of(scene, &caller),
+        return bad_line(r, line_of(scene, &source),
                         "%s enables the effect %s, which needs %s (%s): %s", text.text,
                         effect->name, its->name, its->key, rule->reason);
-    return bad_line(r, line_of(scene, &caller),
+    return bad_line(r, line_of(scene, &source),
                     "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
-                    text.text, effect->name, its->name, caller_name(scene, &other).text,
+                    text.text, effect->name, its->name, source_name(scene, &other).text,
                     line_of(scene, &other), rule->reason);
 }
 
@@ -233,8 +233,8 @@ static enum err check_owned(struct reader *r, const struct owned *row)
     const struct scene *const scene = r->scene;
     const struct param *const param = param_find(row->section, row->key);
     const struct effect_info *const effect = &effect_table[row->effect];
-    struct effect_caller caller;
-    if (effect_called(scene, row->effect, &caller)) return ERR_OK;
+    struct effect_source source;
+    if (effect_enabled(scene, row->effect, &source)) return ERR_OK;
     for (int k = 0; k < section_count(scene, row->section); k++) {
         const void *const section = section_at(scene, row->section, k);
         double value;
@@ -242,10 +242,10 @@ static enum err check_owned(struct reader *r, const struct owned *row)
             (scene_scheme_sets(scene, row->section, row->key, &value) &&
              param_number(param, section) == value))
             continue;
-        caller = (struct effect_caller){row->section, k, row->key};
-        TRY(case_go_on(r, bad_line(r, line_of(scene, &caller),
+        source = (struct effect_source){row->section, k, row->key};
+        TRY(case_go_on(r, bad_line(r, line_of(scene, &source),
                                    "%s has no effect without %s: leave it out, or enable %s by %s",
-                                   caller_name(scene, &caller).text, effect->name, effect->name,
+                                   source_name(scene, &source).text, effect->name, effect->name,
                                    effect->key)));
     }
     return ERR_OK;
@@ -253,9 +253,9 @@ static enum err check_owned(struct reader *r, const struct owned *row)
 
 enum err case_check_effects(struct reader *r)
 {
-    struct effect_caller caller;
+    struct effect_source source;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (effect_bits[k] == 0 && effect_called(r->scene, (enum effect)k, &caller))
+        if (effect_bits[k] == 0 && effect_enabled(r->scene, (enum effect)k, &source))
             return bad_line(r, 1,
                             "the case enables the effect %s, but this program was compiled without "
                             "it; build it without -DSPHFSI_WITHOUT",

@@ -71,21 +71,21 @@ struct effect_info {
 extern const struct effect_info effect_table[EFFECT_COUNT];
 
 /* Where the scene activates an effect. */
-struct effect_caller {
+struct effect_source {
     enum section_id section;
     int index;
     const char *key; /* "": the section itself */
 };
 
 /* Whether the scene activates an effect, and where it does first. */
-bool effect_called(const struct scene *scene, enum effect effect, struct effect_caller *caller);
+bool effect_enabled(const struct scene *scene, enum effect effect, struct effect_source *source);
 
 /* "line 12: [wall bed] slip", or "--set: ...". */
-struct caller_text {
+struct source_text {
     char text[300];
 };
-struct caller_text effect_caller_text(const struct scene *scene,
-                                      const struct effect_caller *caller);
+struct source_text effect_source_text(const struct scene *scene,
+                                      const struct effect_source *source);
 
 /* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
 effect_set effects_of_scene(const struct scene *scene);

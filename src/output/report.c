@@ -103,11 +103,11 @@ void report_effects(struct json *j, const struct simulation *sim)
     json_close(j, ']');
     json_open(j, "effects_called_by", '{');
     for (int k = 0; k < EFFECT_COUNT; k++) {
-        struct effect_caller caller;
+        struct effect_source source;
         if (!(sim->effects & EFFECT_BIT(k))) continue;
-        const bool called = effect_called(sim->scene, (enum effect)k, &caller);
+        const bool enabled = effect_enabled(sim->scene, (enum effect)k, &source);
         json_text(j, effect_table[k].name,
-                  called ? effect_caller_text(sim->scene, &caller).text : "decided at the start");
+                  enabled ? effect_source_text(sim->scene, &source).text : "decided at the start");
     }
     json_close(j, '}');
 }

@@ -19,7 +19,7 @@ static const struct {
     const char *text;
     effect_set effects;
     enum effect effect;
-    const char *caller;
+    const char *source;
 } scenes[] = {
     {TOP FLUID, FX_FLUID, EFFECT_FLUID, "line 3: [fluid w]"},
     {TOP FLUID "artificial_viscosity = 0.1\n", FX_FLUID | FX_VISCOSITY, EFFECT_VISCOSITY,
@@ -150,9 +150,9 @@ static void test_the_set_follows_from_the_case(void)
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(scenes[k].effects | always,
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,
                                         scenes[k].text);
-        struct effect_caller by;
-        TEST_ASSERT_TRUE(effect_called(&rig.scene, scenes[k].effect, &by));
-        TEST_ASSERT_EQUAL_STRING(scenes[k].caller, effect_caller_text(&rig.scene, &by).text);
+        struct effect_source by;
+        TEST_ASSERT_TRUE(effect_enabled(&rig.scene, scenes[k].effect, &by));
+        TEST_ASSERT_EQUAL_STRING(scenes[k].source, effect_source_text(&rig.scene, &by).text);
     }
     for (int k = 0; k < EFFECT_COUNT; k++)
         TEST_ASSERT_TRUE_MESSAGE(tested & EFFECT_BIT(k), effect_table[k].name);
@@ -160,11 +160,11 @@ static void test_the_set_follows_from_the_case(void)
 
 static void test_a_set_is_named_as_the_caller(void)
 {
-    struct effect_caller by;
+    struct effect_source by;
     rig_open(&rig, TOP FLUID, "w.artificial_viscosity=0.1", NULL);
-    TEST_ASSERT_TRUE(effect_called(&rig.scene, EFFECT_VISCOSITY, &by));
+    TEST_ASSERT_TRUE(effect_enabled(&rig.scene, EFFECT_VISCOSITY, &by));
     TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity",
-                             effect_caller_text(&rig.scene, &by).text);
+                             effect_source_text(&rig.scene, &by).text);
 }
 
 /* Fluid only: no field of a solid; solid only: no cells, no packed fields, no field of a fluid; a
