@@ -309,7 +309,7 @@ void solid_advance_any(struct solid *solid, struct particles *particles, double 
         solid_advance(solid, particles, dt, n);
         return;
     }
-    solid->within_step = take_mean_stress;
+    solid->implicit_stress = take_mean_stress;
     if (loads) loads->released = true;
     if (hinges) hinges->released = true;
     for (int k = 0; k < n; k++, solid->time += dt) {
@@ -318,7 +318,7 @@ void solid_advance_any(struct solid *solid, struct particles *particles, double 
     }
     if (loads) loads->released = false;
     if (hinges) hinges->released = false;
-    solid->within_step = NULL;
+    solid->implicit_stress = NULL;
 }
 
 /* T-93: the longest period of solids sets the implicit step where there is no fluid. */

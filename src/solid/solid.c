@@ -178,7 +178,7 @@ static void stress_sweeps(const struct pack_range *own, bool displaced)
         sweep(own, solid->sweeps->pairs);
     }
     if (solid->kelvin_voigt) sweep(own, solid->sweeps->damping);
-    if (solid->within_step) sweep(own, solid->within_step);
+    if (solid->implicit_stress) sweep(own, solid->implicit_stress);
 #pragma omp barrier
 }
 

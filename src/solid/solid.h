@@ -137,7 +137,7 @@ struct solid {
     const struct external *external;   /* accelerations by a program */
     solid_kick *apply_kick;            /* of sub-steps: free, or against the impedance of a fluid */
     struct implicit *implicit;         /* data of implicit/; NULL: explicit steps only */
-    solid_sweep *within_step;          /* what implicit steps change of the stress; NULL: nothing */
+    solid_sweep *implicit_stress;      /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };
