@@ -19,7 +19,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
                                                .motion = motion,
                                                .first = first,
                                                .end = end,
-                                               .free = k >= scene_rigid_wall(scene, 0)};
+                                               .driven = k < scene_rigid_wall(scene, 0)};
     }
     return ERR_OK;
 }
@@ -95,6 +95,6 @@ double wall_motion_power(const struct wall_motion *m, const struct particles *wa
 {
     double power = 0;
     for (int k = 0; k < m->n; k++)
-        if (!m->body[k].free) power += moving_wall_power(&m->body[k], walls);
+        if (m->body[k].driven) power += moving_wall_power(&m->body[k], walls);
     return power;
 }

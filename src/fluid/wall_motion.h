@@ -10,8 +10,8 @@ struct moving_wall {
     int64_t first, end;
     struct motion_state placed; /* its last position, if `known` */
     bool known;
-    bool rests; /* placed without velocity */
-    bool free;  /* a rigid body: its power on the fluid is no work from outside */
+    bool rests;  /* placed without velocity */
+    bool driven; /* by a [motion]: its power on the fluid is work from outside */
 };
 
 struct wall_motion {

@@ -209,7 +209,7 @@ void energy_book_evaluation(struct simulation *sim, double dt)
         const struct moving_wall *const wall = &sim->wall_motion.body[b];
         struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
         const double work = dt * moving_wall_power(wall, &sim->particles[KIND_WALL]);
-        *(wall->free ? &e->given : &e->supplied) += wall->free ? -work : work;
+        *(wall->driven ? &e->supplied : &e->given) += wall->driven ? work : -work;
     }
     for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
         entry_of(sim, KIND_SOLID, solid->body[i])->given +=
