@@ -8,7 +8,7 @@
 #include "base/simd.h"
 #include "time/simulation.h"
 #include "output/snapshot.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
  * What each call of the library begins and ends with, and how a session reads its case. */
 #include "app/session.h"
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "output/rows.h"
 #include "time/timestep.h"
 

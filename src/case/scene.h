@@ -232,7 +232,8 @@ struct scene {
 };
 
 /* Reads and checks a case, from text in memory or NULL: the file; messages use `path`, and file
- * names are relative to it. geometry/load.h also samples its points. `sets` are the --set arguments
+ * names are relative to it. geometry/scene_points.h also samples its points. `sets` are the --set
+ * arguments
  * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
  * "gate.young=1e6"). After success scene_free is due. */
 enum err scene_read(struct scene *scene, const char *text, const char *path, int n_sets,

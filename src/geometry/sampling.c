@@ -2,7 +2,7 @@
  * Sampling of shapes: particles are the centres of the cells of a square lattice. A centre within
  * 1e-6 dp of an edge counts as above and to the right of it, for any rounding error. So shapes with
  * a common edge neither miss nor double a particle. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/sampling.h"
 
 #include <unistd.h>

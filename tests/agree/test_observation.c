@@ -5,7 +5,7 @@
 #include "time/energy.h"
 
 #include "unity.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
 #include "base/csv.h"
 #include "check/check.h"
 #include "case/params.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "rig.h"
 #include "tiny.h"
 #include "unity.h"

@@ -3,7 +3,7 @@
  * damping, the force that a probe has, and input that is refused. */
 #include "rig.h"
 #include "beam/beam.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "time/energy.h"
 #include "unity.h"
 

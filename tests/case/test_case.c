@@ -2,7 +2,7 @@
  * What a good case file means: defaults, constants, --set, inheritance, the effective case. */
 #include "expr/expr.h"
 #include "case/params.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <dirent.h>

@@ -2,7 +2,7 @@
  * Bad case files, and the sentence that each of them is answered with (or how it begins). */
 #include "case/params.h"
 #include "case/scene.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdio.h>

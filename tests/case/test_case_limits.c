@@ -4,7 +4,7 @@
 #include "case/params.h"
 #include "case/scene.h"
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdio.h>

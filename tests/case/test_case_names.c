@@ -2,7 +2,7 @@
  * Names of other sections are checked in the same run as values, and places of probes are
  * needed. */
 #include "case/scene.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdio.h>

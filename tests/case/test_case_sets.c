@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Settings of the command line that name what is not there, and numbers, units and sections that
  * only just are none: each is refused with what would be right. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/motion.h"
 #include "unity.h"
 

@@ -3,7 +3,7 @@
  * displacement in between. */
 #include "case/scene.h"
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/motion.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * [table]: files of numbers as functions of expressions, their slopes, and files that are
  * refused. */
 #include "case/params.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/motion.h"
 #include "unity.h"
 

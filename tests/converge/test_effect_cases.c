@@ -4,7 +4,7 @@
 #include "rig.h"
 #include "time/energy.h"
 #include "unity.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "solid/loads.h"
 
 #include <math.h>

@@ -7,7 +7,7 @@
  * Those within HDF5, a shared library, are not: it says itself that it does not survive all of
  * them; a snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
 #include "base/files.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "rig.h"
 #include "sphfsi.h"
 #include "tiny.h"

@@ -2,7 +2,7 @@
  * The reader under hostile input: damaged text and failing memory. Nothing may crash, leak or hang;
  * a failure always leaves a sentence. */
 #include "case/scene.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdio.h>

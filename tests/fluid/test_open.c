@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Open boundaries: what comes in and goes is counted, streams pass at any angle and in either
  * direction, sound leaves, and what makes no sense is refused. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "output/probes.h"
 #include "time/energy.h"
 #include "rig.h"

@@ -3,7 +3,7 @@
 #include "fuzz.h"
 
 #include "case/scene.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 
 #include <math.h>
 

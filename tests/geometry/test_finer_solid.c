@@ -3,7 +3,7 @@
 #include "rig.h"
 #include "time/energy.h"
 #include "unity.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 
 #include <math.h>
 #include <string.h>

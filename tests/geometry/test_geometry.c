@@ -3,7 +3,7 @@
 #include "particles/particles.h"
 #include "case/scene.h"
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "particles/particles.h"
 #include "case/scene.h"
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/thin.h"
 #include "rig.h"
 #include "unity.h"

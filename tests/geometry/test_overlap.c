@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Sections that overlap are refused whatever their lattices, and those that touch are not. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <math.h>

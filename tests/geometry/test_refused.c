@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes that can be read, but not be sampled or divided into cells: too wide, too narrow, or with
  * an opening in a body. The message says what would be right. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "time/simulation.h"
 #include "unity.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Walls that are drawn as lines without thickness. */
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "particles/particles.h"
 #include "unity.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
 #include "output/checkpoint.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "time/energy.h"
 #include "fuzz.h"
 #include "tiny.h"

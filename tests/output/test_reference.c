@@ -8,7 +8,7 @@
 
 #include "tiny.h"
 #include "unity.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 
 static struct scene scene;
 static struct arena arena;

@@ -3,7 +3,7 @@
  * or cannot be written. Other readers of the file: test_snapshot_reader.py. */
 #include "output/snapshot.h"
 #include "output/point_data.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "tiny.h"
 #include "unity.h"
 

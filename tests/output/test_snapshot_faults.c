@@ -11,7 +11,7 @@
  * --wrap: H5Pget_filter2 H5Tcopy H5Tset_size H5Screate H5Screate_simple H5Sselect_hyperslab
  * --wrap: H5Sget_simple_extent_dims malloc realloc */
 #include "output/snapshot.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "rig.h"
 #include "tiny.h"
 #include "unity.h"

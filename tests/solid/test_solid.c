@@ -4,7 +4,7 @@
 #include "rig.h"
 #include "solid/solid.h"
 #include "time/energy.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <math.h>

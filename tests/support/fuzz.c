@@ -7,7 +7,7 @@
 #include "output/rows.h"
 #include "expr/expr.h"
 #include "case/scene.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "geometry/motion.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "check/check.h"
 #include "fluid/eos.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #define SPHFSI_TESTS_WARNED_H
 
 #include "check/check.h"
-#include "geometry/load.h"
+#include "geometry/scene_points.h"
 #include "unity.h"
 
 #include <stdio.h>
