@@ -76,9 +76,9 @@ static void move_after_substeps(struct coupling *coupling, double dt)
         particles->recent_ax[i] += RECENT * (ax - particles->recent_ax[i]);
         particles->recent_ay[i] += RECENT * (ay - particles->recent_ay[i]);
         particles->wx[i] =
-            (particles->ux[i] - particles->x0[i]) * per_dt + half * particles->recent_ax[i];
+            (particles->ux[i] - particles->ux0[i]) * per_dt + half * particles->recent_ax[i];
         particles->wy[i] =
-            (particles->uy[i] - particles->y0[i]) * per_dt + half * particles->recent_ay[i];
+            (particles->uy[i] - particles->uy0[i]) * per_dt + half * particles->recent_ay[i];
     }
 }
 
@@ -131,8 +131,8 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double rate
         /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        particles->x0[i] = particles->ux[i];
-        particles->y0[i] = particles->uy[i];
+        particles->ux0[i] = particles->ux[i];
+        particles->uy0[i] = particles->uy[i];
         particles->vx0[i] = particles->vx[i];
         particles->vy0[i] = particles->vy[i];
     }

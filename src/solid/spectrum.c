@@ -66,7 +66,7 @@ static double apply_operator(struct solid *solid, struct particles *particles,
 {
     const int64_t n = particles->n;
     double *const s[2] = {particles->sx, particles->sy};
-    double *const direction[2] = {particles->x0, particles->y0};
+    double *const direction[2] = {particles->ux0, particles->uy0};
     const double factor = v->amplitude / largest(s[0], s[1], n);
     const double asked = factor * norm(s[0], s[1], n);
     keep(direction, s, n);

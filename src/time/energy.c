@@ -229,9 +229,9 @@ void energy_book_solid(struct simulation *sim, double dt, int n)
         struct energy_entry *const e = entry_of(sim, KIND_SOLID, particles->body[i]);
         const double mass = sim->solid.body[particles->body[i]].mass;
         const double ux =
-            particles->ux[i] - particles->x0[i] - late * (particles->vx[i] - particles->vx0[i]);
+            particles->ux[i] - particles->ux0[i] - late * (particles->vx[i] - particles->vx0[i]);
         const double uy =
-            particles->uy[i] - particles->y0[i] - late * (particles->vy[i] - particles->vy0[i]);
+            particles->uy[i] - particles->uy0[i] - late * (particles->vy[i] - particles->vy0[i]);
         double work = particles->fx[i] * ux + particles->fy[i] * uy;
         if (sim->coupling.impedance > 0) work += mass * particles->face_work[i]; /* T-35a */
         e->received += work;

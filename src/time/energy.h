@@ -50,7 +50,7 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 
-/* After n kicks of the solid within dt from x0, y0, vx0, vy0: the work on it. */
+/* After n kicks of the solid within dt from ux0, uy0, vx0, vy0: the work on it. */
 void energy_book_solid(struct simulation *sim, double dt, int n);
 
 /* The work on a rigid body or a beam in a step: by the fluid; by motions and loads from outside,

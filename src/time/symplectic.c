@@ -67,8 +67,8 @@ static void predict_solid(struct particles *particles, double half)
 {
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
-        particles->x0[i] = particles->ux[i];
-        particles->y0[i] = particles->uy[i];
+        particles->ux0[i] = particles->ux[i];
+        particles->uy0[i] = particles->uy[i];
         particles->vx0[i] = particles->vx[i];
         particles->vy0[i] = particles->vy[i];
         particles->ux[i] += half * particles->vx[i]; /* Eq. 22 */
@@ -84,8 +84,8 @@ static void correct_solid(struct particles *particles, double dt)
     for (int64_t i = 0; i < particles->n; i++) {
         particles->vx[i] = particles->vx0[i] + dt * particles->sx[i]; /* Eq. 23 */
         particles->vy[i] = particles->vy0[i] + dt * particles->sy[i];
-        particles->ux[i] = particles->x0[i] + 0.5 * dt * (particles->vx[i] + particles->vx0[i]);
-        particles->uy[i] = particles->y0[i] + 0.5 * dt * (particles->vy[i] + particles->vy0[i]);
+        particles->ux[i] = particles->ux0[i] + 0.5 * dt * (particles->vx[i] + particles->vx0[i]);
+        particles->uy[i] = particles->uy0[i] + 0.5 * dt * (particles->vy[i] + particles->vy0[i]);
     }
 }
 
