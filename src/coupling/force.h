@@ -40,27 +40,22 @@ SPHFSI_INLINE void drag_force(const struct fluid *fluid, const struct neighbours
  * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
 SPHFSI_INLINE void fluid_force(const struct fluid *fluid, const struct neighbours *neighbours,
                                const struct receiver *s, const real *own, const double *volume,
-                               const struct vector_constants *k, effect_set effects, bool wetted,
-                               double *const force[2], double *const wet[2])
+                               const struct vector_constants *k, struct pair_set effects,
+                               bool wetted, double *const force[2], double *const wet[2])
 {
-    const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
-    const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
-    const vreal near =
-        effects & FX_REPULSION ? vspread(own + PACKED_REPULSION2 * CLUSTER) : vset(0);
+    struct surface surface = {.p = s->p};
+    if (PAIR_HAS(effects, ONE_SIDED)) {
+        surface.lift_x = vspread(own + PACKED_LIFT_X * CLUSTER);
+        surface.lift_y = vspread(own + PACKED_LIFT_Y * CLUSTER);
+    }
+    if (PAIR_HAS(effects, REPULSION)) surface.near = vspread(own + PACKED_REPULSION2 * CLUSTER);
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
     EACH_CANDIDATE(neighbours, part, code, b)
     {
-        struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
-        q.p = lane(b, PACKED_P);
-        vreal stress = law_pressure(s, &q);
-        if (effects & FX_ONE_SIDED)
-            stress =
-                stress + law_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
-        if (effects & FX_REPULSION)
-            stress = stress + law_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
-        if (effects & FX_WALL_DAMPING)
-            stress = stress + law_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.v_xi, k);
-        const vreal g = q.weight * stress;
+        const struct pair q = pair_load(s, code, b, lane(b, PACKED_VOLUME), s->line, s->filled);
+        const vreal dens = PAIR_HAS(effects, ONE_SIDED) ? lane(b, PACKED_DENS) : vset(0),
+                    g = q.weight *
+                        law_surface(lane(b, PACKED_P), dens, -q.x, -q.y, &surface, &q, k, effects);
         sum_x[part] = vfma(g, q.x, sum_x[part]);
         sum_y[part] = vfma(g, q.y, sum_y[part]);
         if (!wetted) continue;
@@ -88,7 +83,7 @@ SPHFSI_INLINE void force_on_cluster(const struct fluid *fluid, struct particles 
         s.p = vspread(own + PACKED_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
-        fluid_force(fluid, neighbours, &s, own, volume, k, effects, wetted,
+        fluid_force(fluid, neighbours, &s, own, volume, k, (struct pair_set){effects}, wetted,
                     (double *[]){&force_x[r], &force_y[r]}, (double *[]){&wet_x[r], &wet_y[r]});
         if (!(effects & FX_NO_SLIP)) continue;
         s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);

@@ -136,6 +136,27 @@ SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal v_xi,
     return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
+/* A wall or structure: pressure, lift, and the range of law_repulsion. */
+struct surface {
+    vreal p, lift_x, lift_y, near;
+};
+
+/* The stress between fluid of pressure p and a surface, Pa: the same for both. (x, y) is the place
+ * of the fluid relative to the surface, over h. */
+SPHFSI_INLINE vreal law_surface(vreal p, vreal dens, vreal x, vreal y, const struct surface *s,
+                                const struct pair *q, const struct vector_constants *k,
+                                struct pair_set effects)
+{
+    const vreal inv = vset(1) / (q->r2 + k->eta2);
+    vreal stress = p + s->p; /* Eq. 21a */
+    if (PAIR_HAS(effects, ONE_SIDED))
+        stress = stress + law_one_sided(p, dens, x, y, s->lift_x, s->lift_y, k);
+    if (PAIR_HAS(effects, REPULSION)) stress = stress + law_repulsion(s->near, inv, k);
+    if (PAIR_HAS(effects, WALL_DAMPING))
+        stress = stress + law_wall_damping(s->near, inv, q->v_xi, k);
+    return stress;
+}
+
 /* L-1: Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0
  * everywhere:
  *   rho_a dv_a/dt = sum of V_b 2 nu rho0/M x_ab . grad W/|x|^2 v_ab.

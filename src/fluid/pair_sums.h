@@ -118,17 +118,12 @@ SPHFSI_INLINE struct pair_terms pair_of_dummy(const struct receiver *a, uint32_t
     struct pair_terms e = {.pair = pair_between(a, code, b, line, filled)};
     struct pair *const q = &e.pair;
     e.rate = PAIR_HAS(effects, ONE_SIDED) ? law_one_sided_rate(q) : law_continuity(q);
-    const vreal inv = vset(1) / (q->r2 + k->eta2);
-    vreal stress = law_pressure(a, q);
+    struct surface s = {.p = q->p};
     if (PAIR_HAS(effects, ONE_SIDED))
-        stress = stress + law_one_sided(a->p, a->dens, q->x, q->y, lane(b, PACKED_LIFT_X),
-                                        lane(b, PACKED_LIFT_Y), k);
-    if (PAIR_HAS(effects, REPULSION))
-        stress = stress + law_repulsion(lane(b, PACKED_REPULSION2), inv, k);
-    if (PAIR_HAS(effects, WALL_DAMPING))
-        stress = stress + law_wall_damping(lane(b, PACKED_REPULSION2), inv, q->v_xi, k);
-    e.radial = q->weight * stress;
-    *approach = vmax(*approach, law_approach(q, inv));
+        s.lift_x = lane(b, PACKED_LIFT_X), s.lift_y = lane(b, PACKED_LIFT_Y);
+    if (PAIR_HAS(effects, REPULSION)) s.near = lane(b, PACKED_REPULSION2);
+    e.radial = q->weight * law_surface(a->p, a->dens, q->x, q->y, &s, q, k, effects);
+    *approach = vmax(*approach, law_approach(q, vset(1) / (q->r2 + k->eta2)));
     if (PAIR_HAS(effects, THIN)) law_sliding(q, lane(b, PACKED_ALONG_X), lane(b, PACKED_ALONG_Y));
     if (PAIR_HAS(effects, NO_SLIP)) {
         e.laminar = lane(b, PACKED_STICKS) * law_laminar(q, k);
