@@ -245,7 +245,7 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
 {
     char folder[] = "bench-XXXXXX", kept[PATH_BYTES] = "";
     struct snapshots snapshots = {.folder = ""};
-    struct image image = {0};
+    struct checkpoint image = {0};
     if (!mkdtemp(folder)) {
         perror(folder);
         return;

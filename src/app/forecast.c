@@ -143,12 +143,12 @@ static enum err measure_files(struct forecast *f, struct simulation *sim, struct
 {
     const struct scene_output *const out = &sim->scene->output;
     const double end = sim->scene->top.end_time * (1 - 1e-9), begin = thread_clock();
-    struct image image = {.bytes = NULL};
-    TRY(checkpoint_capture(&image, sim, "", "", d));
-    checkpoint_seal(&image);
+    struct checkpoint checkpoint = {.bytes = NULL};
+    TRY(checkpoint_capture(&checkpoint, sim, "", "", d));
+    checkpoint_seal(&checkpoint);
     f->files = (thread_clock() - begin) *
                (out->checkpoint_interval > 0 ? ceil(end / out->checkpoint_interval) : 1);
-    checkpoint_free(&image);
+    checkpoint_free(&checkpoint);
     f->files += snapshots_seconds(sim) * (1 + ceil(end / out->snapshot_interval));
     return ERR_OK;
 }

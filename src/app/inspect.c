@@ -4,9 +4,10 @@
 #include "base/csv.h"
 #include "output/checkpoint.h"
 
-static void say_image(const char *path, const struct image *m, const struct sphfsi_options *o)
+static void say_checkpoint(const char *path, const struct checkpoint *m,
+                           const struct sphfsi_options *o)
 {
-    const struct image_info info = checkpoint_info(m);
+    const struct checkpoint_info info = checkpoint_info(m);
     session_say(o, "%s: a valid checkpoint of %zu bytes, written by sphfsi %s", path, m->size,
                 info.version);
     session_say(o, "  time %.9g s, %lld steps", info.time, (long long)info.steps);
@@ -19,10 +20,10 @@ static void say_image(const char *path, const struct image *m, const struct sphf
 
 static enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
 {
-    struct image m = {0};
+    struct checkpoint m = {0};
     char file[PATH_BYTES];
     const enum err e = checkpoint_find(&m, path, file, d);
-    if (!e) say_image(file, &m, o);
+    if (!e) say_checkpoint(file, &m, o);
     checkpoint_free(&m);
     if (e == ERR_IO) d->code = ERR_INPUT;
     return d->code;

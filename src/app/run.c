@@ -26,17 +26,17 @@ struct run {
     struct row_files rows;
     struct references references;
     struct snapshots snapshots;
-    struct image image; /* a recent sound state, in case a guard stops the run */
-    char *case_text;    /* effective case */
+    struct checkpoint recent; /* of a sound state, in case a guard stops the run */
+    char *case_text;          /* effective case */
     char restarted_from[PATH_BYTES], checkpoint[PATH_BYTES];
     struct due due[OUT_COUNT];
     double written[OUT_COUNT]; /* s: time of the last one; -1: none */
     struct record record;
-    double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
+    double wall_start, wall_progress, wall_checkpoint, wall_capture, capture_cost;
 };
 
 /* Most of the run time that copies of the state in memory may cost. */
-static const double image_fraction = 0.0025;
+static const double capture_fraction = 0.0025;
 static const double progress_seconds = 0.25;
 
 /* --- output --- */
@@ -65,7 +65,7 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 {
     r->record.exit_reason = exit_reason;
     r->record.message = message;
-    r->record.snapshots_missed = r->image.snapshots_missed;
+    r->record.snapshots_missed = r->recent.snapshots_missed;
     r->record.wall_seconds = wall_clock() - r->wall_start;
     r->record.last = simulation_ledger(r->sim);
     return report_summary(r->dir.path, r->sim, &r->record, d);
@@ -74,9 +74,9 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 static enum err capture(struct run *r, struct diag *d)
 {
     const double begin = wall_clock();
-    TRY(checkpoint_capture(&r->image, r->sim, r->case_text, SPHFSI_VERSION, d));
-    r->wall_image = wall_clock();
-    r->image_cost = r->wall_image - begin;
+    TRY(checkpoint_capture(&r->recent, r->sim, r->case_text, SPHFSI_VERSION, d));
+    r->wall_capture = wall_clock();
+    r->capture_cost = r->wall_capture - begin;
     return ERR_OK;
 }
 
@@ -84,7 +84,7 @@ static enum err capture(struct run *r, struct diag *d)
 static enum err store(struct run *r, struct diag *d)
 {
     TRY(rows_sync(&r->rows, d));
-    return checkpoint_store(&r->image, r->dir.path, r->checkpoint, d);
+    return checkpoint_store(&r->recent, r->dir.path, r->checkpoint, d);
 }
 
 /* The next snapshot is tried unless snapshot_failure = stop; the file keeps the earlier ones. */
@@ -94,7 +94,7 @@ static enum err write_snapshot(struct run *r)
     const enum err e = snapshots_write(&r->snapshots, r->sim, &why);
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
         return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
-    r->image.snapshots_missed++;
+    r->recent.snapshots_missed++;
     diag_warn(&why, "the snapshot at %.6g s is missing, the run continues: %s", r->sim->state.time,
               why.text);
     return ERR_OK;
@@ -116,13 +116,13 @@ static enum err write_due(struct run *r)
     const double begin = wall_clock(), before = phases_so_far(r->sim), time = r->sim->state.time;
     for (int k = 0; k < OUT_COUNT; k++) {
         const bool due = due_time(&r->due[k]) <= time, of_end = at_end && r->written[k] < time;
-        if (k == OUT_SNAPSHOT) r->image.snapshot_of_end = of_end && !due;
+        if (k == OUT_SNAPSHOT) r->recent.snapshot_of_end = of_end && !due;
         if (!due && !of_end) continue;
         TRY(k == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r));
         r->written[k] = time;
         due_pass(&r->due[k], time);
     }
-    if (!at_end && image_fraction * (wall_clock() - r->wall_image) > r->image_cost)
+    if (!at_end && capture_fraction * (wall_clock() - r->wall_capture) > r->capture_cost)
         TRY(capture(r, r->diag));
     /* Evaluations, which the next step uses, are counted in their own phases. */
     r->sim->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->sim) - before);
@@ -283,7 +283,7 @@ static void say_next(const struct sphfsi_options *o, const struct simulation *si
 static void save_last_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
-    if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
+    if (why != ERR_INTERRUPT && r->recent.size > 0 && store(r, &second))
         diag_warn(&second, "the last valid state could not be saved: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->sim, &second))
@@ -354,7 +354,7 @@ static enum err start_restart(struct run *r)
 {
     const double time = r->sim->state.time;
     /* An uninterrupted run would not have the snapshot of an earlier end. */
-    const double kept = r->image.snapshot_of_end ? nextafter(time, -1) : time;
+    const double kept = r->recent.snapshot_of_end ? nextafter(time, -1) : time;
     /* First, so that a kill in between leaves no checkpoint that is newer than the rows. */
     TRY(checkpoint_remove_others(r->dir.path, r->sim->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->dir.path, &r->session.scene, SPHFSI_VERSION, kept,
@@ -368,10 +368,10 @@ static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
     const char *file = o->fork ? o->fork : o->restart_file;
-    if (!file) return checkpoint_newest(&r->image, r->dir.path, r->restarted_from, r->diag);
-    if (o->fork) return checkpoint_find(&r->image, file, r->restarted_from, r->diag);
+    if (!file) return checkpoint_newest(&r->recent, r->dir.path, r->restarted_from, r->diag);
+    if (o->fork) return checkpoint_find(&r->recent, file, r->restarted_from, r->diag);
     snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
-    return checkpoint_read(&r->image, file, r->diag);
+    return checkpoint_read(&r->recent, file, r->diag);
 }
 
 static enum err load_checkpoint(struct run *r)
@@ -380,7 +380,7 @@ static enum err load_checkpoint(struct run *r)
     if (missing == ERR_MEMORY) return missing;
     /* A missing or damaged checkpoint is wrong input: nothing was started. */
     if (missing) return r->diag->code = ERR_INPUT;
-    const struct image_info info = checkpoint_info(&r->image);
+    const struct checkpoint_info info = checkpoint_info(&r->recent);
     const bool fork = r->options->fork != NULL;
     const char *what = fork ? "fork" : "restart";
     TRY(case_change_check(info.case_text, r->case_text, fork, r->diag));
@@ -389,8 +389,8 @@ static enum err load_checkpoint(struct run *r)
                   "%s was written by version %s, but this is %s: results may differ "
                   "in their last digits",
                   r->restarted_from, info.version, SPHFSI_VERSION);
-    TRY(fork ? checkpoint_fork(&r->image, r->sim, r->diag)
-             : checkpoint_apply(&r->image, r->sim, r->diag));
+    TRY(fork ? checkpoint_fork(&r->recent, r->sim, r->diag)
+             : checkpoint_apply(&r->recent, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
     const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : SOLID_BATCH);
     if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
@@ -458,7 +458,7 @@ static void end_run(struct run *r)
 {
     rows_close(&r->rows);
     snapshots_close(&r->snapshots);
-    checkpoint_free(&r->image);
+    checkpoint_free(&r->recent);
     arena_free(&r->arena);
     free(r->case_text);
     run_dir_close(&r->dir);

@@ -54,7 +54,7 @@ static uint64_t checksum(const void *bytes, size_t n) { return hash_bytes(HASH_S
 
 static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
 
-static enum err reserve(struct image *m, size_t bytes, struct diag *d)
+static enum err reserve(struct checkpoint *m, size_t bytes, struct diag *d)
 {
     if (m->capacity >= bytes) return ERR_OK;
     unsigned char *memory = realloc(m->bytes, bytes);
@@ -107,7 +107,7 @@ static void add_run(struct parts *list, const char *name, enum item item, void *
         add_part(list, (struct part){name, OWNER_RUN, item, data, count, FORK_LOADS, low, high});
 }
 
-static void list_run(struct parts *list, struct image *m, struct simulation *sim)
+static void list_run(struct parts *list, struct checkpoint *m, struct simulation *sim)
 {
     struct state *const state = &sim->state;
     struct open *const open = &sim->open;
@@ -136,7 +136,7 @@ static void list_run(struct parts *list, struct image *m, struct simulation *sim
 }
 
 /* All state, in the order of the file. */
-static void list_parts(struct parts *list, struct image *m, struct simulation *sim)
+static void list_parts(struct parts *list, struct checkpoint *m, struct simulation *sim)
 {
     static const unsigned new_in_fork[KIND_COUNT] = {
         [KIND_FLUID] = G_WETTED | G_MEAN_FORCE | G_SPLIT_IMPULSE | G_SLOPE | G_FRICTION | G_MATRIX,
@@ -163,7 +163,7 @@ static void list_parts(struct parts *list, struct image *m, struct simulation *s
 /* --- capture --- */
 
 /* Appends a block to reserved memory. */
-static void put_block(struct image *m, const struct part *part)
+static void put_block(struct checkpoint *m, const struct part *part)
 {
     struct block_header head = {.owner = part->owner, .item = part->item, .count = part->count};
     snprintf(head.name, sizeof head.name, "%s", part->name);
@@ -174,7 +174,7 @@ static void put_block(struct image *m, const struct part *part)
     m->size += sizeof head + padded(bytes);
 }
 
-enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
+enum err checkpoint_capture(struct checkpoint *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d)
 {
     struct parts list;
@@ -214,7 +214,7 @@ enum err checkpoint_capture(struct image *m, struct simulation *sim, const char 
 
 /* --- blocks --- */
 
-bool checkpoint_block(const struct image *m, size_t *at, struct block *b)
+bool checkpoint_block(const struct checkpoint *m, size_t *at, struct block *b)
 {
     static const char *const others[] = {"run", "case"};
     const size_t begin = *at ? *at : sizeof(struct file_header);
@@ -243,7 +243,8 @@ bool checkpoint_block(const struct image *m, size_t *at, struct block *b)
     return true;
 }
 
-static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
+static bool find_block(const struct checkpoint *m, const char *name, unsigned owner,
+                       struct block *b)
 {
     for (size_t at = 0; checkpoint_block(m, &at, b);)
         if (b->owner_number == owner && strcmp(b->name, name) == 0) return true;
@@ -317,19 +318,19 @@ enum err checkpoint_remove_others(const char *folder, int64_t newest, struct dia
 
 /* --- store --- */
 
-void checkpoint_seal(struct image *m)
+void checkpoint_seal(struct checkpoint *m)
 {
     struct file_footer foot = {.sum = checksum(m->bytes, m->size - sizeof foot)};
     memcpy(foot.magic, footer_magic, sizeof foot.magic);
     memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
 }
 
-enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
+enum err checkpoint_store(struct checkpoint *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d)
 {
     struct atomic_file out;
     char name[NAME_TEXT];
-    const struct image_info info = checkpoint_info(m);
+    const struct checkpoint_info info = checkpoint_info(m);
     checkpoint_seal(m);
     name_file(name, info.steps);
     TRY(atomic_file_open(&out, folder, name, d));
@@ -352,7 +353,7 @@ static enum err damaged(struct diag *d, const char *path, const char *what)
     return diag_fail(d, ERR_IO, "%s: is not a valid checkpoint: %s", path, what);
 }
 
-static enum err check_header(const struct image *m, const char *path, struct diag *d)
+static enum err check_header(const struct checkpoint *m, const char *path, struct diag *d)
 {
     struct file_header head;
     if (m->size < sizeof head + sizeof(struct file_footer))
@@ -371,7 +372,7 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     return ERR_OK;
 }
 
-enum err checkpoint_check(const struct image *m, const char *name, struct diag *d)
+enum err checkpoint_check(const struct checkpoint *m, const char *name, struct diag *d)
 {
     struct file_footer foot;
     struct block b;
@@ -386,7 +387,7 @@ enum err checkpoint_check(const struct image *m, const char *name, struct diag *
     return ERR_OK;
 }
 
-enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
+enum err checkpoint_read(struct checkpoint *m, const char *path, struct diag *d)
 {
     char *bytes;
     size_t size;
@@ -397,7 +398,7 @@ enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
     return checkpoint_check(m, path, d);
 }
 
-enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_BYTES],
+enum err checkpoint_newest(struct checkpoint *m, const char *folder, char path[PATH_BYTES],
                            struct diag *d)
 {
     char name[NAME_TEXT];
@@ -418,7 +419,8 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
                      damaged_ones ? "valid " : "");
 }
 
-enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES], struct diag *d)
+enum err checkpoint_find(struct checkpoint *m, const char *at, char path[PATH_BYTES],
+                         struct diag *d)
 {
     struct stat info;
     if (stat(at, &info) == 0 && S_ISDIR(info.st_mode)) return checkpoint_newest(m, at, path, d);
@@ -426,11 +428,11 @@ enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES],
     return checkpoint_read(m, at, d);
 }
 
-struct image_info checkpoint_info(const struct image *m)
+struct checkpoint_info checkpoint_info(const struct checkpoint *m)
 {
     struct file_header head;
     memcpy(&head, m->bytes, sizeof head);
-    struct image_info info = {.time = head.time, .steps = head.steps, .case_text = ""};
+    struct checkpoint_info info = {.time = head.time, .steps = head.steps, .case_text = ""};
     memcpy(info.count, head.count, sizeof info.count);
     memcpy(info.version, head.version, sizeof info.version - 1);
     struct block b;
@@ -456,7 +458,7 @@ static double number_of(const struct block *b, int64_t k)
 /* --- apply --- */
 
 /* A checksum does not protect from a file that was made wrong. */
-static enum err load_part(const struct image *m, const struct part *part, struct diag *d)
+static enum err load_part(const struct checkpoint *m, const struct part *part, struct diag *d)
 {
     struct block b;
     if (!find_block(m, part->name, part->owner, &b))
@@ -511,9 +513,9 @@ static void set_missing(const struct particles *particles, const struct part *pa
         memset(part->data, 0, bytes);
 }
 
-enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, struct diag *d)
+enum err checkpoint_load(struct checkpoint *m, struct simulation *sim, bool fork, struct diag *d)
 {
-    const struct image_info info = checkpoint_info(m);
+    const struct checkpoint_info info = checkpoint_info(m);
     struct parts list;
     struct block b;
     for (int k = 0; k < KIND_COUNT; k++) {
@@ -557,15 +559,15 @@ enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d)
+enum err checkpoint_apply(struct checkpoint *m, struct simulation *sim, struct diag *d)
 {
     TRY(checkpoint_load(m, sim, false, d));
     if (sim->effects & FX_FLUID) TRY(checkpoint_check_cells(sim, d));
     return simulation_resume(sim, d);
 }
 
-void checkpoint_free(struct image *m)
+void checkpoint_free(struct checkpoint *m)
 {
     free(m->bytes);
-    *m = (struct image){0};
+    *m = (struct checkpoint){0};
 }

@@ -7,7 +7,7 @@
 #include "time/simulation.h"
 
 /* A checkpoint in memory. A zeroed struct is an empty one. */
-struct image {
+struct checkpoint {
     unsigned char *bytes;
     size_t size, capacity;
     /* Captured with the state: snapshots missed so far; 1: there is a snapshot of this state only
@@ -21,44 +21,45 @@ enum { CHECKPOINT_VERSION_TEXT = 48 };
 #define COUNTS 0x1p62
 #define FINITE 1e300
 
-/* Contents of the header of a valid image. */
-struct image_info {
+/* Contents of the header of a valid one. */
+struct checkpoint_info {
     double time;
     int64_t steps, count[KIND_COUNT];
     char version[CHECKPOINT_VERSION_TEXT]; /* of the program that wrote it */
-    const char *case_text;                 /* effective case; points into the image */
+    const char *case_text;                 /* effective case; points into it */
 };
 
-/* Copies the state into the image; its old contents are lost. */
-enum err checkpoint_capture(struct image *m, struct simulation *sim, const char *case_text,
+/* Copies the state into it; its old contents are lost. */
+enum err checkpoint_capture(struct checkpoint *m, struct simulation *sim, const char *case_text,
                             const char *version, struct diag *d) SPHFSI_CHECKED;
 
-/* Writes the image to the folder as step-NNNNNNNNN.ckpt, `path`; keeps the two newest. */
-enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
+/* Writes it to the folder as step-NNNNNNNNN.ckpt, `path`; keeps the two newest. */
+enum err checkpoint_store(struct checkpoint *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d) SPHFSI_CHECKED;
 
-/* Writes the checksum of an image; checkpoint_store calls it. */
-void checkpoint_seal(struct image *m);
+/* Writes the checksum; checkpoint_store calls it. */
+void checkpoint_seal(struct checkpoint *m);
 
 /* Checks all lengths and the checksum; `name` is for messages. ERR_IO: it is damaged. */
-enum err checkpoint_check(const struct image *m, const char *name, struct diag *d) SPHFSI_CHECKED;
+enum err checkpoint_check(const struct checkpoint *m, const char *name, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Reads a file and checks it. */
-enum err checkpoint_read(struct image *m, const char *path, struct diag *d) SPHFSI_CHECKED;
+enum err checkpoint_read(struct checkpoint *m, const char *path, struct diag *d) SPHFSI_CHECKED;
 
 /* Reads the newest valid checkpoint of a folder; warns of each damaged one that is newer. */
-enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_BYTES],
+enum err checkpoint_newest(struct checkpoint *m, const char *folder, char path[PATH_BYTES],
                            struct diag *d) SPHFSI_CHECKED;
 
 /* Reads a file, or the newest valid checkpoint of a folder; `path` is where it is. */
-enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES], struct diag *d)
-    SPHFSI_CHECKED;
+enum err checkpoint_find(struct checkpoint *m, const char *at, char path[PATH_BYTES],
+                         struct diag *d) SPHFSI_CHECKED;
 
-struct image_info checkpoint_info(const struct image *m);
+struct checkpoint_info checkpoint_info(const struct checkpoint *m);
 
 enum item { ITEM_DOUBLE, ITEM_INT64, ITEM_INT32, ITEM_BYTE, ITEM_COUNT };
 
-/* A block of an image, into which the pointers point. */
+/* A block of a checkpoint, into which the pointers point. */
 struct block {
     const char *owner, *name;
     unsigned owner_number;
@@ -69,25 +70,28 @@ struct block {
 };
 
 /* The block at offset *at (0: the first one), which advances. false: no whole one is there. */
-bool checkpoint_block(const struct image *m, size_t *at, struct block *b);
+bool checkpoint_block(const struct checkpoint *m, size_t *at, struct block *b);
 
-/* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in
- * the new case is loaded as at rest. Used by the two functions below. */
-enum err checkpoint_load(struct image *m, struct simulation *sim, bool fork, struct diag *d)
+/* Loads the state of a valid checkpoint, without derived fields. With `fork`, a wall that moves
+ * only in the new case is loaded as at rest. Used by the two functions below. */
+enum err checkpoint_load(struct checkpoint *m, struct simulation *sim, bool fork, struct diag *d)
     SPHFSI_CHECKED;
 
 /* Whether each particle is in or near the cell that it was loaded with. ERR_INPUT: another grid. */
 enum err checkpoint_check_cells(const struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* Loads a valid image into a new simulation of the same case, and recomputes derived fields. */
-enum err checkpoint_apply(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+/* Loads a valid checkpoint into a new simulation of the same case, and recomputes derived fields.
+ */
+enum err checkpoint_apply(struct checkpoint *m, struct simulation *sim, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* As checkpoint_apply, for a case with other physics. Particles are sorted again if the grid
  * changes; a motion continues from the position of its wall; dissipation counts from now. */
-enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
+enum err checkpoint_fork(struct checkpoint *m, struct simulation *sim, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Removes checkpoints of more than `newest` steps, all but two others, and unfinished ones. */
 enum err checkpoint_remove_others(const char *folder, int64_t newest, struct diag *d)
     SPHFSI_CHECKED;
 
-void checkpoint_free(struct image *m);
+void checkpoint_free(struct checkpoint *m);

@@ -100,7 +100,7 @@ static enum err sort_again(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-enum err checkpoint_fork(struct image *m, struct simulation *sim, struct diag *d)
+enum err checkpoint_fork(struct checkpoint *m, struct simulation *sim, struct diag *d)
 {
     struct particles *const solid = &sim->particles[KIND_SOLID];
     double *const free = sim->solid.scratch[0];

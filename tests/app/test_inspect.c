@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 static struct rig rig;
-static struct image image;
+static struct checkpoint image;
 static char said[100000], path[PATH_BYTES];
 
 static void note(void *context, enum sphfsi_message kind, const char *text)

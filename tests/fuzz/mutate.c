@@ -109,7 +109,7 @@ static void put_right(uint8_t *data, size_t size, bool counts)
     const uint64_t length = size;
     if (counts && n > 0) memcpy(data + AT_BLOCKS, &blocks, sizeof blocks);
     memcpy(data + AT_SIZE, &length, sizeof length);
-    struct image m = {.bytes = data, .size = size, .capacity = size};
+    struct checkpoint m = {.bytes = data, .size = size, .capacity = size};
     checkpoint_seal(&m);
 }
 

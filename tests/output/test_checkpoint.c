@@ -16,7 +16,7 @@
 static struct diag diag;
 static struct scene scene;
 static struct simulation first, second;
-static struct image image, other;
+static struct checkpoint image, other;
 static char path[PATH_BYTES];
 
 static void open_with(int n, const char *const *sets)
@@ -136,7 +136,7 @@ static void says_what_it_is(void)
     step(&first, 3);
     store(tiny_path("info"), &first);
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
-    const struct image_info info = checkpoint_info(&other);
+    const struct checkpoint_info info = checkpoint_info(&other);
     TEST_ASSERT_TRUE(info.time == first.state.time && info.steps == 3);
     TEST_ASSERT_TRUE(info.count[KIND_FLUID] == 100);
     TEST_ASSERT_EQUAL_STRING("the case", info.case_text);
@@ -332,14 +332,14 @@ static void version_is_kept(void)
     memset(version, 'v', sizeof version - 1);
     version[sizeof version - 1] = '\0';
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", version, &diag));
-    const struct image_info info = checkpoint_info(&image);
+    const struct checkpoint_info info = checkpoint_info(&image);
     TEST_ASSERT_EQUAL_UINT64(sizeof info.version - 1, strlen(info.version));
     TEST_ASSERT_EQUAL_STRING("the case", info.case_text);
     /* A file made wrong: the text in its header does not end. */
     size_t at = 0;
     while (memcmp(image.bytes + at, "vvv", 3) != 0) at++;
     memset(image.bytes + at, 'w', sizeof info.version);
-    const struct image_info wrong = checkpoint_info(&image);
+    const struct checkpoint_info wrong = checkpoint_info(&image);
     TEST_ASSERT_EQUAL_UINT64(sizeof wrong.version - 1, strlen(wrong.version));
 }
 
@@ -347,9 +347,9 @@ static void bytes_behind_the_end_are_found(void)
 {
     open_with(0, NULL);
     store(tiny_path("long"), &first);
-    struct image longer = {.bytes = calloc(1, image.size + 8),
-                           .size = image.size + 8,
-                           .capacity = image.size + 8};
+    struct checkpoint longer = {.bytes = calloc(1, image.size + 8),
+                                .size = image.size + 8,
+                                .capacity = image.size + 8};
     memcpy(longer.bytes, image.bytes, image.size);
     TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&longer, "x.ckpt", &diag));
     checkpoint_free(&longer);
@@ -389,7 +389,7 @@ static void an_empty_folder_has_none(void)
 /* A sound file of another case: every count is compared before anything is copied. */
 static void another_case_is_refused(void)
 {
-    struct image larger = {0};
+    struct checkpoint larger = {0};
     open_with(1, (const char *[]){"dp=5mm"});
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&larger, &first, "", "", &diag));
     tearDown();

@@ -103,7 +103,7 @@ static void mean_over_a_part_of_the_interval(void)
 
 static void mean_after_a_restart(void)
 {
-    struct image image = {0};
+    struct checkpoint image = {0};
     open_with(averaged, NULL);
     rows_follow(&means, &rig.sim);
     follow(0, 0.002);

@@ -422,7 +422,7 @@ static void test_restart(void)
     static const char text[] = BLOCKS "shape = box 0.042, 0.011, 0.082, 0.051\nvelocity = -2, 0\n";
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        struct image image = {0};
+        struct checkpoint image = {0};
         RIG_OPEN_SOLID(text, integrators[k], "all.friction=0.3");
         rig_run(&rig, 0.003);
         TEST_ASSERT_TRUE(sums().contact > 0);

@@ -243,7 +243,7 @@ static void test_hinge_and_clamp_of_one_particle(void)
 
 static void test_restart_and_threads(void)
 {
-    struct image image = {0};
+    struct checkpoint image = {0};
     RIG_OPEN_SOLID(flap, NULL);
     rig_run(&rig, 0.01);
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &rig.sim, "case", "test", &rig.diag));

@@ -203,7 +203,7 @@ static void test_restart_and_threads(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        struct image image = {0};
+        struct checkpoint image = {0};
         RIG_OPEN_SOLID(both, integrators[k]);
         rig_run(&rig, 0.01);
         TEST_ASSERT_EQUAL_INT(ERR_OK,

@@ -189,7 +189,7 @@ static void test_a_restart_keeps_the_step(void)
     timestep_recheck_solid(&rig.sim);
     rig_steps(&rig, 3, 10);
     TEST_ASSERT_TRUE(rig.sim.state.solid_slowing < 0.9);
-    struct image image = {0};
+    struct checkpoint image = {0};
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &rig.sim, "", "", &rig.diag));
     rig_steps(&rig, 20, 10);
     const uint64_t whole = simulation_hash(&rig.sim);

@@ -223,7 +223,7 @@ static struct simulation *small_simulation(void)
 int fuzz_write_checkpoint(const char *path, int steps)
 {
     struct simulation sim;
-    struct image m = {0};
+    struct checkpoint m = {0};
     struct diag d = {.code = ERR_OK};
     open_small(&sim);
     for (int k = 0; k < steps; k++)
@@ -242,7 +242,7 @@ int fuzz_write_checkpoint(const char *path, int steps)
  * reader must not fall over what the blocks say. A state that is taken must bear a step. */
 int fuzz_checkpoint(const uint8_t *data, size_t size)
 {
-    struct image m = {.bytes = malloc(size + 1), .size = size, .capacity = size};
+    struct checkpoint m = {.bytes = malloc(size + 1), .size = size, .capacity = size};
     struct diag d = {.code = ERR_OK};
     if (!m.bytes) abort();
     if (size) memcpy(m.bytes, data, size);

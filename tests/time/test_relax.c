@@ -144,7 +144,7 @@ static void test_beside_fluid_the_search_has_its_own_clock(void)
     TEST_ASSERT_EQUAL_HEX64(hash[0], hash[1]);
 }
 
-static void search(struct image *image, int steps)
+static void search(struct checkpoint *image, int steps)
 {
     rig_open(&rig, dam, NULL);
     if (image->size > 0)
@@ -157,7 +157,7 @@ static void search(struct image *image, int steps)
 static void test_a_search_can_be_continued(void)
 {
     enum { STEPS = 100 };
-    struct image image = {0};
+    struct checkpoint image = {0};
     search(&image, 2 * STEPS);
     const uint64_t whole = simulation_hash(&rig.sim);
     search(&image, STEPS);

@@ -143,7 +143,7 @@ static void open_drop(const char *integrator, const char *cfl)
 static void assert_same_after_restart(const char *integrator, int cut)
 {
     struct simulation again;
-    struct image image = {0};
+    struct checkpoint image = {0};
     open_drop(integrator, "numerics.cfl=0.05");
     rig_steps(&rig, cut, 1);
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&again, &rig.scene, &rig.diag));
