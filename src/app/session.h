@@ -10,7 +10,7 @@
 struct call {
     const struct sphfsi_options *given; /* by the calling program */
     struct sphfsi_options options;      /* the same with callbacks that restore its settings */
-    struct host host;                   /* its settings: floating point, threads */
+    struct host host;                   /* its settings: locale, threads */
     struct diag diag;
     struct diag warned; /* `more`: the warnings so far */
 };

@@ -100,7 +100,8 @@ effect_set effects_of_scene(const struct scene *scene);
     PHASE(packed, FX_FLUID, "equation of state and packed copies of the fields") \
     PHASE(slope, FX_ANTUONO, "gradients of the density")                         \
     PHASE(wall, FX_WALL | FX_COUPLING,                                           \
-          "pressure and velocity of walls and structures for the fluid")         \
+          "pressure and velocity of walls and structures for the fluid, "        \
+          "and its force on them")                                               \
     PHASE(fluid, FX_FLUID, "forces on fluid particles")                          \
     PHASE(shift, FX_SHIFTING, "particle shifting")                               \
     PHASE(solid, FX_SOLID, "deformation, stress and forces of the solid")        \

@@ -29,10 +29,10 @@ struct shape_list {
     struct shape *item;
 };
 
-/* A point of a body that stays in place, or on another section, in the case file's words. */
+/* A point of a body that stays in place or on another section, as the case gives it. */
 struct hinge_point {
     double at[2];
-    char other[SCENE_NAME]; /* [solid] or [wall]; empty: in place */
+    char other[SCENE_NAME]; /* name of the section; empty: in place */
     int line;
 };
 
