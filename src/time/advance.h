@@ -74,9 +74,9 @@ void forget_fluid(struct particles *particles);
  * neighbours. To be called after a step, while cells are valid. */
 void limit_isolated_tension(struct simulation *sim);
 
-/* --- solid_steps.c --- */
+/* --- without_fluid.c --- */
 
-/* Up to SOLID_BATCH steps of solids without fluid, or one with rigid bodies, not beyond t_limit.
+/* Up to SOLID_BATCH steps of solids, or one with rigid bodies or beams, not beyond t_limit.
  * The observer sees the state before them and those on both sides of its time. */
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 

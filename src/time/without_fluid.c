@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Steps of solids and rigid bodies without fluid. */
+ * Steps of solids, rigid bodies and beams without fluid. */
 #include "time/advance.h"
 #include "time/guards.h"
 #include "time/timestep.h"
