@@ -124,7 +124,7 @@ double fluid_front(const struct simulation *sim, int direction)
         any = max2(any, ahead);
         /* The thinnest tongue is a row of particles, of which the first has two within reach. */
         if (ahead > foremost &&
-            particles_near(sim, particles->x[i], particles->y[i], KIND_FLUID + 1) >= 3)
+            simulation_count_near(sim, particles->x[i], particles->y[i], KIND_FLUID + 1) >= 3)
             foremost = ahead;
     }
     if (particles->n == 0) return (double)NAN;

@@ -31,14 +31,18 @@ enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKE
  * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
 
+/* --- evaluation.c --- */
+
 /* Brings DERIVED fields that output uses up to date without changing the state. */
 void simulation_refresh(struct simulation *sim);
 
 /* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */
 void simulation_wall_forces(struct simulation *sim);
 
+/* --- sorting.c --- */
+
 /* Particles within the kernel's reach of a point, of the first `kinds` kinds. */
-int particles_near(const struct simulation *sim, double x, double y, int kinds);
+int simulation_count_near(const struct simulation *sim, double x, double y, int kinds);
 
 /* --- relax.c: the search for a state of rest before a run (T-78) --- */
 

@@ -111,7 +111,7 @@ bool sorting_due(struct simulation *sim)
 
 /* --- isolated particles, which the fluid does not resolve --- */
 
-int particles_near(const struct simulation *sim, double x, double y, int kinds)
+int simulation_count_near(const struct simulation *sim, double x, double y, int kinds)
 {
     const double at[] = {x, y};
     struct cell_visit v =
@@ -134,7 +134,7 @@ void limit_isolated_tension(struct simulation *sim)
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < particles->n; i++) {
         if (!(particles->dens[i] < lowest) ||
-            particles_near(sim, particles->x[i], particles->y[i], KIND_COUNT) > most)
+            simulation_count_near(sim, particles->x[i], particles->y[i], KIND_COUNT) > most)
             continue;
         particles->dens[i] = 0;
         if (particles->dens_slow) particles->dens_slow[i] = 0;

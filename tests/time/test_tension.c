@@ -50,7 +50,8 @@ static double after(int64_t i, double dens)
 static void test_who_is_a_drop(void)
 {
     const int64_t drop = at(41.5e-3, 40.5e-3);
-    TEST_ASSERT_EQUAL_INT(3, particles_near(&rig.sim, fluid->x[drop], fluid->y[drop], KIND_COUNT));
+    TEST_ASSERT_EQUAL_INT(3, simulation_count_near(&rig.sim, fluid->x[drop], fluid->y[drop],
+                                                   KIND_COUNT));
     assert_near(0, 0, after(drop, -0.2), "in a drop");
     assert_near(0, -0.09, after(drop, -0.09), "in a drop, little tension");
     assert_near(0, 0.2, after(drop, 0.2), "in a drop, pressure");
