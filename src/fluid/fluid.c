@@ -208,27 +208,6 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
     fluid->walls_placed = false;
 }
 
-/* The fluid's rates, chunk by chunk. */
-static void rates_of_fluid(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                           const struct cells *cells)
-{
-    const int32_t n_active = cells->list[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
-    double acceleration2 = 0, approach = 0;
-#pragma omp parallel for schedule(static) num_threads(fluid->threads) \
-    reduction(max                                                     \
-              : acceleration2, approach)
-    for (int32_t m = 0; m < chunks; m++) {
-        const int32_t first = fluid_chunk_start(n_active, m),
-                      end = fluid_chunk_start(n_active, m + 1);
-        if (first == end) continue;
-        struct rate_extremes largest = {acceleration2, approach};
-        fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &largest);
-        acceleration2 = largest.acceleration2;
-        approach = largest.approach;
-    }
-    fluid->extremes = (struct rate_extremes){acceleration2, approach};
-}
-
 static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                            const struct cells *cells)
 {
@@ -260,7 +239,21 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
         update_dummies(fluid, kinds, cells);
         since = end_phase(&phase_seconds[PHASE_wall], since);
     }
-    rates_of_fluid(fluid, kinds, cells);
+    const int32_t n_active = cells->list[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
+    double acceleration2 = 0, approach = 0;
+#pragma omp parallel for schedule(static) num_threads(fluid->threads) \
+    reduction(max                                                     \
+              : acceleration2, approach)
+    for (int32_t m = 0; m < chunks; m++) {
+        const int32_t first = fluid_chunk_start(n_active, m),
+                      end = fluid_chunk_start(n_active, m + 1);
+        if (first == end) continue;
+        struct rate_extremes largest = {acceleration2, approach};
+        fluid->variant->rates(fluid, &kinds[KIND_FLUID], cells, first, end, &largest);
+        acceleration2 = largest.acceleration2;
+        approach = largest.approach;
+    }
+    fluid->extremes = (struct rate_extremes){acceleration2, approach};
     end_phase(&phase_seconds[PHASE_fluid], since);
 }
 

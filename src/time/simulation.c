@@ -61,19 +61,10 @@ static void add_exchanged_impulse(struct simulation *sim)
     sim->state.exchanged += sim->state.dt * sqrt(fx * fx + fy * fy);
 }
 
-/* One step, then shifting, work, guards and sorting. */
-static enum err step_and_check(struct simulation *sim, double t_limit, struct diag *d)
+/* What follows a step: shifting, walls, work, guards and sorting. */
+static enum err after_step(struct simulation *sim, double speed2_before, struct diag *d)
 {
-    const double speed2_before = sim->extremes.speed2;
     double clock = phase_clock();
-    if (sim->effects & FX_FLUID) {
-        timestep_watch_contact(sim, sim->solid.time, 1);
-        phase_add(sim, PHASE_solid, clock);
-        sim->integrator->step(sim, t_limit);
-    } else {
-        TRY(step_without_fluid(sim, t_limit, d));
-    }
-    clock = phase_clock();
     /* Done here so that the state does not depend on output between two steps. */
     if (sim->effects & FX_SHIFTING) {
         sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->particles[KIND_FLUID], sim->state.dt);
@@ -103,18 +94,25 @@ static enum err step_and_check(struct simulation *sim, double t_limit, struct di
 
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
 {
-    const double begin = wall_clock();
+    const double begin = wall_clock(), speed2_before = sim->extremes.speed2;
     thread_use(sim->team.now);
     sim->fluid.threads = sim->team.now;
     solid_use_threads(&sim->solid, &sim->particles[KIND_SOLID], sim->team.now);
     sim->solid.time = scene_time(sim, sim->state.time);
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
-    enum err e = ERR_OK;
-    if (sim->effects & FX_FLUID) e = observe(sim, sim->state.time + timestep_longest(sim), d);
-    if (!e) e = step_and_check(sim, t_limit, d);
-    if (!e) e = observe(sim, sim->state.time, d);
+    if (sim->effects & FX_FLUID) {
+        TRY(observe(sim, sim->state.time + timestep_longest(sim), d));
+        const double clock = phase_clock();
+        timestep_watch_contact(sim, sim->solid.time, 1);
+        phase_add(sim, PHASE_solid, clock);
+        sim->integrator->step(sim, t_limit);
+    } else {
+        TRY(step_without_fluid(sim, t_limit, d));
+    }
+    TRY(after_step(sim, speed2_before, d));
+    TRY(observe(sim, sim->state.time, d));
     team_next(&sim->team, wall_clock() - begin);
-    return e;
+    return ERR_OK;
 }
 
 enum err simulation_resume(struct simulation *sim, struct diag *d)
