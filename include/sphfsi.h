@@ -97,8 +97,8 @@ struct sphfsi_requests {
 /** What to simulate and how. Zero-initialise, then set what is needed. The library does not refer
  * to it after the call. */
 struct sphfsi_options {
-    const char *case_path;   /**< case file; with case_text: the name in messages and the path that
-                                file   names are relative to, may be NULL */
+    const char *case_path;   /**< case file; with case_text: the name in messages and the path to
+                                which file names are relative; may be NULL */
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", replace values of the case */
     int n_sets;

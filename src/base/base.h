@@ -67,7 +67,7 @@ void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
 /* Adds a sentence to `more`; one that does not fit is left out. */
 void diag_more(struct diag *d, const char *text);
 
-/* Whole parts that cover a ratio; one that rounding would add is none. */
+/* The least whole number not below a ratio, where an excess of 1e-9 of it counts as rounding. */
 SPHFSI_INLINE double whole_parts(double ratio) { return ceil(ratio * (1 - 1e-9)); }
 
 /* Returns from the caller if the call fails. */

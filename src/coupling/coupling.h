@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The exchange between fluid and structure: what it knows, and its part of a step. README.md
- * tells the order. */
+ * The exchange between fluid and structure: what it knows, and its part of a step. The order
+ * of a step is in README.md. */
 #pragma once
 
 #include "fluid/exchange.h"

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The pressure at a moving surface changes by rho0 c0 times its velocity immediately; sound spreads
- * it later. As a constant force over the sub-steps this pressure acts a step late. Oscillations
- * with periods between 4/3 and 4 steps then gain energy. */
+ * The impedance of the fluid in the sub-steps of a structure, and the impulse that it has still to
+ * receive (T-35a, T-35b). The pressure at a moving surface changes by rho0 c0 times its velocity
+ * immediately; sound spreads it later. As a constant force over the sub-steps this pressure acts a
+ * step late. Oscillations with periods between 4/3 and 4 steps then gain energy. */
 #include "coupling/coupling.h"
 #include "solid/loads.h"
 

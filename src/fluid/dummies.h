@@ -119,7 +119,7 @@ SPHFSI_INLINE void pack_four(const struct dummy_cluster *d, const double in[CLUS
     put_four(d->packed, m, (four_double) * (const four_double_at *)in);
 }
 
-/* Positions, and the box around them. */
+/* Packs positions of dummies and their bounding box. */
 SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particles *particles,
                                  const struct cells *cells, int32_t cell,
                                  const struct dummy_cluster *d, const struct cell_sides *sides)
@@ -140,7 +140,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *fluid, const struct particl
     cluster_box(&fluid->packed[d->kind].boxes, d->cluster, d->packed, d->count);
 }
 
-/* What law_one_sided needs of the dummies. */
+/* Packs what law_one_sided needs of dummies. */
 SPHFSI_INLINE void pack_lift(const struct fluid *fluid, const struct particles *particles,
                              const struct dummy_cluster *d)
 {
@@ -152,7 +152,7 @@ SPHFSI_INLINE void pack_lift(const struct fluid *fluid, const struct particles *
     put_four(d->packed, PACKED_LIFT_Y, lift * (fluid->k.gravity[1] - FOUR(ay, 0)));
 }
 
-/* What law_repulsion needs of them. */
+/* Packs the range of repulsion (law_repulsion). */
 SPHFSI_INLINE void pack_repulsion(const struct fluid *fluid, const struct particles *particles,
                                   const struct dummy_cluster *d, bool thin)
 {
@@ -167,11 +167,13 @@ SPHFSI_INLINE void pack_repulsion(const struct fluid *fluid, const struct partic
     pack_four(d, repulsion2, PACKED_REPULSION2);
 }
 
-/* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
- * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
-SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *particles,
-                           const struct dummy_cluster *d, const struct neighbours *neighbours,
-                           const struct cell_sides *sides)
+/* Packs mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With
+ * one-sided pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
+SPHFSI_INLINE void pack_mirrored_velocity(const struct fluid *fluid,
+                                          const struct particles *particles,
+                                          const struct dummy_cluster *d,
+                                          const struct neighbours *neighbours,
+                                          const struct cell_sides *sides)
 {
     const bool own_image = fluid->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
@@ -183,8 +185,8 @@ SPHFSI_INLINE void no_slip(const struct fluid *fluid, const struct particles *pa
         mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        const bool held = neighbours->n && fluid->sticks[d->kind][particles->body[d->index[r]]];
-        sticks[r] = held ? 1 + own_image : 0;
+        const bool clings = neighbours->n && fluid->sticks[d->kind][particles->body[d->index[r]]];
+        sticks[r] = clings ? 1 + own_image : 0;
         if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];
@@ -225,7 +227,7 @@ SPHFSI_INLINE void pack_filled(const struct fluid *fluid, const struct dummy_clu
     }
 }
 
-/* A cluster of a cell. */
+/* The m-th cluster of dummies in a cell. */
 SPHFSI_INLINE struct dummy_cluster dummies_at(const struct fluid *fluid, const struct cells *cells,
                                               enum kind kind, int32_t cell, int32_t m)
 {
@@ -236,7 +238,7 @@ SPHFSI_INLINE struct dummy_cluster dummies_at(const struct fluid *fluid, const s
                                   cluster_packed(&fluid->packed[kind], cluster)};
 }
 
-/* Their pressure from the fluid within reach. */
+/* Pressure of dummies from the fluid within reach. */
 SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct particles *particles,
                                     const struct dummy_cluster *d,
                                     const struct neighbours *neighbours,
@@ -253,7 +255,8 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *fluid, const struct part
     *(four_double_at *)pressure = extrapolated_pressure(&fluid->k, &sum, FOUR(ax, 0), FOUR(ay, 0));
 }
 
-/* State from that pressure. Eqs. 19-21 with each dummy's volume: a solid may be finer. */
+/* Packs velocity, volume, pressure and density of dummies. Eqs. 19-21 with each dummy's volume: a
+ * solid may be finer. */
 SPHFSI_INLINE void dummies_state(const struct fluid *fluid, const struct particles *particles,
                                  const struct dummy_cluster *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER], bool thin)
@@ -304,7 +307,8 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *fluid, struct particles *
         if (fluid->effects & FX_ONE_SIDED) pack_lift(fluid, particles, &d);
         if (fluid->effects & FX_REPULSION) pack_repulsion(fluid, particles, &d, thin);
         if (thin) pack_filled(fluid, &d, &neighbours, &sides);
-        if (fluid->effects & FX_NO_SLIP) no_slip(fluid, particles, &d, &neighbours, &sides);
+        if (fluid->effects & FX_NO_SLIP)
+            pack_mirrored_velocity(fluid, particles, &d, &neighbours, &sides);
         if (neighbours.n > 0) {
             dummies_pressure(fluid, particles, &d, &neighbours, &sides, &pressure[n * CLUSTER]);
             wet[n++] = m;

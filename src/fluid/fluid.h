@@ -282,7 +282,8 @@ SPHFSI_INLINE double fluid_repels_from(const struct fluid *fluid, enum kind kind
            fluid->k.dp;
 }
 
-/* How much a place and particle i of a kind, (x, y) away, see each other (T-110). */
+/* The share of the connection from a place to particle i of a kind, (x, y) away, that no thin line
+ * blocks (T-110). */
 SPHFSI_INLINE double fluid_seen(const struct fluid *fluid, const struct cells *cells,
                                 const double from[2], enum kind kind, int64_t i, double x, double y)
 {

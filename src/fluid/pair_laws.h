@@ -106,8 +106,8 @@ SPHFSI_INLINE void law_sliding(struct pair *q, vreal tx, vreal ty)
     q->v_xi = q->v_xi - vfma(q->v, ty, q->u * tx) * vfma(q->y, ty, q->x * tx);
 }
 
-/* As in Zhang, Rezavand and Hu 2021 a fluid particle interacts with its own pressure p in a wall or
- * structure, plus gravity and acceleration in between: Eq. 19 with this particle alone. (x, y) is
+/* As in Zhang, Rezavand and Hu 2021 a dummy has the pressure p of the fluid particle itself, plus
+ * the hydrostatic difference in the frame of the dummy: Eq. 19 with this particle alone. (x, y) is
  * its position relative to the dummy over h, `lift` rho0 h (g - a) of the dummy. */
 SPHFSI_INLINE vreal law_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
                                   const struct vector_constants *k)
@@ -115,25 +115,25 @@ SPHFSI_INLINE vreal law_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal l
     return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
 }
 
-/* L-6a: beside its own pressure a fluid particle meets its mirror image, with the velocity
+/* L-6a: a fluid particle meets its own pressure and its mirror image, which has the velocity
  * 2 v_s - v_a. The work of both parts of the pressure then goes into compression. */
 SPHFSI_INLINE vreal law_one_sided_rate(const struct pair *q) { return vset(2) * law_continuity(q); }
 
 /* Used in place of the boundary force of Monaghan 1994, between fluid and dummies nearer than r0: a
- * pressure beta rho0 c_u^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2,
+ * pressure beta rho0 c_u^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; r0_2 = (r0^2 + eta^2)/h^2,
  * inv = h^2/(r^2 + eta^2). */
-SPHFSI_INLINE vreal law_repulsion(vreal near, vreal inv, const struct vector_constants *k)
+SPHFSI_INLINE vreal law_repulsion(vreal r0_2, vreal inv, const struct vector_constants *k)
 {
-    return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
+    return k->repulsion * vmax(vset(0), vfma(r0_2, inv, vset(-1)));
 }
 
 /* The repulsion of a pair that approaches at a speed u: zeta rho0 c0 u, the pressure of the
  * one-sided Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c_u^2. */
-SPHFSI_INLINE vreal law_wall_damping(vreal near, vreal inv, vreal v_xi,
+SPHFSI_INLINE vreal law_wall_damping(vreal r0_2, vreal inv, vreal v_xi,
                                      const struct vector_constants *k)
 {
     const vreal speed = -(vmin(v_xi, vset(0)) * vsqrt(inv));
-    return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));
+    return k->wall_damping * speed * vmax(vset(0), vfma(r0_2, inv, vset(-1)));
 }
 
 /* A wall or structure: pressure, lift, and the range of law_repulsion. */

@@ -118,7 +118,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *fluid, struct particles 
 
 /* Asks for the packed fields and boxes around the n-th active cell while the one before is
  * computed. Scenes larger than the second cache would wait for each of them; no stream in memory
- * predicts them. Its own fields come last in the list, and cells before have read these. */
+ * predicts them. The cell itself is last in the list; earlier cells have already loaded it. */
 SPHFSI_INLINE void prefetch_around(const struct fluid *fluid, int32_t n)
 {
     enum { LINE = 64 }; /* bytes */
@@ -154,8 +154,8 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *fluid, struct particles *pa
         if (around[kind])
             gather_around_cell(neighbour_scratch, fluid, cells, (enum kind)kind, cell);
     }
-    for (int32_t m = clusters_in(list, cell) - 1; m >= 0;
-         m--) { /* in the order of the clusters ahead */
+    /* In the order of the clusters ahead. */
+    for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) {
         const int32_t cluster = list->cluster[cell] + m;
         struct neighbours neighbours[KIND_COUNT];
         neighbours[KIND_FLUID] = gather_clusters_ahead(neighbour_scratch, fluid);

@@ -66,7 +66,7 @@ static struct extremes extremes_of(const struct particles *particles, int64_t fr
     return e;
 }
 
-/* With their extremes, while the blocks are in the caches. */
+/* Updates the fluid and finds its extremes block by block, while a block is in the cache. */
 void advance_fluid(struct simulation *sim, advance_range *range, const void *parameters)
 {
     enum { BLOCK = 256 }; /* particles whose fields stay in the first-level cache */

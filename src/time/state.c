@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Names of the bounds of the time step, and times: in messages and of the phases of a step. */
+ * The table of bounds, the time in messages, the observer, and the clocks of phases. */
 #include "time/state.h"
 
 const struct bound_info bound_table[BOUND_COUNT] = {
@@ -48,7 +48,7 @@ double phases_so_far(const struct simulation *sim)
 
 double phase_add(struct simulation *sim, enum phase phase, double since)
 {
-    if (!phase_runs(phase, sim->effects)) return since; /* what there is goes to the next one */
+    if (!phase_runs(phase, sim->effects)) return since; /* its time counts for the next phase */
     const double now = phase_clock();
     sim->phase_seconds[phase] += now - since;
     if (phase == PHASE_solid && sim->effects & FX_CONTACT) {

@@ -140,7 +140,7 @@ double timestep_bound(struct simulation *sim)
 double timestep_choose(struct simulation *sim, double t_limit, bool *hits)
 {
     const double dt = timestep_bound(sim);
-    /* A step that rounding of the times leaves before the limit is none. */
+    /* No extra step for a remainder that is only rounding. */
     const double left = t_limit - sim->state.time, steps = whole_parts(left / dt);
     *hits = steps <= 1;
     return steps <= 2 ? left / max2(1, steps) : dt;
