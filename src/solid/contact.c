@@ -213,16 +213,17 @@ static void add_rows(struct contact *contact, const struct particles *particles,
                         s * moves_freely(contact, particles, closest->b);
     const double stiffness = own * both * elastic_stiffness(q.stiffness, closest->min_reach, left);
     const double damping = own * both * q.damping;
-    contact_add_row(contact, particles, pair->point, 1, stiffness, damping);
-    contact_add_row(contact, particles, e->a, 1 - s, stiffness, damping);
-    contact_add_row(contact, particles, e->b, s, stiffness, damping);
+    contact_add_bound(contact, particles, pair->point, 1, stiffness, damping);
+    contact_add_bound(contact, particles, e->a, 1 - s, stiffness, damping);
+    contact_add_bound(contact, particles, e->b, s, stiffness, damping);
     if (!contact->rigid) return;
     const struct contact_point *const p = closest->point;
     const double r = closest->distance;
     const double n[2] = {closest->offset[0] / r, closest->offset[1] / r};
     const double alone = own * elastic_stiffness(q.stiffness, closest->min_reach, left);
-    contact_add_body_row(contact, p->body, p->x, r > 0 ? n : NULL, alone, own * q.damping);
-    contact_add_body_row(contact, closest->a->body, p->x, r > 0 ? n : NULL, alone, own * q.damping);
+    contact_add_body_bound(contact, p->body, p->x, r > 0 ? n : NULL, alone, own * q.damping);
+    contact_add_body_bound(contact, closest->a->body, p->x, r > 0 ? n : NULL, alone,
+                           own * q.damping);
 }
 
 static void find_depth(struct contact *contact, const struct contact_closest *closest,
@@ -292,25 +293,26 @@ static void watch_pairs(struct contact *contact, const struct particles *particl
 {
     for (int64_t k = 0; k < contact->n_solid_points; k++) {
         struct contact_point *const p = &contact->point[k];
-        p->row = p->row_damping = p->wall_row = p->wall_damping = 0;
+        p->omega2_bound = p->damping_bound = p->wall_omega2_bound = p->wall_damping_bound = 0;
     }
-    for (int k = 0; k < contact->n_walls; k++) contact->body_row[k] = contact->body_damping[k] = 0;
+    for (int k = 0; k < contact->n_walls; k++)
+        contact->body_omega2[k] = contact->body_damping[k] = 0;
     for (int64_t first = 0, end; first < contact->n_pairs; first = end) {
         for (end = first;
              end < contact->n_pairs && contact->pair[end].point == contact->pair[first].point;
              end++)
             watch_pair(contact, particles, &contact->pair[end], longest, span);
         watch_side(contact, first, end);
-        if (contact->friction) contact_friction_rows(contact, particles, first, end);
+        if (contact->friction) contact_friction_bounds(contact, particles, first, end);
     }
     for (int64_t k = 0; k < contact->n_solid_points; k++) {
         const struct contact_point *const p = &contact->point[k];
-        contact->omega2 = max2(contact->omega2, p->row + p->wall_row);
-        contact->damping = max2(contact->damping, p->row_damping + p->wall_damping);
+        contact->omega2 = max2(contact->omega2, p->omega2_bound + p->wall_omega2_bound);
+        contact->damping = max2(contact->damping, p->damping_bound + p->wall_damping_bound);
     }
     double omega2 = 0, damping = 0;
     for (int k = 0; k < contact->n_walls; k++) {
-        omega2 = max2(omega2, contact->body_row[k]);
+        omega2 = max2(omega2, contact->body_omega2[k]);
         damping = max2(damping, contact->body_damping[k]);
     }
     contact->omega2 += omega2;
@@ -454,7 +456,7 @@ static enum err bodies_create(struct contact *contact, struct arena *a, struct d
     TRY(arena_array(a, &contact->law, n * n, "contact", d));
     TRY(arena_array(a, &contact->group, n, "contact", d));
     TRY(arena_array(a, &contact->motion, contact->n_walls, "contact", d));
-    TRY(arena_array(a, &contact->body_row, contact->n_walls, "contact", d));
+    TRY(arena_array(a, &contact->body_omega2, contact->n_walls, "contact", d));
     TRY(arena_array(a, &contact->body_damping, contact->n_walls, "contact", d));
     for (int k = 0; k < contact->n_solids; k++) contact->group[k] = contact->solid->body[k].bond;
     for (int k = 0; k < contact->n_walls; k++)

@@ -20,12 +20,12 @@ struct contact_law {
 };
 
 /* What a surface presses a point of a solid with. */
-struct normal_load {
+struct pressing_surface {
     int32_t group, edge; /* the nearest edge of that surface */
     double distance, force[2];
 };
 /* More surfaces than these at one point have no friction. */
-enum { MAX_LOADS = 4 };
+enum { MOST_SURFACES = 4 };
 
 /* A particle at a surface. */
 struct contact_point {
@@ -42,10 +42,10 @@ struct contact_point {
     int32_t initial_group;   /* and that group; -1: none */
     bool near_clamp;         /* within the kernel of a clamped particle of its group */
     int16_t near_hinge;      /* the hinge, from 1, within whose kernel it begins; 0: none */
-    double row, row_damping; /* sums of the bound of the step, T-62a */
-    double wall_row, wall_damping; /* what friction with walls adds to them */
-    int n_loads;                   /* on a solid's point, for friction */
-    struct normal_load load[MAX_LOADS];
+    double omega2_bound, damping_bound;           /* sums of the bound of the step, T-62a */
+    double wall_omega2_bound, wall_damping_bound; /* what friction with walls adds to them */
+    int n_surfaces;                               /* on a solid's point, for friction */
+    struct pressing_surface surface[MOST_SURFACES];
 };
 
 /* A line between two neighbouring points. A lone particle is a line from itself to itself. */
@@ -94,12 +94,12 @@ struct contact {
     struct contact_pair *pair;
     struct motion_state *motion; /* [n_walls] at a time, s */
     double time;
-    struct rigid *rigid;             /* those of the walls that are rigid bodies; NULL: none */
-    double *body_row, *body_damping; /* [n_walls] of a rigid body: its part in the bound, T-62a */
-    int stale;                       /* some point has moved by half of the margin */
-    bool list_full;                  /* no memory for a longer list */
-    double power;                    /* of walls that a [motion] moves, from contact_forces, W/m */
-    bool touched;                    /* bodies, or one and a driven wall; the account resets it */
+    struct rigid *rigid;                /* those of the walls that are rigid bodies; NULL: none */
+    double *body_omega2, *body_damping; /* [n_walls] of a rigid body: part of the bound, T-62a */
+    int stale;                          /* some point has moved by half of the margin */
+    bool list_full;                     /* no memory for a longer list */
+    double power; /* of walls that a [motion] moves, from contact_forces, W/m */
+    bool touched; /* bodies, or one and a driven wall; the account resets it */
     /* What the next step must respect, from contact_watch. */
     bool near;                  /* some surfaces may touch */
     double omega2, damping;     /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
@@ -199,14 +199,14 @@ void contact_add_force(struct contact *contact, struct particles *particles, int
 double contact_inv_mass(const struct contact *contact, const struct particles *particles,
                         const struct contact_point *point);
 
-/* A part of the rows of T-62a. */
-void contact_add_row(struct contact *contact, const struct particles *particles, int32_t point,
-                     double weight, double stiffness, double damping);
+/* A part of the sums of T-62a. */
+void contact_add_bound(struct contact *contact, const struct particles *particles, int32_t point,
+                       double weight, double stiffness, double damping);
 
-/* The part of a force between a solid and a place x in the row of a wall's body: of a rigid one. n:
- * the direction of the force; NULL: any. */
-void contact_add_body_row(struct contact *contact, int body, const double x[2], const double *n,
-                          double stiffness, double damping);
+/* The part of a force between a solid and a place x in the sums of a wall's body, if it is rigid.
+ * n: the direction of the force; NULL: any. */
+void contact_add_body_bound(struct contact *contact, int body, const double x[2], const double *n,
+                            double stiffness, double damping);
 
 /* Memory for a list of so many pairs; keeps those listed. */
 enum err contact_list_resize(struct contact *contact, int64_t max_pairs, struct diag *d)
@@ -227,5 +227,5 @@ double contact_friction(struct contact *contact, const struct particles *particl
                         struct particles *move);
 
 /* The part in the step bound of the pairs from first to before end, of one point. */
-void contact_friction_rows(struct contact *contact, const struct particles *particles,
-                           int64_t first, int64_t end);
+void contact_friction_bounds(struct contact *contact, const struct particles *particles,
+                             int64_t first, int64_t end);

@@ -5,43 +5,45 @@
 
 /* --- what presses a point --- */
 
-/* The load of an edge's surface among the n on a point, with the nearest edge; NULL: too many. */
-static struct normal_load *load_of_surface(const struct contact *contact, int32_t edge,
-                                           double distance, struct normal_load load[MAX_LOADS],
-                                           int *n)
+/* The surface of an edge among the n that press a point, with the nearest edge; NULL: too many. */
+static struct pressing_surface *surface_of_edge(const struct contact *contact, int32_t edge,
+                                                double distance,
+                                                struct pressing_surface surface[MOST_SURFACES],
+                                                int *n)
 {
     const int32_t group = contact->point[contact->edge[edge].a].group;
     int k = 0;
-    while (k < *n && load[k].group != group) k++;
-    if (k == MAX_LOADS) return NULL;
-    if (k == *n) load[(*n)++] = (struct normal_load){group, edge, distance, {0}};
-    if (distance < load[k].distance) load[k].edge = edge, load[k].distance = distance;
-    return &load[k];
+    while (k < *n && surface[k].group != group) k++;
+    if (k == MOST_SURFACES) return NULL;
+    if (k == *n) surface[(*n)++] = (struct pressing_surface){group, edge, distance, {0}};
+    if (distance < surface[k].distance) surface[k].edge = edge, surface[k].distance = distance;
+    return &surface[k];
 }
 
-static void add_load(const struct contact *contact, int32_t point, int32_t edge, double distance,
-                     const double force[2])
+static void add_surface_force(const struct contact *contact, int32_t point, int32_t edge,
+                              double distance, const double force[2])
 {
     struct contact_point *const p = &contact->point[point];
-    struct normal_load *const load = load_of_surface(contact, edge, distance, p->load, &p->n_loads);
-    for (int c = 0; c < 2 && load; c++) load->force[c] += force[c];
+    struct pressing_surface *const surface =
+        surface_of_edge(contact, edge, distance, p->surface, &p->n_surfaces);
+    for (int c = 0; c < 2 && surface; c++) surface->force[c] += force[c];
 }
 
 /* A wall is rigid and its points have no state: what they press is on the solid's points. */
-static void collect_loads(struct contact *contact)
+static void collect_surface_forces(struct contact *contact)
 {
-    for (int64_t k = 0; k < contact->n_solid_points; k++) contact->point[k].n_loads = 0;
+    for (int64_t k = 0; k < contact->n_solid_points; k++) contact->point[k].n_surfaces = 0;
     for (int64_t k = contact->n_pairs - 1; k >= 0; k--) {
         const struct contact_pair *const pair = &contact->pair[k];
         if (!pair->touches) continue;
         if (pair->point < contact->n_solid_points) {
-            add_load(contact, pair->point, pair->edge, pair->distance, pair->force[0]);
+            add_surface_force(contact, pair->point, pair->edge, pair->distance, pair->force[0]);
             continue;
         }
         const int32_t edge = contact->point[pair->point].edge;
         const struct contact_edge *const e = &contact->edge[pair->edge];
-        add_load(contact, e->b, edge, (double)INFINITY, pair->force[2]);
-        add_load(contact, e->a, edge, (double)INFINITY, pair->force[1]);
+        add_surface_force(contact, e->b, edge, (double)INFINITY, pair->force[2]);
+        add_surface_force(contact, e->a, edge, (double)INFINITY, pair->force[1]);
     }
 }
 
@@ -111,7 +113,7 @@ static int32_t spring_edge(const struct contact *contact, const struct particles
 /* normal_force = 0: there is no friction. */
 static struct friction_spring spring_at(const struct contact *contact,
                                         const struct particles *particles, int32_t point,
-                                        const struct normal_load *on)
+                                        const struct pressing_surface *on)
 {
     const int32_t edge = spring_edge(contact, particles, point, on->group),
                   i = contact->point[point].index;
@@ -161,11 +163,11 @@ double contact_friction(struct contact *contact, const struct particles *particl
                         struct particles *move)
 {
     double sum = 0;
-    collect_loads(contact);
+    collect_surface_forces(contact);
     for (int32_t point = 0; point < contact->n_solid_points; point++) {
         const struct contact_point *const p = &contact->point[point];
-        for (int k = 0; k < p->n_loads; k++) {
-            const struct friction_spring h = spring_at(contact, particles, point, &p->load[k]);
+        for (int k = 0; k < p->n_surfaces; k++) {
+            const struct friction_spring h = spring_at(contact, particles, point, &p->surface[k]);
             if (move && h.normal_force > 0)
                 add_friction(contact, move, point, &h);
             else if (!move && h.force > 0)
@@ -178,12 +180,12 @@ double contact_friction(struct contact *contact, const struct particles *particl
 /* --- after a step --- */
 
 /* A point keeps to a surface until it leaves it; then it takes the nearest. NULL: none. */
-static const struct normal_load *load_with_spring(const struct contact *contact,
-                                                  const struct particles *particles, int32_t point)
+static const struct pressing_surface *
+surface_with_spring(const struct contact *contact, const struct particles *particles, int32_t point)
 {
     const struct contact_point *const p = &contact->point[point];
-    const struct normal_load *best = NULL;
-    for (const struct normal_load *on = p->load; on < p->load + p->n_loads; on++) {
+    const struct pressing_surface *best = NULL;
+    for (const struct pressing_surface *on = p->surface; on < p->surface + p->n_surfaces; on++) {
         if (!(spring_at(contact, particles, point, on).normal_force > 0)) continue;
         if (spring_edge(contact, particles, point, on->group) >= 0) return on;
         if (!best || on->distance < best->distance) best = on;
@@ -195,7 +197,7 @@ void contact_slide(struct contact *contact, struct particles *particles)
 {
     if (!contact->friction) return;
     for (int32_t point = 0; point < contact->n_solid_points; point++) {
-        const struct normal_load *const on = load_with_spring(contact, particles, point);
+        const struct pressing_surface *const on = surface_with_spring(contact, particles, point);
         const int32_t i = contact->point[point].index;
         if (!on) {
             particles->stick_edge[i] = 0;
@@ -216,8 +218,8 @@ void contact_slide(struct contact *contact, struct particles *particles)
 /* --- before a step --- */
 
 /* The rows of T-62a of a point that holds to a solid: the weights are those of add_friction(). */
-static void add_spring_rows(struct contact *contact, const struct particles *particles,
-                            int32_t point, const struct friction_spring *h)
+static void add_spring_bounds(struct contact *contact, const struct particles *particles,
+                              int32_t point, const struct friction_spring *h)
 {
     const int32_t a = contact->edge[h->edge].a, b = contact->edge[h->edge].b;
     double at[2];
@@ -227,9 +229,9 @@ static void add_spring_rows(struct contact *contact, const struct particles *par
     const double all = particles->free[contact->point[point].index] +
                        to_a * particles->free[contact->point[a].index] +
                        to_b * particles->free[contact->point[b].index];
-    contact_add_row(contact, particles, point, all, h->stiffness, h->damping);
-    contact_add_row(contact, particles, a, to_a * all, h->stiffness, h->damping);
-    contact_add_row(contact, particles, b, to_b * all, h->stiffness, h->damping);
+    contact_add_bound(contact, particles, point, all, h->stiffness, h->damping);
+    contact_add_bound(contact, particles, a, to_a * all, h->stiffness, h->damping);
+    contact_add_bound(contact, particles, b, to_b * all, h->stiffness, h->damping);
 }
 
 /* A point that holds to walls does so with one spring, whichever pairs press it. */
@@ -240,17 +242,17 @@ static void add_wall_spring(struct contact *contact, const struct particles *par
     struct contact_point *const p = &contact->point[point];
     const double per_mass = contact_inv_mass(contact, particles, p);
     if (!(h.friction > 0)) return;
-    contact_add_body_row(contact, contact->point[contact->edge[edge].a].body, p->x, NULL,
-                         h.stiffness, h.damping);
-    p->wall_row = max2(p->wall_row, h.stiffness * per_mass);
-    p->wall_damping = max2(p->wall_damping, h.damping * per_mass);
+    contact_add_body_bound(contact, contact->point[contact->edge[edge].a].body, p->x, NULL,
+                           h.stiffness, h.damping);
+    p->wall_omega2_bound = max2(p->wall_omega2_bound, h.stiffness * per_mass);
+    p->wall_damping_bound = max2(p->wall_damping_bound, h.damping * per_mass);
 }
 
-void contact_friction_rows(struct contact *contact, const struct particles *particles,
-                           int64_t first, int64_t end)
+void contact_friction_bounds(struct contact *contact, const struct particles *particles,
+                             int64_t first, int64_t end)
 {
     const int32_t point = contact->pair[first].point;
-    struct normal_load on[MAX_LOADS];
+    struct pressing_surface on[MOST_SURFACES];
     int n = 0;
     for (int64_t k = first; k < end; k++) {
         const struct contact_pair *const pair = &contact->pair[k];
@@ -262,11 +264,11 @@ void contact_friction_rows(struct contact *contact, const struct particles *part
         } else if (e->a >= contact->n_solid_points) {
             add_wall_spring(contact, particles, point, pair->edge);
         } else {
-            load_of_surface(contact, pair->edge, pair->distance, on, &n);
+            surface_of_edge(contact, pair->edge, pair->distance, on, &n);
         }
     }
     for (int k = 0; k < n; k++) {
         const struct friction_spring h = spring_constants(contact, point, on[k].edge);
-        if (h.friction > 0) add_spring_rows(contact, particles, point, &h);
+        if (h.friction > 0) add_spring_bounds(contact, particles, point, &h);
     }
 }

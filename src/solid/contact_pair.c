@@ -137,17 +137,17 @@ void contact_add_force(struct contact *contact, struct particles *particles, int
     particles->sy[p->index] += f[1] * per_mass;
 }
 
-void contact_add_row(struct contact *contact, const struct particles *particles, int32_t point,
-                     double weight, double stiffness, double damping)
+void contact_add_bound(struct contact *contact, const struct particles *particles, int32_t point,
+                       double weight, double stiffness, double damping)
 {
     struct contact_point *const p = &contact->point[point];
     const double per_mass = contact_inv_mass(contact, particles, p);
-    p->row += weight * stiffness * per_mass;
-    p->row_damping += weight * damping * per_mass;
+    p->omega2_bound += weight * stiffness * per_mass;
+    p->damping_bound += weight * damping * per_mass;
 }
 
-void contact_add_body_row(struct contact *contact, int body, const double x[2], const double *n,
-                          double stiffness, double damping)
+void contact_add_body_bound(struct contact *contact, int body, const double x[2], const double *n,
+                            double stiffness, double damping)
 {
     const int k = contact_rigid_of(contact, body), wall = body - contact->n_solids;
     if (k < 0) return;
@@ -156,7 +156,7 @@ void contact_add_body_row(struct contact *contact, int body, const double x[2], 
     const double arm[2] = {x[0] - m->centre[0] - m->d[0], x[1] - m->centre[1] - m->d[1]};
     const double arm2 = n ? square(arm[0] * n[1] - arm[1] * n[0]) : square(arm[0]) + square(arm[1]);
     const double per_mass = 1 / mass[0] + arm2 / mass[2];
-    contact->body_row[wall] += stiffness * per_mass;
+    contact->body_omega2[wall] += stiffness * per_mass;
     contact->body_damping[wall] += damping * per_mass;
 }
 
