@@ -4,7 +4,7 @@
 
 enum { BLOCK = 1024 }; /* particles whose power is one sum */
 
-enum err damping_create(struct damping *damping, struct arena *a, const struct scene *scene,
+enum err damping_create(struct damping_zones *damping, struct arena *a, const struct scene *scene,
                         int64_t particles, struct diag *d)
 {
     damping->n = scene->n_damping;
@@ -24,7 +24,7 @@ static double rate_at(const struct scene_damping *zone, double x, double y)
     return rate;
 }
 
-void damping_add(struct damping *damping, const struct scene *scene,
+void damping_add(struct damping_zones *damping, const struct scene *scene,
                  const struct fluid_constants *k, struct particles *particles)
 {
     for (int z = 0; z < damping->n; z++) {
@@ -47,12 +47,12 @@ void damping_add(struct damping *damping, const struct scene *scene,
     }
 }
 
-void damping_book(struct damping *damping, double dt)
+void damping_book(struct damping_zones *damping, double dt)
 {
     for (int z = 0; z < damping->n; z++) damping->taken[z] += dt * damping->power[z];
 }
 
-double damping_energy(const struct damping *damping)
+double damping_energy(const struct damping_zones *damping)
 {
     double sum = 0;
     for (int z = 0; z < damping->n; z++) sum += damping->taken[z];

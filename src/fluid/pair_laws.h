@@ -76,16 +76,17 @@ SPHFSI_INLINE vreal law_pressure(const struct receiver *a, const struct pair *q)
 /* -2 alpha c0 rho0/((|xi|^2 + eta^2)(rho0/rho_a + rho0/rho_b)), kg/(m^2 s). `both` is the sum of
  * the densities there over -2 alpha c0 rho0. The result times `both` is 1/(|xi|^2 + eta^2), which
  * other laws use: one division serves all. */
-SPHFSI_INLINE vreal pair_damping(const struct pair *q, vreal both, const struct vector_constants *k)
+SPHFSI_INLINE vreal viscosity_factor(const struct pair *q, vreal both,
+                                     const struct vector_constants *k)
 {
     return vset(1) / ((q->r2 + k->eta2) * both);
 }
 
 /* Eq. 7: rho_a rho_b Pi_ab, Pa, added to the pair's stress; acts on approaching pairs only. With
  * rho_a rho_b/(rho_a + rho_b) = rho0/(rho0/rho_a + rho0/rho_b). */
-SPHFSI_INLINE vreal law_viscosity(const struct pair *q, vreal damping, vreal stress)
+SPHFSI_INLINE vreal law_viscosity(const struct pair *q, vreal factor, vreal stress)
 {
-    return vfma(vmin(q->v_xi, vset(0)), damping, stress);
+    return vfma(vmin(q->v_xi, vset(0)), factor, stress);
 }
 
 /* Monaghan 2000, Sec. 3: tension repels by epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */

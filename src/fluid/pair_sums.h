@@ -46,9 +46,9 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
     vreal stress = law_pressure(a, q), inv;
     if (PAIR_HAS(effects, VISCOSITY)) {
         const vreal both = a->specific + lane(b, PACKED_SPECIFIC);
-        const vreal damping = pair_damping(q, both, k);
-        inv = damping * both;
-        stress = law_viscosity(q, damping, stress);
+        const vreal factor = viscosity_factor(q, both, k);
+        inv = factor * both;
+        stress = law_viscosity(q, factor, stress);
     } else {
         inv = vset(1) / (q->r2 + k->eta2);
     }

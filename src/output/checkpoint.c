@@ -125,7 +125,7 @@ static void list_run(struct parts *list, struct checkpoint *m, struct simulation
     add_run(list, "open_sum", ITEM_DOUBLE, open->sum, n_open * OPEN_SUMS, -INFINITY, FINITE);
     add_run(list, "open_count", ITEM_INT64, open->count, n_open * OPEN_COUNTS, 0, COUNTS);
     add_run(list, "open_next_id", ITEM_INT64, &open->next_id, n_open > 0, 0, COUNTS);
-    add_run(list, "zones", ITEM_DOUBLE, sim->damping.taken, (size_t)sim->damping.n, 0, FINITE);
+    add_run(list, "zones", ITEM_DOUBLE, sim->zones.taken, (size_t)sim->zones.n, 0, FINITE);
     add_run(list, "rigid", ITEM_DOUBLE, sim->rigid.state, (size_t)sim->rigid.n * RIGID_NUMBERS,
             -FINITE, FINITE);
     add_run(list, "beams", ITEM_DOUBLE, sim->beams.state, (size_t)sim->beams.n_nodes * BEAM_NUMBERS,

@@ -177,7 +177,7 @@ static void stress_sweeps(const struct pack_range *own, bool displaced)
 #pragma omp barrier
         sweep(own, solid->sweeps->pairs);
     }
-    if (solid->kelvin_voigt) sweep(own, solid->sweeps->damping);
+    if (solid->kelvin_voigt) sweep(own, solid->sweeps->kelvin_voigt);
     if (solid->implicit_stress) sweep(own, solid->implicit_stress);
 #pragma omp barrier
 }

@@ -96,7 +96,7 @@ struct solid_sweeps {
     solid_sweep *pack_motion;  /* packs displacement and velocity */
     solid_sweep *stress;       /* gradient, and stress except of variational bodies */
     solid_sweep *pairs;        /* forces of pairs, and stress of variational bodies */
-    solid_sweep *damping;      /* adds the Kelvin-Voigt stress */
+    solid_sweep *kelvin_voigt; /* adds the Kelvin-Voigt stress */
     solid_sweep *forces;       /* acceleration by neighbours, to sx, sy */
     solid_sweep *write_stress; /* gradient and stress, to the particles */
     /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */

@@ -170,7 +170,7 @@ struct ledger simulation_ledger(struct simulation *sim)
     row.dissipated = state->energy_start + state->wall_work + state->periodic_energy +
                      sim->solid.work + open_energy(&sim->open) - state->lost_energy - row.kinetic -
                      row.internal - row.elastic - row.hourglass - row.contact - row.potential;
-    row.damped = damping_energy(&sim->damping);
+    row.damped = damping_energy(&sim->zones);
     for (int64_t i = 0; i < fluid->n; i++)
         row.dens_extreme = max2(row.dens_extreme, fabs(fluid->dens[i]));
     return row;
@@ -352,7 +352,7 @@ void energy_after_step(struct simulation *sim)
         *work += sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->particles[KIND_WALL]);
     *work += sim->solid.work;
     sim->solid.work = 0;
-    damping_book(&sim->damping, sim->state.dt);
+    damping_book(&sim->zones, sim->state.dt);
     if (sim->gravity_varies) *work += gravity_work(sim);
     if (!keeps_account(sim)) return;
     sim->state.energy.open = open_energy(&sim->open);

@@ -78,7 +78,7 @@ void evaluate_rates(struct simulation *sim, double time)
     phase_add(sim, PHASE_wall, clock);
     if (sim->effects & FX_OPEN) open_hold(&sim->open);
     if (sim->effects & FX_DAMPING_ZONE)
-        damping_add(&sim->damping, sim->scene, &sim->fluid.k, &sim->particles[KIND_FLUID]);
+        damping_add(&sim->zones, sim->scene, &sim->fluid.k, &sim->particles[KIND_FLUID]);
     if (sim->external[KIND_FLUID].accelerate) add_external(sim, time);
     if (sim->external[KIND_SOLID].accelerate) find_external(sim, KIND_SOLID, time);
 }

@@ -138,8 +138,7 @@ static enum err create_fluid(struct simulation *sim, struct diag *d)
     TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->particles, &sim->cells, d));
     start_fluid(sim);
     if (!(sim->effects & FX_DAMPING_ZONE)) return ERR_OK;
-    return damping_create(&sim->damping, &sim->arena, scene, sim->particles[KIND_FLUID].capacity,
-                          d);
+    return damping_create(&sim->zones, &sim->arena, scene, sim->particles[KIND_FLUID].capacity, d);
 }
 
 static enum err create_bare_solids(struct simulation *sim, struct diag *d)

@@ -95,7 +95,7 @@ struct simulation {
     struct wall_motion wall_motion; /* walls that move; unused where none does */
     struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
     struct beams beams;             /* unused without any */
-    struct damping damping;         /* zones of damping; unused without any */
+    struct damping_zones zones;     /* zones of damping; unused without any */
     struct open open;               /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */
