@@ -233,15 +233,14 @@ SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal li
         const vreal from = x * from_y - y * from_x, to = x * to_y - y * to_x,
                     here = from_x * to_y - from_y * to_x, there = here - from + to;
         const vmask crosses = CROSSES(here, there, from, to);
-        vreal open = vset(0);
-        /* T-110b, over the kernel's reach */
+        vreal past_tip = vset(0); /* T-110b, over the kernel's reach */
         if (!opaque && (p->tip[0] < 2 || p->tip[1] - p->length < 2)) {
             const vreal along = vset(p->length) * from / (from - to);
             const vreal from_tip = vmin(vset(p->tip[0]) + along, vset(p->tip[1]) - along);
-            open = vmax(vset(0), vset(1) - vset((real)0.5) * from_tip);
+            past_tip = vmax(vset(0), vset(1) - vset((real)0.5) * from_tip);
         }
         odd ^= crosses;
-        passes = vpick(crosses, vmin(passes, open), passes);
+        passes = vpick(crosses, vmin(passes, past_tip), passes);
         if (p->line == 0) continue;
         passes = vpick(odd, passes, vset(1));
         const vreal behind = vpick(odd, vset(1) - filled * passes, vset(0));

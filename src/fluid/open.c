@@ -7,7 +7,7 @@
  * in front of it is relabelled without delay. Smaller oscillations create no copies. */
 #define BAND 0.5
 
-int64_t open_places(const struct scene *scene)
+int64_t open_capacity(const struct scene *scene)
 {
     double places = 1;
     int64_t n = scene->points[KIND_FLUID].n;
@@ -17,8 +17,8 @@ int64_t open_places(const struct scene *scene)
     return n + n / 8 + (int64_t)min2(1e9, max2(0, places - taken));
 }
 
-enum err open_create(struct open *o, struct arena *a, const struct scene *scene, int64_t next_id,
-                     struct diag *d)
+enum err open_create(struct open_boundaries *o, struct arena *a, const struct scene *scene,
+                     int64_t next_id, struct diag *d)
 {
     static const char what[] = "open boundaries";
     const size_t n = (size_t)scene_open_count(scene);
@@ -52,12 +52,12 @@ struct place {
 };
 
 /* Width of a strip, m. */
-static double width_of(const struct open *o, const struct scene_open *b)
+static double width_of(const struct open_boundaries *o, const struct scene_open *b)
 {
     return b->length / max2(1, round(b->length / o->k->dp));
 }
 
-static struct place place_of(const struct open *o, const struct scene_open *b, int64_t i)
+static struct place place_of(const struct open_boundaries *o, const struct scene_open *b, int64_t i)
 {
     struct place at;
     scene_open_place(b, (const double[]){o->particles->x[i], o->particles->y[i]}, &at.in,
@@ -67,14 +67,15 @@ static struct place place_of(const struct open *o, const struct scene_open *b, i
 }
 
 /* Whether a place is in the buffer or in front of it. Its sides are walls, which do not count. */
-static bool in_buffer(const struct open *o, const struct scene_open *b, const struct place *at)
+static bool in_buffer(const struct open_boundaries *o, const struct scene_open *b,
+                      const struct place *at)
 {
     return at->in >= -b->depth - o->k->dp && at->along > 0 && at->along < b->length;
 }
 
 /* --- exchange --- */
 
-bool open_due(const struct open *o)
+bool open_due(const struct open_boundaries *o)
 {
     bool due = false;
     for (int64_t m = 0; m < o->n_members; m++) {
@@ -85,7 +86,7 @@ bool open_due(const struct open *o)
 }
 
 /* Adds momentum and energy of a particle to the sums of its boundary, or takes them off. */
-static void count_particle(struct open *o, int64_t i, double sign)
+static void count_particle(struct open_boundaries *o, int64_t i, double sign)
 {
     const struct particles *const particles = o->particles;
     double *const sum = o->sum[particles->open[i] - 1];
@@ -95,7 +96,7 @@ static void count_particle(struct open *o, int64_t i, double sign)
 }
 
 /* A copy of a particle that enters, in the middle of its strip, at `in` before the line. */
-static enum err make_copy(struct open *o, int64_t i, double in, struct diag *d)
+static enum err make_copy(struct open_boundaries *o, int64_t i, double in, struct diag *d)
 {
     struct particles *const particles = o->particles;
     const struct scene_open *const b = open_boundary(o, i);
@@ -120,7 +121,7 @@ static enum err make_copy(struct open *o, int64_t i, double in, struct diag *d)
 
 /* T-54: fills the strip behind a particle that enters, but not above the level. Compressed fluid
  * has smaller distances: density times velocity flows in. Particles from `fresh` on are new. */
-static enum err fill_strip(struct open *o, int64_t i, int64_t fresh, struct diag *d)
+static enum err fill_strip(struct open_boundaries *o, int64_t i, int64_t fresh, struct diag *d)
 {
     const struct particles *const particles = o->particles;
     const struct scene_open *const b = open_boundary(o, i);
@@ -140,7 +141,7 @@ static enum err fill_strip(struct open *o, int64_t i, int64_t fresh, struct diag
 
 /* Whether the buffer has no space for fluid that has come in: above its level, or close to a
  * buffer particle that moves inward. Two particles in one place would burst apart. */
-static bool strip_is_full(const struct open *o, int64_t i)
+static bool strip_is_full(const struct open_boundaries *o, int64_t i)
 {
     const struct particles *const particles = o->particles;
     const struct scene_open *const b = open_boundary(o, i);
@@ -157,7 +158,7 @@ static bool strip_is_full(const struct open *o, int64_t i)
 }
 
 /* The boundary whose buffer contains fluid particle i, from 1; 0: none. */
-static int32_t buffer_at(const struct open *o, int64_t i)
+static int32_t buffer_at(const struct open_boundaries *o, int64_t i)
 {
     for (int k = 0; k < o->n; k++) {
         const struct place at = place_of(o, &o->boundary[k], i);
@@ -167,7 +168,7 @@ static int32_t buffer_at(const struct open *o, int64_t i)
 }
 
 /* Removes the particles that have left their buffers, and those that found no space in one. */
-static void end_particles(struct open *o)
+static void end_particles(struct open_boundaries *o)
 {
     struct particles *const particles = o->particles;
     int64_t kept = 0;
@@ -190,7 +191,7 @@ static void end_particles(struct open *o)
 }
 
 /* Marks fluid that is to be removed. The given velocity is then not all that passes the line. */
-static void mark_returned(struct open *o, int64_t i, struct diag *d)
+static void mark_returned(struct open_boundaries *o, int64_t i, struct diag *d)
 {
     const struct particles *const particles = o->particles;
     const struct scene_open *const b = open_boundary(o, i);
@@ -204,7 +205,7 @@ static void mark_returned(struct open *o, int64_t i, struct diag *d)
     particles->open[i] = -particles->open[i];
 }
 
-enum err open_exchange(struct open *o, struct diag *d)
+enum err open_exchange(struct open_boundaries *o, struct diag *d)
 {
     struct particles *const particles = o->particles;
     const int64_t n = particles->n; /* copies follow behind */
@@ -225,7 +226,7 @@ enum err open_exchange(struct open *o, struct diag *d)
     return e;
 }
 
-enum err open_list(struct open *o, struct diag *d)
+enum err open_list(struct open_boundaries *o, struct diag *d)
 {
     const struct particles *const particles = o->particles;
     o->n_members = 0;
@@ -247,20 +248,20 @@ enum err open_list(struct open *o, struct diag *d)
     return ERR_OK;
 }
 
-double open_energy(const struct open *o)
+double open_energy(const struct open_boundaries *o)
 {
     double sum = 0;
     for (int k = 0; k < o->n; k++) sum += o->sum[k][OPEN_ENERGY];
     return sum;
 }
 
-void open_forget(struct open *o)
+void open_forget(struct open_boundaries *o)
 {
     for (int k = 0; k < o->n; k++)
         o->sum[k][OPEN_MOMENTUM_X] = o->sum[k][OPEN_MOMENTUM_Y] = o->sum[k][OPEN_ENERGY] = 0;
 }
 
-uint64_t open_hash(const struct open *o, uint64_t h)
+uint64_t open_hash(const struct open_boundaries *o, uint64_t h)
 {
     h = hash_bytes(h, o->sum, (size_t)o->n * sizeof *o->sum);
     h = hash_bytes(h, o->count, (size_t)o->n * sizeof *o->count);

@@ -30,7 +30,7 @@ struct open_member {
     double p, v[2];
 };
 
-struct open {
+struct open_boundaries {
     const struct fluid_constants *k; /* of the fluid; its particles and cells */
     struct particles *particles;
     const struct cells *cells;
@@ -50,14 +50,14 @@ struct open {
 };
 
 /* Number of fluid particles, in all, that a scene with open boundaries has memory for. */
-int64_t open_places(const struct scene *scene);
+int64_t open_capacity(const struct scene *scene);
 
 /* `o` knows the fluid: k, particles and cells. */
-enum err open_create(struct open *o, struct arena *a, const struct scene *scene, int64_t next_id,
-                     struct diag *d) SPHFSI_CHECKED;
+enum err open_create(struct open_boundaries *o, struct arena *a, const struct scene *scene,
+                     int64_t next_id, struct diag *d) SPHFSI_CHECKED;
 
 /* The boundary whose buffer a particle belongs to. */
-SPHFSI_INLINE const struct scene_open *open_boundary(const struct open *o, int64_t i)
+SPHFSI_INLINE const struct scene_open *open_boundary(const struct open_boundaries *o, int64_t i)
 {
     return &o->boundary[o->particles->open[i] - 1];
 }
@@ -65,34 +65,35 @@ SPHFSI_INLINE const struct scene_open *open_boundary(const struct open *o, int64
 /* --- open_fields.c --- */
 
 /* Copies of boundary n for each time. */
-enum err open_copy(struct open *o, int n, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+enum err open_copy(struct open_boundaries *o, int n, struct arena *a, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Before an evaluation: sets velocities and densities of the buffers at a time, from the fluid
  * alone. `counts`: the state is that between two steps, and its change counts in the account. */
-void open_set(struct open *o, double time, bool counts);
+void open_set(struct open_boundaries *o, double time, bool counts);
 
 /* After it: neither forces nor shifts move buffers; the rates store the constraint forces. */
-void open_hold(struct open *o);
+void open_hold(struct open_boundaries *o);
 
 /* After a step: impulse and work of the last rates, and the mean flow. */
-void open_add_work(struct open *o, double dt);
+void open_add_work(struct open_boundaries *o, double dt);
 
 /* --- open.c --- */
 
 /* Whether a buffer particle is so far inside the fluid that it must be relabelled. */
-bool open_due(const struct open *o);
+bool open_due(const struct open_boundaries *o);
 
 /* Before a sorting: relabels, creates and removes particles. */
-enum err open_exchange(struct open *o, struct diag *d) SPHFSI_CHECKED;
+enum err open_exchange(struct open_boundaries *o, struct diag *d) SPHFSI_CHECKED;
 
 /* After a sorting: finds the particles of the buffers. */
-enum err open_list(struct open *o, struct diag *d) SPHFSI_CHECKED;
+enum err open_list(struct open_boundaries *o, struct diag *d) SPHFSI_CHECKED;
 
 /* Energy brought in through all of them, J/m. */
-double open_energy(const struct open *o);
+double open_energy(const struct open_boundaries *o);
 
 /* Resets the sums. */
-void open_forget(struct open *o);
+void open_forget(struct open_boundaries *o);
 
 /* FNV-1a hash of the data carried from step to step, continuing from h. */
-uint64_t open_hash(const struct open *o, uint64_t h);
+uint64_t open_hash(const struct open_boundaries *o, uint64_t h);

@@ -48,7 +48,7 @@ SPHFSI_INLINE void add_across(four_double sum[S_SUMS], bool flow, double inv_h,
 }
 
 /* The fluid within reach of a point, without the buffers. */
-SPHFSI_INLINE void state_across(const struct open *o, const double at[2], bool flow,
+SPHFSI_INLINE void state_across(const struct open_boundaries *o, const double at[2], bool flow,
                                 double sum[S_SUMS])
 {
     const struct cells *const cells = o->cells;
@@ -81,7 +81,7 @@ static double linear_value(const double s[S_SUMS], int velocity)
 }
 
 /* Velocity along a direction of the fluid around a point; without fluid `otherwise`. */
-static double flow_along(const struct open *o, const double at[2], const double n[2],
+static double flow_along(const struct open_boundaries *o, const double at[2], const double n[2],
                          double otherwise)
 {
     double s[S_SUMS];
@@ -92,7 +92,7 @@ static double flow_along(const struct open *o, const double at[2], const double 
 
 /* --- fields of the buffers --- */
 
-static const struct scene_open *project(const struct open *o, int64_t i, double *in,
+static const struct scene_open *project(const struct open_boundaries *o, int64_t i, double *in,
                                         double on_line[2])
 {
     const struct scene_open *const b = open_boundary(o, i);
@@ -103,7 +103,7 @@ static const struct scene_open *project(const struct open *o, int64_t i, double 
     return b;
 }
 
-enum err open_copy(struct open *o, int n, struct arena *a, struct diag *d)
+enum err open_copy(struct open_boundaries *o, int n, struct arena *a, struct diag *d)
 {
     for (int m = 0; m < OPEN_TIMES; m++) {
         struct scene_open *const at = &o->at[n][m];
@@ -117,7 +117,7 @@ enum err open_copy(struct open *o, int n, struct arena *a, struct diag *d)
 
 /* Functions of time alone are then evaluated once instead of once a particle. The rate of a given
  * velocity is that over the time in which sound crosses h. */
-static void fix_times(struct open *o, double time)
+static void fix_times(struct open_boundaries *o, double time)
 {
     o->time[OPEN_BEFORE] = max2(0, time - 0.5 * o->k->h / o->k->c0);
     o->time[OPEN_AFTER] = o->time[OPEN_BEFORE] + o->k->h / o->k->c0;
@@ -137,7 +137,7 @@ static void fix_times(struct open *o, double time)
  * that varied along the normal would compress the buffer, because it has none along the line. With
  * a given velocity: the pressure that T-10 gives a wall with that velocity (T-50). Without fluid
  * there its fields do not change. */
-static void mirror_fields(const struct open *o, struct open_member *m)
+static void mirror_fields(const struct open_boundaries *o, struct open_member *m)
 {
     const struct fluid_constants *const k = o->k;
     const struct particles *const particles = o->particles;
@@ -186,7 +186,7 @@ static double odd_pressure(const struct scene_open *b, double given, double mirr
 
 /* The mean flow out of the fluid through each boundary that uses it, a spacing in front of the line
  * and at fixed points: particles that come and go would add noise. */
-static void find_flow(struct open *o)
+static void find_flow(struct open_boundaries *o)
 {
     for (int n = 0; n < o->n; n++) {
         const struct scene_open *const b = &o->boundary[n];
@@ -208,7 +208,7 @@ static void find_flow(struct open *o)
     }
 }
 
-static void set_particle(const struct open *o, const struct open_member *m, double time)
+static void set_particle(const struct open_boundaries *o, const struct open_member *m, double time)
 {
     const struct fluid_constants *const k = o->k;
     const struct particles *const particles = o->particles;
@@ -232,7 +232,7 @@ static void set_particle(const struct open *o, const struct open_member *m, doub
             if (velocity[n][c]) velocity[n][c][i] = m->v[c];
 }
 
-void open_set(struct open *o, double time, bool counts)
+void open_set(struct open_boundaries *o, double time, bool counts)
 {
     const struct fluid_constants *const k = o->k;
     const struct particles *const particles = o->particles;
@@ -256,7 +256,7 @@ void open_set(struct open *o, double time, bool counts)
     }
 }
 
-void open_hold(struct open *o)
+void open_hold(struct open_boundaries *o)
 {
     const struct particles *const particles = o->particles;
     for (int n = 0; n < o->n; n++) o->rate[n].force[0] = o->rate[n].force[1] = o->rate[n].power = 0;
@@ -273,7 +273,7 @@ void open_hold(struct open *o)
     }
 }
 
-void open_add_work(struct open *o, double dt)
+void open_add_work(struct open_boundaries *o, double dt)
 {
     for (int k = 0; k < o->n; k++) {
         double *const sum = o->sum[k];

@@ -110,7 +110,7 @@ static void add_run(struct parts *list, const char *name, enum item item, void *
 static void list_run(struct parts *list, struct checkpoint *m, struct simulation *sim)
 {
     struct state *const state = &sim->state;
-    struct open *const open = &sim->open;
+    struct open_boundaries *const open = &sim->open;
     const size_t n_open = (size_t)open->n;
     add_part(list, (struct part){"snapshots_missed", OWNER_RUN, ITEM_INT64, &m->snapshots_missed, 1,
                                  FORK_SKIPS, 0, COUNTS});

@@ -225,7 +225,7 @@ static void write_cost(struct json *j, const struct simulation *sim, const struc
 /* Mass, momentum and energy that open boundaries have brought in, less what has left there. */
 static void write_open(struct json *j, const struct simulation *sim)
 {
-    const struct open *const o = &sim->open;
+    const struct open_boundaries *const o = &sim->open;
     if (o->n == 0) return;
     json_open(j, "open_boundaries", '{');
     for (int k = 0; k < o->n; k++) {

@@ -42,7 +42,7 @@ struct energy_account {
     double largest_available;  /* energy of any region, J/m */
     double now[ENERGY_TERMS];  /* sums over all sections at the last test, J/m; for tests */
     double pending;            /* time that the last evaluation still counts for, s */
-    double open;               /* energy through open boundaries as far as it is counted, J/m */
+    double through_open;       /* energy through open boundaries as far as it is counted, J/m */
     double tested_at, tested_steps; /* time and steps at the last test */
 };
 enum { ENERGY_NUMBERS = sizeof(struct energy_account) / sizeof(double) };

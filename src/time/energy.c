@@ -355,7 +355,7 @@ void energy_after_step(struct simulation *sim)
     damping_book(&sim->zones, sim->state.dt);
     if (sim->gravity_varies) *work += gravity_work(sim);
     if (!keeps_account(sim)) return;
-    sim->state.energy.open = open_energy(&sim->open);
+    sim->state.energy.through_open = open_energy(&sim->open);
     for (int k = 0; k < sim->solid.n_bodies; k++) {
         entry_of(sim, KIND_SOLID, k)->supplied += sim->solid.work_on[k];
         sim->solid.work_on[k] = 0;
@@ -381,7 +381,7 @@ void energy_begin(struct simulation *sim)
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
     if (!keeps_account(sim)) return;
     find_energies(sim, of);
-    account->open = open_energy(&sim->open);
+    account->through_open = open_energy(&sim->open);
     account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
@@ -487,8 +487,8 @@ void energy_test_if_due(struct simulation *sim)
     struct energy_account *const account = &sim->state.energy;
     if (!keeps_account(sim)) return;
     const double open = open_energy(&sim->open);
-    energy_supply(sim, KIND_FLUID, 0, open - account->open); /* other than by the constraint */
-    account->open = open;
+    energy_supply(sim, KIND_FLUID, 0, open - account->through_open); /* not by the constraint */
+    account->through_open = open;
     if (!test_is_due(sim)) return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);

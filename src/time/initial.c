@@ -14,7 +14,7 @@ static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_
     if (!groups || points->n == 0) return ERR_OK;
     if (kind == KIND_FLUID) groups |= sim->integrator->fluid_groups;
     if (kind == KIND_SOLID) groups |= G_STAGE;
-    const int64_t most = groups & G_OPEN ? open_places(sim->scene) : points->n;
+    const int64_t most = groups & G_OPEN ? open_capacity(sim->scene) : points->n;
     TRY(particles_create(particles, &sim->arena, most, groups, kind_names[kind], d));
     particles->n = points->n;
     for (int64_t i = 0; i < particles->n; i++) {
@@ -204,9 +204,9 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         id += sim->particles[kind].n;
     }
     if (sim->effects & FX_FLUID) TRY(create_fluid(sim, d));
-    sim->open = (struct open){.k = &sim->fluid.k,
-                              .particles = &sim->particles[KIND_FLUID],
-                              .cells = &sim->cells};
+    sim->open = (struct open_boundaries){.k = &sim->fluid.k,
+                                         .particles = &sim->particles[KIND_FLUID],
+                                         .cells = &sim->cells};
     if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, a, sim->scene, id, d));
     sim->coupling = (struct coupling){
         .scene = sim->scene,

@@ -96,7 +96,7 @@ struct simulation {
     struct rigid rigid;             /* rigid bodies, a part of these; unused without any */
     struct beams beams;             /* unused without any */
     struct damping_zones zones;     /* zones of damping; unused without any */
-    struct open open;               /* open boundaries; unused without any */
+    struct open_boundaries open;    /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */
     struct coupling coupling;       /* of fluid and solid; unused without both */
     struct contact contact;         /* of the solid; unused without it */

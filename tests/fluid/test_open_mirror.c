@@ -81,7 +81,7 @@ static double wall_pressure_of(int64_t i)
  * buffer's particle the fluid has the density at rest. */
 static void test_buffers_see_the_fluid_across_the_line(void)
 {
-    struct open *const o = &rig.sim.open;
+    struct open_boundaries *const o = &rig.sim.open;
     open_set(o, 0.5, false);
     int seen[2] = {0};
     for (int64_t m = 0; m < o->n_members; m++) {
@@ -105,7 +105,7 @@ static void test_buffers_see_the_fluid_across_the_line(void)
 /* Momentum and energy that the buffers get are booked. */
 static void test_what_is_set_is_booked(void)
 {
-    struct open *const o = &rig.sim.open;
+    struct open_boundaries *const o = &rig.sim.open;
     const struct fluid_constants *const k = &rig.sim.fluid.k;
     double want[2][3] = {{0}};
     for (int sign = -1; sign <= 1; sign += 2) {
