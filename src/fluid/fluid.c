@@ -232,7 +232,7 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
     fluid->sweeps->pack(fluid, kinds, cells);
     since = end_phase(&phase_seconds[PHASE_packed], since);
     if (fluid->effects & FX_ANTUONO) {
-        if (!fluid->keeps_slopes) fluid->sweeps->find_gradients(fluid, kinds, cells);
+        if (!fluid->keeps_slopes) fluid->sweeps->find_slopes(fluid, kinds, cells);
         since = end_phase(&phase_seconds[PHASE_slope], since);
     }
     if (fluid->effects & (FX_WALL | FX_COUPLING)) {

@@ -124,8 +124,8 @@ typedef void fluid_pass(struct fluid *fluid, struct particles kinds[KIND_COUNT],
 /* The sweeps of one precision. */
 struct fluid_sweeps {
     size_t packed_item_size;
-    fluid_pass *pack; /* pressure by the equation of state, and packed fields of the fluid */
-    fluid_pass *find_gradients; /* renormalised, of the fluid's density, and its packed fields */
+    fluid_pass *pack;        /* pressure by the equation of state, and packed fields of the fluid */
+    fluid_pass *find_slopes; /* renormalised, of the fluid's density, and its packed fields */
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed
      * fields. The fluid's force on them: coupling/force.h. */
     void (*update_dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
@@ -155,10 +155,10 @@ SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m)
 }
 
 /* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and for shifting; and their number. */
-enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_MIXING, SUM_GRAD_C_X, SUM_GRAD_C_Y, SUM_DIV_R, SUMS };
+enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_DIFFUSED, SUM_GRAD_C_X, SUM_GRAD_C_Y, SUM_DIV_R, SUMS };
 SPHFSI_INLINE int pair_sum_count(effect_set effects)
 {
-    return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
+    return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_DIFFUSED + 1 : SUM_RATE + 1;
 }
 
 /* Neighbour clusters of a cell and of a cluster: scratch memory of a thread. */

@@ -231,8 +231,8 @@ SPHFSI_INLINE void pack_slopes_of_cell(const struct fluid *fluid, const struct p
                     cluster_packed(&fluid->packed[KIND_FLUID], (size_t)(list->cluster[cell] + m)));
 }
 
-static void SWEEP(find_gradients)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                                  const struct cells *cells)
+static void SWEEP(find_slopes)(struct fluid *fluid, struct particles kinds[KIND_COUNT],
+                               const struct cells *cells)
 {
     const struct cell_list *list = &cells->list[KIND_FLUID];
     struct particles *const particles = &kinds[KIND_FLUID];

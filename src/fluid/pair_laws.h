@@ -19,26 +19,27 @@
  * even. With the volumes of both, over h^4. */
 struct pair_terms {
     struct pair pair;
-    vreal radial;          /* of xi in the forces, Pa */
-    vreal laminar;         /* of -v in the forces, kg/(m^2 s) */
-    vreal rate;            /* of v.xi in the rate, 1 */
-    vreal dens_difference; /* that diffuses, 1 */
-    vreal mixing; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited, delta c0 */
+    vreal radial;           /* of xi in the forces, Pa */
+    vreal laminar;          /* of -v in the forces, kg/(m^2 s) */
+    vreal rate;             /* of v.xi in the rate, 1 */
+    vreal dens_difference;  /* that diffuses, 1 */
+    vreal diffusion_factor; /* its factor in Eq. 6, without 2/(1 + dens_a) and, unless limited,
+                               delta c0 */
 };
 
 /* Constants of the sweep, in all SIMD lanes. */
 struct vector_constants {
-    vreal laminar;        /* 2 nu rho0/(M h) of L-1, kg/(m^2 s) */
-    vreal tensile, close; /* epsilon, 1/W(dp) in the units of law_tensile */
-    vreal repulsion;      /* beta rho0 c_u^2 of law_repulsion, Pa */
-    vreal wall_damping;   /* zeta rho0 c0 of law_wall_damping, Pa s/m */
-    vreal lowest;         /* pressure of walls and structures, Pa */
-    vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal diffusion;      /* delta c0/STRAIN_DIFFUSION, m/s */
-    vreal eta2;           /* (eta/h)^2 = 0.01 */
+    vreal laminar;         /* 2 nu rho0/(M h) of L-1, kg/(m^2 s) */
+    vreal tensile, close;  /* epsilon, 1/W(dp) in the units of law_tensile */
+    vreal repulsion;       /* beta rho0 c_u^2 of law_repulsion, Pa */
+    vreal wall_damping;    /* zeta rho0 c0 of law_wall_damping, Pa s/m */
+    vreal lowest;          /* pressure of walls and structures, Pa */
+    vreal gx, gy;          /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal diffusion_limit; /* delta c0/STRAIN_DIFFUSION, m/s */
+    vreal eta2;            /* (eta/h)^2 = 0.01 */
     /* Factors of the sums in the rates: the slope of the kernel over the volume of a particle, with
      * 1/rho0 in that of forces; and of Eq. 6. */
-    double kernel_slope, acceleration, mixing;
+    double kernel_slope, acceleration, diffusion_factor;
 };
 
 SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *fluid)
@@ -56,11 +57,11 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *flu
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
-        .diffusion = vset((real)(fk->model->density_diffusion * fk->c0 / STRAIN_DIFFUSION)),
+        .diffusion_limit = vset((real)(fk->model->density_diffusion * fk->c0 / STRAIN_DIFFUSION)),
         .eta2 = vset((real)ETA2),
         .kernel_slope = slope,
         .acceleration = slope / fk->rho0,
-        .mixing = 2 * fk->model->density_diffusion * fk->c0,
+        .diffusion_factor = 2 * fk->model->density_diffusion * fk->c0,
     };
 }
 
@@ -174,7 +175,7 @@ SPHFSI_INLINE vreal law_approach(const struct pair *q, vreal inv) { return vabs(
  * times the rate of strain of the pair along its line (Meringolo et al. 2019). */
 SPHFSI_INLINE vreal law_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
-    return vmin(law_approach(q, inv), k->diffusion);
+    return vmin(law_approach(q, inv), k->diffusion_limit);
 }
 
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). The
@@ -196,8 +197,8 @@ SPHFSI_INLINE vreal law_dens_difference(const struct receiver *a, const struct p
 SPHFSI_INLINE vreal law_diffusion_factor(const struct pair *q, vreal inv,
                                          const struct vector_constants *k, struct pair_set effects)
 {
-    const vreal mixing = q->weight * (q->r2 * inv);
-    return PAIR_HAS(effects, LIMITER) ? mixing * law_limiter(q, inv, k) : mixing;
+    const vreal factor = q->weight * (q->r2 * inv);
+    return PAIR_HAS(effects, LIMITER) ? factor * law_limiter(q, inv, k) : factor;
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; divergence - sum of V_b x_ab . grad W. */

@@ -22,7 +22,7 @@ SPHFSI_INLINE void add_pair_terms(vreal sum[SUMS], const struct pair_terms *e,
         sum[SUM_Y] = vfma(-e->laminar, q->v, sum[SUM_Y]);
     }
     if (fluid && PAIR_HAS(effects, DIFFUSION))
-        sum[SUM_MIXING] = vfma(e->mixing, e->dens_difference, sum[SUM_MIXING]);
+        sum[SUM_DIFFUSED] = vfma(e->diffusion_factor, e->dens_difference, sum[SUM_DIFFUSED]);
     if (PAIR_HAS(effects, SHIFTING)) law_concentration(q, sum);
 }
 
@@ -59,7 +59,7 @@ SPHFSI_INLINE struct pair_terms pair_of_fluid(const struct receiver *a, uint32_t
             q->dens_y = lane(b, PACKED_SLOPE_Y);
         }
         e.dens_difference = law_dens_difference(a, q, k, effects);
-        e.mixing = law_diffusion_factor(q, inv, k, effects);
+        e.diffusion_factor = law_diffusion_factor(q, inv, k, effects);
     }
     if (PAIR_HAS(effects, TENSILE)) stress = stress + law_tensile(a, q, k);
     e.radial = q->weight * stress;

@@ -55,8 +55,9 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                       fy_a = factor * odd_sum(s, deferred, SUM_Y);
     const four_double ax = fx_a + fluid->k.gravity[0], ay = fy_a + fluid->k.gravity[1];
     if (PAIR_HAS(effects, DIFFUSION)) {
-        const double mixing = PAIR_HAS(effects, LIMITER) ? 2 * STRAIN_DIFFUSION : k->mixing;
-        rate = rate + mixing * odd_sum(s, deferred, SUM_MIXING);
+        const double diffusion =
+            PAIR_HAS(effects, LIMITER) ? 2 * STRAIN_DIFFUSION : k->diffusion_factor;
+        rate = rate + diffusion * odd_sum(s, deferred, SUM_DIFFUSED);
     }
     full = k->kernel_slope * full;
     const four_double ddens = -full * rate, a2 = ax * ax + ay * ay;
@@ -212,5 +213,5 @@ static const struct fluid_variant SWEEP(variants)[] = {
 #include "fluid/variants.def"
 #undef VARIANT
 
-const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(pack), SWEEP(find_gradients),
+const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(pack), SWEEP(find_slopes),
                                                  SWEEP(update_dummies), SWEEP(variants)};
