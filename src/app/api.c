@@ -395,8 +395,8 @@ static enum err set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kin
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     handle->force[kind] = (struct user_function){.of = handle, .force = force, .context = context};
-    return simulation_set_external(sim, (enum kind)kind, force ? add_user_force : NULL,
-                                   &handle->force[kind], d);
+    return simulation_set_force_hook(sim, (enum kind)kind, force ? add_user_force : NULL,
+                                     &handle->force[kind], d);
 }
 
 enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *handle, enum sphfsi_kind kind,

@@ -153,7 +153,7 @@ enum err equilibrium_find(struct equilibrium *found, const struct solid *from,
     struct solid solid;
     *found = (struct equilibrium){0};
     const double across = implicit_across(from, particles);
-    if (from->external || across * across * across > dear * (double)particles->n) return ERR_OK;
+    if (from->force_hook || across * across * across > dear * (double)particles->n) return ERR_OK;
     for (int k = 0; k < from->n_bodies; k++)
         if (from->body[k].kappa > 0 && !from->body[k].variational) return ERR_OK;
     enum err e = solid_create(&solid, &arena, scene, particles, true, d);

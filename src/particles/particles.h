@@ -59,10 +59,10 @@ extern const struct field_info field_table[];
 extern const int field_count;
 
 /* Accelerations from outside, added to those of the model by a program that uses the library. */
-typedef void external_function(void *context, double time, const struct particles *particles,
-                               double *ax, double *ay);
-struct external {
-    external_function *accelerate; /* NULL: none */
+typedef void force_hook_function(void *context, double time, const struct particles *particles,
+                                 double *ax, double *ay);
+struct force_hook {
+    force_hook_function *accelerate; /* NULL: none */
     void *context;
     double *ax, *ay; /* m/s^2 */
 };

@@ -187,7 +187,7 @@ static void add_own_forces(const struct solid *solid, struct particles *particle
                            int64_t last)
 {
     double *const sx = particles->sx, *const sy = particles->sy, *const free = particles->free;
-    const struct external *const external = solid->external;
+    const struct force_hook *const hook = solid->force_hook;
     for (int64_t k = first, next; k < last; k = next) {
         const struct solid_body *const body = &solid->body[solid->pack[k].body];
         for (next = k + 1; next < last && solid->pack[next].body == solid->pack[k].body;) next++;
@@ -198,9 +198,9 @@ static void add_own_forces(const struct solid *solid, struct particles *particle
             sx[i] += particles->fx[i] * per_mass;
             sy[i] += particles->fy[i] * per_mass;
         }
-        for (int64_t i = from; i < end && external; i++) {
-            sx[i] += external->ax[i];
-            sy[i] += external->ay[i];
+        for (int64_t i = from; i < end && hook; i++) {
+            sx[i] += hook->ax[i];
+            sy[i] += hook->ay[i];
         }
 #pragma omp simd
         for (int64_t i = from; i < end; i++) {

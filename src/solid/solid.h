@@ -133,11 +133,11 @@ struct solid {
     struct loads *loads;
     struct hinges *hinges;
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
-    const struct scene *gravity_scene; /* of a gravity that varies in time; NULL: constant */
-    const struct external *external;   /* accelerations by a program */
-    solid_kick *apply_kick;            /* of sub-steps: free, or against the impedance of a fluid */
-    struct implicit *implicit;         /* data of implicit/; NULL: explicit steps only */
-    solid_sweep *implicit_stress;      /* what implicit steps change of the stress; NULL: nothing */
+    const struct scene *gravity_scene;   /* of a gravity that varies in time; NULL: constant */
+    const struct force_hook *force_hook; /* accelerations by a program */
+    solid_kick *apply_kick;       /* of sub-steps: free, or against the impedance of a fluid */
+    struct implicit *implicit;    /* data of implicit/; NULL: explicit steps only */
+    solid_sweep *implicit_stress; /* what implicit steps change of the stress; NULL: nothing */
     double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };

@@ -20,7 +20,7 @@ void evaluate_rates(struct simulation *sim, double time);
 void evaluate_start(struct simulation *sim);
 
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
-void find_external(struct simulation *sim, enum kind kind, double time);
+void find_hook_forces(struct simulation *sim, enum kind kind, double time);
 
 /* Sets position, velocity and acceleration of moving walls at a time. */
 void move_walls(struct simulation *sim, double time);

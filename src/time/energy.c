@@ -94,7 +94,7 @@ static void add_late_work(struct simulation *sim, struct energies *solid)
     if (alone.centred || sim->substeps == 0) return;
     const double half = 0.5 * sim->state.dt / sim->substeps;
     alone.coupled = false;
-    alone.external = NULL;
+    alone.force_hook = NULL;
     alone.gravity_scene = NULL;
     alone.loads = NULL;
     alone.hinges = NULL;
@@ -198,11 +198,11 @@ void energy_book_evaluation(struct simulation *sim, double dt)
     if (!keeps_account(sim)) return;
     const struct particles *const fluid = &sim->particles[KIND_FLUID];
     const struct particles *const solid = &sim->particles[KIND_SOLID];
-    const struct external *const external = &sim->external[KIND_FLUID];
-    for (int64_t i = 0; i < fluid->n && external->accelerate; i++)
+    const struct force_hook *const hook = &sim->force_hook[KIND_FLUID];
+    for (int64_t i = 0; i < fluid->n && hook->accelerate; i++)
         entry_of(sim, KIND_FLUID, fluid->body[i])->supplied +=
             dt * particle_mass(&sim->fluid.k, fluid, i) *
-            (external->ax[i] * fluid->vx[i] + external->ay[i] * fluid->vy[i]);
+            (hook->ax[i] * fluid->vx[i] + hook->ay[i] * fluid->vy[i]);
     for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
         entry_of(sim, KIND_FLUID, 0)->supplied += dt * sim->open.rate[b].power;
     for (int b = 0; b < sim->wall_motion.n; b++) {
@@ -220,7 +220,7 @@ void energy_book_solid(struct simulation *sim, double dt, int n)
 {
     if (!keeps_account(sim)) return;
     const struct particles *const particles = &sim->particles[KIND_SOLID];
-    const struct external *const external = sim->solid.external;
+    const struct force_hook *const hook = sim->solid.force_hook;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
     const double late = sim->solid.centred ? 0 : 0.5 * dt / n;
@@ -235,7 +235,7 @@ void energy_book_solid(struct simulation *sim, double dt, int n)
         double work = particles->fx[i] * ux + particles->fy[i] * uy;
         if (sim->coupling.impedance > 0) work += mass * particles->face_work[i]; /* T-35a */
         e->received += work;
-        if (external) work += mass * (external->ax[i] * ux + external->ay[i] * uy);
+        if (hook) work += mass * (hook->ax[i] * ux + hook->ay[i] * uy);
         e->supplied += work;
     }
 }

@@ -19,26 +19,26 @@ void move_walls(struct simulation *sim, double time)
         sim->wall_motion.moved_most += beams_place(&sim->beams, time - sim->state.time);
 }
 
-void find_external(struct simulation *sim, enum kind kind, double time)
+void find_hook_forces(struct simulation *sim, enum kind kind, double time)
 {
-    struct external *const external = &sim->external[kind];
-    const size_t bytes = (size_t)sim->particles[kind].n * sizeof *external->ax;
-    memset(external->ax, 0, bytes);
-    memset(external->ay, 0, bytes);
-    external->accelerate(external->context, max2(0, scene_time(sim, time)), &sim->particles[kind],
-                         external->ax, external->ay);
+    struct force_hook *const hook = &sim->force_hook[kind];
+    const size_t bytes = (size_t)sim->particles[kind].n * sizeof *hook->ax;
+    memset(hook->ax, 0, bytes);
+    memset(hook->ay, 0, bytes);
+    hook->accelerate(hook->context, max2(0, scene_time(sim, time)), &sim->particles[kind], hook->ax,
+                     hook->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
-static void add_external(struct simulation *sim, double time)
+static void add_hook_forces(struct simulation *sim, double time)
 {
-    const struct external *const external = &sim->external[KIND_FLUID];
+    const struct force_hook *const hook = &sim->force_hook[KIND_FLUID];
     struct particles *const particles = &sim->particles[KIND_FLUID];
-    find_external(sim, KIND_FLUID, time);
+    find_hook_forces(sim, KIND_FLUID, time);
     double largest = sim->fluid.extremes.acceleration2;
     for (int64_t i = 0; i < particles->n; i++) {
-        particles->ax[i] += external->ax[i];
-        particles->ay[i] += external->ay[i];
+        particles->ax[i] += hook->ax[i];
+        particles->ay[i] += hook->ay[i];
         largest = max2(largest, square(particles->ax[i]) + square(particles->ay[i]));
     }
     sim->fluid.extremes.acceleration2 = largest;
@@ -79,8 +79,8 @@ void evaluate_rates(struct simulation *sim, double time)
     if (sim->effects & FX_OPEN) open_hold(&sim->open);
     if (sim->effects & FX_DAMPING_ZONE)
         damping_add(&sim->zones, sim->scene, &sim->fluid.k, &sim->particles[KIND_FLUID]);
-    if (sim->external[KIND_FLUID].accelerate) add_external(sim, time);
-    if (sim->external[KIND_SOLID].accelerate) find_external(sim, KIND_SOLID, time);
+    if (sim->force_hook[KIND_FLUID].accelerate) add_hook_forces(sim, time);
+    if (sim->force_hook[KIND_SOLID].accelerate) find_hook_forces(sim, KIND_SOLID, time);
 }
 
 void evaluate_start(struct simulation *sim)
@@ -99,8 +99,8 @@ void simulation_refresh(struct simulation *sim)
         memcpy(seconds, sim->phase_seconds, sizeof seconds);
         evaluate_rates(sim, sim->state.time);
         /* A caller's own forces and motions may change between two steps. */
-        sim->evaluated = !sim->external[KIND_FLUID].accelerate &&
-                         !sim->external[KIND_SOLID].accelerate && !sim->scene->motion_hook;
+        sim->evaluated = !sim->force_hook[KIND_FLUID].accelerate &&
+                         !sim->force_hook[KIND_SOLID].accelerate && !sim->scene->motion_hook;
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);

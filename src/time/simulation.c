@@ -33,17 +33,17 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     return ERR_OK;
 }
 
-enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *f,
-                                 void *context, struct diag *d)
+enum err simulation_set_force_hook(struct simulation *sim, enum kind kind, force_hook_function *f,
+                                   void *context, struct diag *d)
 {
-    struct external *const external = &sim->external[kind];
+    struct force_hook *const hook = &sim->force_hook[kind];
     const size_t n = (size_t)sim->particles[kind].capacity;
-    if (!external->ax) TRY(arena_array(&sim->arena, &external->ax, n, "accelerations", d));
-    if (!external->ay) TRY(arena_array(&sim->arena, &external->ay, n, "accelerations", d));
-    external->accelerate = f;
-    external->context = context;
+    if (!hook->ax) TRY(arena_array(&sim->arena, &hook->ax, n, "accelerations", d));
+    if (!hook->ay) TRY(arena_array(&sim->arena, &hook->ay, n, "accelerations", d));
+    hook->accelerate = f;
+    hook->context = context;
     sim->evaluated = false; /* the last evaluation lacked it */
-    if (kind == KIND_SOLID) sim->solid.external = f ? external : NULL;
+    if (kind == KIND_SOLID) sim->solid.force_hook = f ? hook : NULL;
     return ERR_OK;
 }
 

@@ -7,8 +7,8 @@
 
 /* Registers `f`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
-enum err simulation_set_external(struct simulation *sim, enum kind kind, external_function *f,
-                                 void *context, struct diag *d) SPHFSI_CHECKED;
+enum err simulation_set_force_hook(struct simulation *sim, enum kind kind, force_hook_function *f,
+                                   void *context, struct diag *d) SPHFSI_CHECKED;
 
 /* Builds the state at time zero of a scene, or arrays for a checkpoint. Frees all if it fails. */
 enum err simulation_create(struct simulation *sim, const struct scene *scene, struct diag *d)

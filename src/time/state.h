@@ -121,8 +121,8 @@ struct simulation {
     } carried; /* by rows from step to step (output/rows.h): checkpointed, not hashed */
     struct observer observer;
     struct guard guard;
-    struct external external[KIND_COUNT]; /* of fluid and solid */
-    struct energy_gain gain;              /* of the last test of the energy account */
+    struct force_hook force_hook[KIND_COUNT]; /* of fluid and solid */
+    struct energy_gain gain;                  /* of the last test of the energy account */
 };
 
 /* While rest is sought (T-78), the state's time is how long it has been sought. Motions, loads and

@@ -124,7 +124,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
     const double dt = timestep_choose(sim, t_limit, &hits);
     energy_test_if_due(sim);
     const bool needs_fields =
-        sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->external[KIND_FLUID].accelerate;
+        sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->force_hook[KIND_FLUID].accelerate;
     if (needs_fields)
         predict_fields(&sim->particles[KIND_FLUID], 0.5 * dt);
     else

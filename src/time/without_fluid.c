@@ -57,7 +57,7 @@ static enum err advance_batch(struct simulation *sim, bool near, double dt, int 
 }
 
 /* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). */
-static void external_for_step(struct simulation *sim, double dt)
+static void find_hook_forces_for_step(struct simulation *sim, double dt)
 {
     struct particles *const particles = &sim->particles[KIND_SOLID];
     const double half = sim->solid.centred ? 0.5 * dt : 0;
@@ -65,19 +65,18 @@ static void external_for_step(struct simulation *sim, double dt)
         particles->x[i] += half * particles->vx[i];
         particles->y[i] += half * particles->vy[i];
     }
-    find_external(sim, KIND_SOLID, sim->state.time + half);
+    find_hook_forces(sim, KIND_SOLID, sim->state.time + half);
 }
 
 /* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
-static void add_external_work(struct simulation *sim, double dt)
+static void add_hook_work(struct simulation *sim, double dt)
 {
     const struct particles *const particles = &sim->particles[KIND_SOLID];
-    const struct external *const external = &sim->external[KIND_SOLID];
+    const struct force_hook *const hook = &sim->force_hook[KIND_SOLID];
     for (int64_t i = 0; i < particles->n; i++)
         energy_supply(sim, KIND_SOLID, particles->body[i],
                       dt * sim->solid.body[particles->body[i]].mass * particles->free[i] *
-                          (external->ax[i] * particles->vx[i] +
-                           external->ay[i] * particles->vy[i]));
+                          (hook->ax[i] * particles->vx[i] + hook->ay[i] * particles->vy[i]));
 }
 
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
@@ -87,8 +86,8 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
     const bool implicit = sim->solid.implicit != NULL;
     const bool near = timestep_watch_contact(sim, sim->solid.time, implicit ? 1 : SOLID_BATCH);
     const double bound = timestep_bound(sim);
-    const bool external = sim->solid.external != NULL;
-    const bool single = external || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
+    const bool hook = sim->solid.force_hook != NULL;
+    const bool single = hook || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
     const int batch = single ? 1 : SOLID_BATCH;
     /* Rounding of the times must not add a step. */
     const double left = t_limit - begin, steps = max2(1, ceil(left / bound - 1e-6));
@@ -97,10 +96,10 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
     const int planned = hits ? (int)steps : batch;
     int n = planned;
     double cut = 0;
-    if (external) external_for_step(sim, dt);
-    if (external) add_external_work(sim, 0.5 * dt);
+    if (hook) find_hook_forces_for_step(sim, dt);
+    if (hook) add_hook_work(sim, 0.5 * dt);
     TRY(advance_batch(sim, near, dt, &n, &cut, d));
-    if (external) add_external_work(sim, st->time - begin - 0.5 * dt);
+    if (hook) add_hook_work(sim, st->time - begin - 0.5 * dt);
     if (n == planned && cut == 0) st->time = end;
     solid_set_positions(&sim->particles[KIND_SOLID]);
     phase_add(sim, PHASE_solid, start + (phases_so_far(sim) - before));

@@ -113,9 +113,9 @@ static uint64_t push(int threads)
     for (int round = 0; round < 4; round++) {
         solid->centred = round % 2;
         solid_advance(solid, particles, rig.sim.dt_solid, 7);
-        solid->external = &(struct external){.ax = force[0], .ay = force[1]};
+        solid->force_hook = &(struct force_hook){.ax = force[0], .ay = force[1]};
         solid_advance(solid, particles, rig.sim.dt_solid, 5);
-        solid->external = NULL;
+        solid->force_hook = NULL;
         if (round == 2) simulation_hash(&rig.sim);
     }
     solid_write_stress(solid, particles);

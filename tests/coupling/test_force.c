@@ -85,8 +85,8 @@ static void carry_off(void *context, double time, const struct particles *partic
 static void test_what_is_dry_is_forgotten(void)
 {
     open(touching, "integrator=leapfrog", "domain.upper=3, 3");
-    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_set_external(&rig.sim, KIND_FLUID, carry_off, NULL,
-                                                          &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_set_force_hook(&rig.sim, KIND_FLUID, carry_off, NULL,
+                                                            &rig.diag));
     rig.sim.sorting.skin_left = 0;
     rig_steps(&rig, 1, 1);
     for (int64_t i = 0; i < solid->n; i++) {

@@ -227,8 +227,8 @@ static void check_midpoints(const char *scene, enum kind kind, bool upright)
         TEST_ASSERT_TRUE(rig.sim.cells.nx % 2 && rig.sim.cells.ny % 2);
         missed = false;
         evaluations = 0;
-        TEST_ASSERT_EQUAL_INT(ERR_OK,
-                              simulation_set_external(&rig.sim, KIND_FLUID, look, NULL, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_set_force_hook(&rig.sim, KIND_FLUID, look, NULL,
+                                                                &rig.diag));
         struct particles *const a = &rig.sim.particles[KIND_FLUID], *const b =
                                                                         &rig.sim.particles[kind];
         double *const from = upright ? a->y : a->x, *const to = upright ? b->y : b->x,

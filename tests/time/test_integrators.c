@@ -314,8 +314,8 @@ static void test_a_lone_solid_as_a_program_sees_it(void)
                  "density = 1100\nyoung = 1e6\npoisson = 0.4\nvelocity = 3, -2\n",
                  integrators[k], NULL);
         solid = &rig.sim.particles[KIND_SOLID];
-        TEST_ASSERT_EQUAL(ERR_OK, simulation_set_external(&rig.sim, KIND_SOLID, look_at_places,
-                                                          NULL, &rig.diag));
+        TEST_ASSERT_EQUAL(ERR_OK, simulation_set_force_hook(&rig.sim, KIND_SOLID, look_at_places,
+                                                            NULL, &rig.diag));
         for (int step = 0; step < 3; step++) {
             const double start = rig.sim.state.time;
             rig_steps(&rig, 1, 1);
@@ -352,7 +352,8 @@ static void see_substeps(const char *integrator, double ahead, double less)
 {
     open(integrator, "numerics.multirate=on");
     rig.sim.dt_solid = 0.3e-5;
-    TEST_ASSERT_EQUAL(ERR_OK, simulation_set_external(&rig.sim, KIND_SOLID, look, NULL, &rig.diag));
+    TEST_ASSERT_EQUAL(ERR_OK,
+                      simulation_set_force_hook(&rig.sim, KIND_SOLID, look, NULL, &rig.diag));
     static double a[2][MOST], b[2][MOST], w[2][MOST];
     memset(a, 0, sizeof a);
     memset(b, 0, sizeof b);

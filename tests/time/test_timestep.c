@@ -66,8 +66,8 @@ static void test_bound_with_a_push(void)
              "dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
              "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n",
              NULL);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_set_external(&rig.sim, KIND_FLUID, pull_down, NULL,
-                                                          &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_set_force_hook(&rig.sim, KIND_FLUID, pull_down, NULL,
+                                                            &rig.diag));
     rig_steps(&rig, 1, 1);
     assert_near(1e-9, 1600, rig.sim.fluid.extremes.acceleration2, "|a|^2");
 }
