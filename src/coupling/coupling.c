@@ -66,7 +66,8 @@ static void extrapolate_forces(struct coupling *coupling, double dt, double rate
 static void move_after_substeps(struct coupling *coupling, double dt)
 {
     struct particles *const particles = coupling->particles;
-    const double per_dt = 1 / dt, half = 0.5 * dt, weight = motion_weight(coupling, dt);
+    const double per_dt = 1 / dt, half = 0.5 * dt,
+                 weight = coupling_acceleration_weight(coupling, dt);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < particles->n; i++) {
         const double ax = (particles->vx[i] - particles->vx0[i]) * per_dt;
@@ -96,7 +97,7 @@ static void predict_motion(struct coupling *coupling, double half)
     }
 }
 
-void motion_at_single_rate(struct coupling *coupling, double weight)
+void coupling_move_at_single_rate(struct coupling *coupling, double weight)
 {
     struct particles *const particles = coupling->particles;
     solid_set_positions(particles);
@@ -137,7 +138,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double rate
         particles->vy0[i] = particles->vy[i];
     }
     if (impedance) impulse_begin(coupling, implicit_is_next(coupling->solid) ? 0 : dt / n);
-    solid_advance_any(coupling->solid, particles, dt / n, n);
+    implicit_advance(coupling->solid, particles, dt / n, n);
     if (impedance) impulse_end(coupling);
     const double moved = solid_set_positions(particles);
     move_after_substeps(coupling, dt);

@@ -77,13 +77,13 @@ SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
 }
 
 /* Weight of the acceleration of a step of dt in the mean. */
-SPHFSI_INLINE double motion_weight(const struct coupling *coupling, double dt)
+SPHFSI_INLINE double coupling_acceleration_weight(const struct coupling *coupling, double dt)
 {
     return acceleration_weight(averaging_time(coupling), acceleration_age(coupling), dt);
 }
 
 /* Single rate: position and velocity of the structure; `weight` of the acceleration in the mean. */
-void motion_at_single_rate(struct coupling *coupling, double weight);
+void coupling_move_at_single_rate(struct coupling *coupling, double weight);
 
 /* --- impulse.c: impedance of the fluid in sub-steps, and the impulse (T-35a to T-35e) --- */
 

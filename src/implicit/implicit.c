@@ -301,7 +301,7 @@ static bool step(struct solid *solid, struct particles *particles, double dt, in
     return done;
 }
 
-void solid_advance_any(struct solid *solid, struct particles *particles, double dt, int n)
+void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n)
 {
     struct loads *const loads = solid->loads;
     struct hinges *const hinges = solid->hinges;

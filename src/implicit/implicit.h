@@ -61,8 +61,8 @@ SPHFSI_INLINE bool implicit_is_next(const struct solid *solid)
     return solid->implicit && !solid->contact;
 }
 
-/* n steps of dt: implicit ones if implicit_is_next, or those of solid_advance. */
-void solid_advance_any(struct solid *solid, struct particles *particles, double dt, int n);
+/* n steps of dt of the solid: implicit ones if implicit_is_next, or those of solid_advance. */
+void implicit_advance(struct solid *solid, struct particles *particles, double dt, int n);
 
 /* After the state has been read: the matrix that it was found with. */
 void implicit_resume(struct solid *solid, struct particles *particles);

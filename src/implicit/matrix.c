@@ -33,7 +33,7 @@ static enum err link_particles(const struct solid *solid, struct implicit_links 
             links->node[own] = (int32_t)i;
             for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
                 const double gx = weight(solid, m, W_GX, l), gy = weight(solid, m, W_GY, l);
-                if (weight(solid, m, W_X, l) == NOBODY) continue;
+                if (weight(solid, m, W_X, l) == ABSENT_NEIGHBOUR_X) continue;
                 links->node[at] = (int32_t)(i + solid->offset[m]);
                 links->gx[at] = gx;
                 links->gy[at] = gy;

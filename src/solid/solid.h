@@ -52,7 +52,7 @@ enum solid_packed_field {
 };
 
 /* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
-#define NOBODY 1e6
+#define ABSENT_NEIGHBOUR_X 1e6
 
 /* One reference neighbour of each particle of a pack, a slot. For lane l it is the particle
  * `offset` + i + l; the weights are zero if that lane has no such neighbour. A slot has one number

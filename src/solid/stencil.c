@@ -53,7 +53,7 @@ static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
     struct draft *const slot = &slots[(*n)++];
     memset(slot, 0, sizeof *slot);
     slot->offset = offset;
-    for (int l = 0; l < MAX_LANES; l++) slot->weight[W_X][l] = NOBODY;
+    for (int l = 0; l < MAX_LANES; l++) slot->weight[W_X][l] = ABSENT_NEIGHBOUR_X;
     return slot;
 }
 

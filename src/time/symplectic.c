@@ -95,7 +95,7 @@ static void predict_at_single_rate(struct simulation *sim, double dt)
     predict_solid(&sim->particles[KIND_SOLID], 0.5 * dt);
     sim->solid.time = scene_time(sim, sim->state.time + 0.5 * dt);
     solid_place_clamps(&sim->solid, &sim->particles[KIND_SOLID], sim->solid.time);
-    motion_at_single_rate(&sim->coupling, 0);
+    coupling_move_at_single_rate(&sim->coupling, 0);
 }
 
 static void correct_at_single_rate(struct simulation *sim, double dt)
@@ -105,7 +105,7 @@ static void correct_at_single_rate(struct simulation *sim, double dt)
     energy_book_solid(sim, dt, 1);
     solid_finish_kick(&sim->solid, solid, solid->vx0, solid->vy0, dt);
     solid_place_clamps(&sim->solid, solid, scene_time(sim, sim->state.time + dt));
-    motion_at_single_rate(&sim->coupling, motion_weight(&sim->coupling, dt));
+    coupling_move_at_single_rate(&sim->coupling, coupling_acceleration_weight(&sim->coupling, dt));
     sim->state.solid_substeps++;
     sim->substeps = 1;
 }

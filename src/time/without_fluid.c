@@ -18,7 +18,7 @@ static void advance_lone(struct simulation *sim, double dt, int n)
     if (integrator->solid_step && !solid->implicit) {
         for (int k = 0; k < n; k++) integrator->solid_step(sim, dt);
     } else {
-        solid_advance_any(solid, &sim->particles[KIND_SOLID], dt / sim->substeps, all);
+        implicit_advance(solid, &sim->particles[KIND_SOLID], dt / sim->substeps, all);
         sim->state.solid_evaluations += all;
     }
 }

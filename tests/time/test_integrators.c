@@ -495,9 +495,11 @@ static void test_least_lag_of_what_the_fluid_sees(void)
 {
     open("integrator=leapfrog", "numerics.multirate=on");
     const double lag = 0.0135 / 20, brief = 1e-5;
-    assert_near(1e-15, lag - 0.5 * brief, brief / motion_weight(&rig.sim.coupling, brief) - brief,
+    assert_near(1e-15, lag - 0.5 * brief,
+                brief / coupling_acceleration_weight(&rig.sim.coupling, brief) - brief,
                 "a short step");
-    assert_near(1e-15, lag / 4, 2 * lag / motion_weight(&rig.sim.coupling, 2 * lag) - 2 * lag,
+    assert_near(1e-15, lag / 4,
+                2 * lag / coupling_acceleration_weight(&rig.sim.coupling, 2 * lag) - 2 * lag,
                 "a long one");
 }
 
