@@ -44,15 +44,15 @@ void impulse_begin(struct coupling *coupling, double dt)
     }
 }
 
-void impedance_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
+void impedance_kick(const struct particles *particles, int64_t first, int64_t end, double kick_time,
                     double drift, double next)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
         const double before =
             particles->vx[i] * particles->face_x[i] + particles->vy[i] * particles->face_y[i];
-        particles->vx[i] += kick * particles->sx[i];
-        particles->vy[i] += kick * particles->sy[i];
+        particles->vx[i] += kick_time * particles->sx[i];
+        particles->vy[i] += kick_time * particles->sy[i];
         const double along =
             particles->vx[i] * particles->face_x[i] + particles->vy[i] * particles->face_y[i];
         const double faster = along - particles->face_v[i];

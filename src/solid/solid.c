@@ -273,26 +273,26 @@ static void pack_all_motion(const struct pack_range *own)
 #pragma omp barrier
 }
 
-void solid_plain_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                      double drift, double next)
+void solid_plain_kick(const struct particles *particles, int64_t first, int64_t end,
+                      double kick_time, double drift, double next)
 {
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
-        particles->vx[i] += kick * particles->sx[i];
-        particles->vy[i] += kick * particles->sy[i];
+        particles->vx[i] += kick_time * particles->sx[i];
+        particles->vy[i] += kick_time * particles->sy[i];
         particles->ux[i] = particles->ux[i] + drift * particles->vx[i] + next * particles->vx[i];
         particles->uy[i] = particles->uy[i] + drift * particles->vy[i] + next * particles->vy[i];
     }
 }
 
-static void kick_and_drift(const struct pack_range *own, solid_kick *f, double kick, double drift,
-                           double next)
+static void kick_and_drift(const struct pack_range *own, solid_kick *f, double kick_time,
+                           double drift, double next)
 {
     const struct particles *const particles = own->p;
     const struct solid_pack *const pack = own->s->pack;
     const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : particles->n;
     const int64_t first = own->first < own->last ? pack[own->first].i : end;
-    f(particles, first, end, kick, drift, next);
+    f(particles, first, end, kick_time, drift, next);
     pack_all_motion(own);
 }
 

@@ -81,11 +81,11 @@ struct solid;
 typedef void solid_sweep(const struct solid *solid, struct particles *particles, int64_t first,
                          int64_t last);
 
-/* Kicks the particles from `first` to `end` - 1 for `kick` seconds, then drifts them by `drift`, to
+/* Kicks the particles from `first` to `end` - 1 for `kick_time`, then drifts them by `drift`, to
  * the end of this step, and by `next`, into the following one. The drifts are added separately:
  * their sum rounds differently, and n steps at once would not have the bits of n steps. */
-typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end, double kick,
-                        double drift, double next);
+typedef void solid_kick(const struct particles *particles, int64_t first, int64_t end,
+                        double kick_time, double drift, double next);
 
 /* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:
  * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */
