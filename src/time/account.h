@@ -23,10 +23,10 @@ enum energy_term {
 
 /* Energies of a section, or of a region at its first section, J/m. */
 struct energy_entry {
-    double region;   /* first section of its region; -1: no entry, as of walls at rest */
-    double supplied; /* energy at the start and all work since; of driven walls: on the fluid */
-    double given;    /* to a body, by the fluid: work at the velocity that the fluid uses */
-    double received; /* by a body, from the fluid (T-46c) */
+    double region;     /* first section of its region; -1: no entry, as of walls at rest */
+    double supplied;   /* energy at the start and all work since; of driven walls: on the fluid */
+    double from_fluid; /* work on a body, at the velocity that the fluid uses */
+    double received;   /* by a body, from the fluid (T-46c) */
     /* `supplied` after the last step, work of that step, and its largest change from step to step,
      * which bounds the error of the sums over steps. */
     double supplied_before, last_work, work_change;

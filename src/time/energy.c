@@ -42,12 +42,12 @@ static void add_particle(struct ledger *row, const struct particles *particles, 
     row->mass += m;
 }
 
-static void add_fluid(const struct simulation *sim, struct energies of[ENERGY_ENTRIES])
+static void add_fluid(const struct simulation *sim, struct energies energy[ENERGY_ENTRIES])
 {
     const struct particles *const particles = &sim->particles[KIND_FLUID];
     const struct fluid_constants *const k = &sim->fluid.k;
     for (int64_t i = 0; i < particles->n; i++) {
-        struct energies *const e = &of[energy_entry(KIND_FLUID, particles->body[i])];
+        struct energies *const e = &energy[energy_entry(KIND_FLUID, particles->body[i])];
         const double m = particle_mass(k, particles, i);
         add_particle(&e->row, particles, i, m, sim->scene->top.gravity);
         e->row.internal += m * eos_energy(particles->dens[i], k->c0);
@@ -139,27 +139,27 @@ static void add_dummies(const struct simulation *sim, struct energies *fluid)
 static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
 
 /* Returns the smallest det F. */
-static double find_energies(struct simulation *sim, struct energies of[ENERGY_ENTRIES])
+static double find_energies(struct simulation *sim, struct energies energy[ENERGY_ENTRIES])
 {
     double repulsion[SCENE_MAX_SECTIONS] = {0};
-    memset(of, 0, ENERGY_ENTRIES * sizeof *of);
-    if (sim->effects & FX_FLUID) add_fluid(sim, of);
-    if (sim->effects & FX_FLUID && keeps_account(sim)) add_dummies(sim, of);
+    memset(energy, 0, ENERGY_ENTRIES * sizeof *energy);
+    if (sim->effects & FX_FLUID) add_fluid(sim, energy);
+    if (sim->effects & FX_FLUID && keeps_account(sim)) add_dummies(sim, energy);
     if (sim->effects & FX_REPULSION && keeps_account(sim))
         fluid_repulsion_energy(&sim->fluid, sim->particles, &sim->cells, repulsion);
-    for (int k = 0; k < sim->scene->n_fluid; k++) of[k].repulsion = repulsion[k];
-    add_bodies(sim, &of[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, 0))]);
-    return sim->effects & FX_SOLID ? add_solids(sim, &of[energy_entry(KIND_SOLID, 0)]) : 1;
+    for (int k = 0; k < sim->scene->n_fluid; k++) energy[k].repulsion = repulsion[k];
+    add_bodies(sim, &energy[energy_entry(KIND_WALL, scene_rigid_wall(sim->scene, 0))]);
+    return sim->effects & FX_SOLID ? add_solids(sim, &energy[energy_entry(KIND_SOLID, 0)]) : 1;
 }
 
 struct ledger simulation_ledger(struct simulation *sim)
 {
-    struct energies of[ENERGY_ENTRIES], sum = {.tolerance = 0};
+    struct energies energy[ENERGY_ENTRIES], sum = {.tolerance = 0};
     const struct state *const state = &sim->state;
     const struct particles *const fluid = &sim->particles[KIND_FLUID];
     simulation_refresh(sim);
-    const double det_low = find_energies(sim, of);
-    for (int k = 0; k < ENERGY_ENTRIES; k++) add_energies(&sum, &of[k]);
+    const double det_low = find_energies(sim, energy);
+    for (int k = 0; k < ENERGY_ENTRIES; k++) add_energies(&sum, &energy[k]);
     struct ledger row = sum.row;
     row.time = state->time;
     row.dt = state->dt;
@@ -209,10 +209,10 @@ void energy_book_evaluation(struct simulation *sim, double dt)
         const struct moving_wall *const wall = &sim->wall_motion.body[b];
         struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
         const double work = dt * moving_wall_power(wall, &sim->particles[KIND_WALL]);
-        *(wall->driven ? &e->supplied : &e->given) += wall->driven ? work : -work;
+        *(wall->driven ? &e->supplied : &e->from_fluid) += wall->driven ? work : -work;
     }
     for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
-        entry_of(sim, KIND_SOLID, solid->body[i])->given +=
+        entry_of(sim, KIND_SOLID, solid->body[i])->from_fluid +=
             dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
 }
 
@@ -223,15 +223,15 @@ void energy_book_solid(struct simulation *sim, double dt, int n)
     const struct force_hook *const hook = sim->solid.force_hook;
     /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
      * the kicks are longer by half a kick of the change of velocity. */
-    const double late = sim->solid.centred ? 0 : 0.5 * dt / n;
+    const double lag = sim->solid.centred ? 0 : 0.5 * dt / n;
     for (int64_t i = 0; i < particles->n; i++) {
         if (particles->free[i] == 0) continue;
         struct energy_entry *const e = entry_of(sim, KIND_SOLID, particles->body[i]);
         const double mass = sim->solid.body[particles->body[i]].mass;
         const double ux =
-            particles->ux[i] - particles->ux0[i] - late * (particles->vx[i] - particles->vx0[i]);
+            particles->ux[i] - particles->ux0[i] - lag * (particles->vx[i] - particles->vx0[i]);
         const double uy =
-            particles->uy[i] - particles->uy0[i] - late * (particles->vy[i] - particles->vy0[i]);
+            particles->uy[i] - particles->uy0[i] - lag * (particles->vy[i] - particles->vy0[i]);
         double work = particles->fx[i] * ux + particles->fy[i] * uy;
         if (sim->coupling.impedance > 0) work += mass * particles->face_work[i]; /* T-35a */
         e->received += work;
@@ -375,23 +375,23 @@ void energy_after_step(struct simulation *sim)
 void energy_begin(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    struct energies of[ENERGY_ENTRIES];
+    struct energies energy[ENERGY_ENTRIES];
     const int sections[] = {sim->scene->n_fluid, 0, sim->scene->n_solid};
     memset(account, 0, sizeof *account);
     sim->state.energy_start -= simulation_ledger(sim).dissipated;
     if (!keeps_account(sim)) return;
-    find_energies(sim, of);
+    find_energies(sim, energy);
     account->through_open = open_energy(&sim->open);
     account->tested_at = sim->state.time;
     account->tested_steps = (double)sim->state.steps;
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         struct energy_entry *const e = &account->entry[k];
         e->region = k % SCENE_MAX_SECTIONS < sections[k / SCENE_MAX_SECTIONS] ? k : -1;
-        e->received = of[k].undelivered;
-        e->supplied = e->supplied_before = without_potential(&of[k]) + of[k].row.potential;
-        e->lowest_potential = of[k].row.potential;
-        e->lowest[TERM_FLUID] = e->lowest[TERM_ALL] = of[k].dummies;
-        for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = without_potential(&of[k]);
+        e->received = energy[k].undelivered;
+        e->supplied = e->supplied_before = without_potential(&energy[k]) + energy[k].row.potential;
+        e->lowest_potential = energy[k].row.potential;
+        e->lowest[TERM_FLUID] = e->lowest[TERM_ALL] = energy[k].dummies;
+        for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = without_potential(&energy[k]);
     }
     for (int k = 0; k < sim->wall_motion.n; k++) {
         const int wall = energy_entry(KIND_WALL, sim->wall_motion.body[k].section);
@@ -399,7 +399,7 @@ void energy_begin(struct simulation *sim)
     }
     join_beams(sim, scene_beam_wall(sim->scene, 0));
     join_neighbours(sim);
-    if (of[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(sim);
+    if (energy[energy_entry(KIND_SOLID, 0)].row.contact > 0) join_bodies(sim);
 }
 
 /* --- the test for gains --- */
@@ -409,60 +409,60 @@ static void find_gain_of_region(struct energy_account *account, int entry,
                                 const struct energies *region, double driven,
                                 struct energy_gain *worst)
 {
-    struct energy_entry *const at = &account->entry[entry];
-    at->lowest_potential = min2(at->lowest_potential, region->row.potential);
+    struct energy_entry *const e = &account->entry[entry];
+    e->lowest_potential = min2(e->lowest_potential, region->row.potential);
     const double active =
-        driven + without_potential(region) + region->row.potential - at->lowest_potential;
+        driven + without_potential(region) + region->row.potential - e->lowest_potential;
     account->largest_available = max2(account->largest_available, active);
     double gained = 0;
     for (int t = 0; t < ENERGY_TERMS; t++) {
         /* Dummies may return what they hold. */
         const double now = region->term[t],
                      base = now + (t == TERM_FLUID || t == TERM_ALL ? region->dummies : 0);
-        at->available[t] = base <= at->lowest[t] ? active : max2(at->available[t], active);
-        at->lowest[t] = min2(at->lowest[t], base);
-        gained = now - at->lowest[t];
+        e->available[t] = base <= e->lowest[t] ? active : max2(e->available[t], active);
+        e->lowest[t] = min2(e->lowest[t], base);
+        gained = now - e->lowest[t];
         account->most[t] = max2(account->most[t], gained);
         gained -= region->tolerance;
-        const double share = at->available[t] > 0 ? gained / at->available[t] : (double)INFINITY;
+        const double share = e->available[t] > 0 ? gained / e->available[t] : (double)INFINITY;
         if (t != TERM_ALL && gained > 0 && share > worst->share)
             *worst = (struct energy_gain){entry, (enum energy_term)t, .share = share,
-                                          .energy = gained, .available = at->available[t]};
+                                          .energy = gained, .available = e->available[t]};
     }
-    if (worst->entry == entry) worst->all = max2(0, gained / at->available[TERM_ALL]);
+    if (worst->entry == entry) worst->all = max2(0, gained / e->available[TERM_ALL]);
 }
 
 struct energy_gain energy_find_gain(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    struct energies of[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
+    struct energies energy[ENERGY_ENTRIES], sum[ENERGY_ENTRIES] = {0};
     struct energy_gain worst = {.entry = -1};
     const int first_wall = energy_entry(KIND_WALL, 0);
     /* Energy of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive.
      * Beside it the energy at the start from rest says nothing. */
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
     const double driven = sim->effects & FX_OPEN ? flow * (double)sim->particles[KIND_FLUID].n : 0;
-    find_energies(sim, of);
-    if (sim->effects & FX_SOLID) add_late_work(sim, &of[energy_entry(KIND_SOLID, 0)]);
+    find_energies(sim, energy);
+    if (sim->effects & FX_SOLID) add_late_work(sim, &energy[energy_entry(KIND_SOLID, 0)]);
     join_neighbours(sim);
     memset(account->now, 0, sizeof account->now);
     for (int k = 0; k < ENERGY_ENTRIES; k++) {
         const int region = region_of(account, k);
         if (region < 0) continue;
         const struct energy_entry *const e = &account->entry[k];
-        double *const term = of[k].term;
-        const bool body = k >= first_wall && of[k].row.mass > 0; /* not a wall that is driven */
+        double *const term = energy[k].term;
+        const bool body = k >= first_wall && energy[k].row.mass > 0; /* not a driven wall */
         /* T-46: own energy less the work on it. What a body was given, the fluid has lost: the work
-         * on the fluid is -given. What it received beyond that is a gain of the interface, but for
-         * an impulse that the fluid has still to receive. */
+         * on the fluid is -from_fluid. What it received beyond that is a gain of the interface, but
+         * for an impulse that the fluid has still to receive. */
         term[body ? TERM_SOLID : TERM_FLUID] =
-            without_potential(&of[k]) + of[k].row.potential - e->supplied;
-        if (body) term[TERM_FLUID] = e->given;
-        if (body) term[TERM_INTERFACE] = e->received - e->given - of[k].undelivered;
+            without_potential(&energy[k]) + energy[k].row.potential - e->supplied;
+        if (body) term[TERM_FLUID] = e->from_fluid;
+        if (body) term[TERM_INTERFACE] = e->received - e->from_fluid - energy[k].undelivered;
         term[TERM_ALL] = term[TERM_FLUID] + term[TERM_INTERFACE] + term[TERM_SOLID];
-        of[k].tolerance +=
-            e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(of[k].row.potential));
-        add_energies(&sum[region], &of[k]);
+        energy[k].tolerance +=
+            e->work_change + ROUND_OFF * (fabs(e->supplied) + fabs(energy[k].row.potential));
+        add_energies(&sum[region], &energy[k]);
         for (int t = 0; t < ENERGY_TERMS; t++) account->now[t] += term[t];
     }
     for (int k = 0; k < ENERGY_ENTRIES; k++)
