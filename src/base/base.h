@@ -178,6 +178,13 @@ double thread_clock(void);
 /* The clock of phases of steps in this thread: the first of both, or the second one, which is
  * slower to read but does not go on while other programs have the core. */
 double phase_clock(void);
+/* Adds the time since `since` to that of a phase; returns the present time. */
+SPHFSI_INLINE double phase_end(double *seconds, double since)
+{
+    const double now = phase_clock();
+    *seconds += now - since;
+    return now;
+}
 void phase_clock_use(bool of_thread);
 
 /* Settings of the calling thread that the library changes during a call: the locale, since numbers

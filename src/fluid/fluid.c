@@ -217,27 +217,19 @@ static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUN
     fluid->walls_placed = !fluid->never_skip;
 }
 
-/* Adds the time since `since` to that of a phase; returns the present time. */
-static double end_phase(double *seconds, double since)
-{
-    const double now = phase_clock();
-    *seconds += now - since;
-    return now;
-}
-
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT])
 {
     double since = phase_clock();
     fluid->sweeps->pack(fluid, kinds, cells);
-    since = end_phase(&phase_seconds[PHASE_packed], since);
+    since = phase_end(&phase_seconds[PHASE_packed], since);
     if (fluid->effects & FX_ANTUONO) {
         if (!fluid->keeps_slopes) fluid->sweeps->find_slopes(fluid, kinds, cells);
-        since = end_phase(&phase_seconds[PHASE_slope], since);
+        since = phase_end(&phase_seconds[PHASE_slope], since);
     }
     if (fluid->effects & (FX_WALL | FX_COUPLING)) {
         update_dummies(fluid, kinds, cells);
-        since = end_phase(&phase_seconds[PHASE_wall], since);
+        since = phase_end(&phase_seconds[PHASE_wall], since);
     }
     const int32_t n_active = cells->list[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
     double acceleration2 = 0, approach = 0;
@@ -254,7 +246,7 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
         approach = largest.approach;
     }
     fluid->extremes = (struct rate_extremes){acceleration2, approach};
-    end_phase(&phase_seconds[PHASE_fluid], since);
+    phase_end(&phase_seconds[PHASE_fluid], since);
 }
 
 void fluid_write_pressure(const struct fluid *fluid, struct particles *particles)

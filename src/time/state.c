@@ -49,8 +49,7 @@ double phases_so_far(const struct simulation *sim)
 double phase_add(struct simulation *sim, enum phase phase, double since)
 {
     if (!phase_runs(phase, sim->effects)) return since; /* its time counts for the next phase */
-    const double now = phase_clock();
-    sim->phase_seconds[phase] += now - since;
+    const double now = phase_end(&sim->phase_seconds[phase], since);
     if (phase == PHASE_solid && sim->effects & FX_CONTACT) {
         /* Its forces are computed during the solid's sub-steps. */
         sim->phase_seconds[PHASE_solid] -= sim->contact.seconds;
