@@ -406,7 +406,7 @@ static enum err check_top(struct reader *r, const void *section)
     return ERR_OK;
 }
 
-/* Implicit steps need an energy of the hourglass force, forces in double and, beside fluid, an
+/* Implicit steps need an energy of the hourglass force, forces in double and, with fluid, an
  * exchange that allows the solid steps of its own. */
 static enum err check_solid_steps(struct reader *r)
 {

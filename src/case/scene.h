@@ -227,7 +227,7 @@ struct scene {
     double given_speed; /* largest that walls, open boundaries and the start give it, m/s */
     double domain_lower[2], domain_upper[2]; /* in effect */
     bool full;        /* there are open boundaries and, at the start, no free surface */
-    bool packed;      /* fluid beside edges that are not along its lattice (T-80) */
+    bool packed;      /* fluid near edges off its lattice (T-80) */
     bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */
 };
 

@@ -52,7 +52,7 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
 }
 
 /* A wet face of a body between the lines of the fluid's lattice leaves a gap, into which fluid that
- * starts under pressure expands, and gains energy. Fluid beside faces in other directions is
+ * starts under pressure expands, and gains energy. Fluid at faces in other directions is
  * packed. Beside water that rests under its own weight it is below 2e-4 of the available energy. */
 static void warn_of_wet_faces(struct check *check, const struct region *region)
 {

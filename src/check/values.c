@@ -27,7 +27,7 @@ static void warn_of_fluid_keys(struct check *check, const struct scene_fluid *fl
                      fluid->shifting, scene->numerics.cfl);
 }
 
-/* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
+/* L-6 gives the fluid at a surface the acceleration of the surface, also along it. */
 static void warn_of_sliding(struct check *check)
 {
     const struct scene *const scene = check->scene;

@@ -6,7 +6,7 @@
 #include "coupling/coupling.h"
 #include "solid/loads.h"
 
-/* T-35f: fluid beside a body thinner than two of its spacings receives impulses of both sides. */
+/* T-35f: fluid at a body thinner than two of its spacings receives impulses of both sides. */
 static double impedance_of(const struct coupling *coupling, const struct solid_body *body)
 {
     return coupling->impedance * min2(1, body->thickness / (2 * coupling->scene->top.dp));

@@ -253,7 +253,7 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
 /* --- integral --- */
 
 /* An integral is halved at most so often. Jumps that cancel are looked for in the first, to 1/256
- * of it: beside a zero of the function their test sees round-off, and halving would not end. */
+ * of it: near a zero of the function their test sees round-off, and halving would not end. */
 enum { INTEGRAL_HALVINGS = 18, HALVINGS_FOR_JUMPS = 8 };
 
 /* Halves an interval as long as its Gauss-Legendre quadrature with three points, and the slope in

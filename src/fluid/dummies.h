@@ -168,7 +168,7 @@ SPHFSI_INLINE void pack_repulsion(const struct fluid *fluid, const struct partic
 }
 
 /* Packs mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With
- * one-sided pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
+ * one-sided pressure a particle's own image has 2 v_s - v_a: v_s with twice the weight (L-6b). */
 SPHFSI_INLINE void pack_mirrored_velocity(const struct fluid *fluid,
                                           const struct particles *particles,
                                           const struct dummy_cluster *d,

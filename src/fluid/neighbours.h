@@ -220,7 +220,7 @@ SPHFSI_INLINE vreal vpick(vmask mask, vreal yes, vreal no)
 
 /* T-110, T-110b, T-110e, for vectors; `lines_seen` has them for one connection in double precision.
  * How much of a pair with the separation (x, y) is seen. `line`, `filled`: of the
- * dummy that is one of it. `opaque`: lines are so beside their tips, too. */
+ * dummy that is one of it. `opaque`: lines are so near their tips, too. */
 SPHFSI_INLINE vreal visible(const struct receiver *a, vreal x, vreal y, vreal line, vreal filled,
                             bool opaque)
 {

@@ -44,8 +44,8 @@ enum err open_create(struct open_boundaries *o, struct arena *a, const struct sc
     return ERR_OK;
 }
 
-/* Where a particle is beside a line: in front of it on the side of the fluid, along it, and the
- * strip of the buffer, a spacing wide or nearly so, that it lies in. Every place on the line
+/* Where a particle is relative to a line: in front of it on the side of the fluid, along it, and
+ * the strip of the buffer, a spacing wide or nearly so, that it lies in. Every place on the line
  * belongs to one strip, so fluid that returns adds none. */
 struct place {
     double in, along, strip;

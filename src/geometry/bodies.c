@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Bodies: their thickness, the area that their particles cover, those that clamps hold, those
- * beside a body that is bonded to theirs; the mass of rigid bodies, from their shapes. */
+ * next to a body that is bonded to theirs; the mass of rigid bodies, from their shapes. */
 #include "geometry/sampling.h"
 #include "base/point_grid.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Fluid beside edges that are not along its lattice. The cells with their centre inside the shape
+ * Fluid near edges off its lattice. The cells with their centre inside the shape
  * and not too near to a wall cover less than its area, and the level falls. So as many of the
  * cells that such edges cut are filled as their parts inside the shape add up to, on each side of
  * thin lines. Then the particles there are moved until a uniform pressure pushes none of them

@@ -167,7 +167,7 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples) SPHFSI_CHECKED;
 
-/* Packs fluid beside edges not along its lattice, with `scheme = standard` (geometry/pack.c). */
+/* Packs fluid near edges off its lattice, with `scheme = standard` (geometry/pack.c). */
 enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* The piece of a region at a place in the axes of its lattice, or -1. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Hinges within implicit steps (T-90a): their forces are unknowns beside the displacements. */
+ * Hinges within implicit steps (T-90a): their forces are further unknowns. */
 #include "implicit/implicit.h"
 #include "base/cholesky.h"
 

@@ -58,8 +58,8 @@ double solid_thickness(const struct solid *solid, const struct particles *partic
 }
 
 /* Whether a body can turn freely, or has hardly any artificial viscosity, so that float is not
- * sufficient. Float resolves the displacement gradient of a rotation to 1e-7, beside strains that
- * may be smaller. Without damping the effect on the motion accumulates: a steel strip without
+ * sufficient. Float resolves the displacement gradient of a rotation to 1e-7, relative to strains
+ * that may be smaller. Without damping the effect on the motion accumulates: a steel strip without
  * viscosity gained 4e-4 of its energy in 0.14 s. With alpha_s = 0.001 it gained as much as in
  * double; ten times that is required. */
 static bool needs_double(const struct solid *solid, const struct scene *scene,

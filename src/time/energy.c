@@ -439,7 +439,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
     struct energy_gain worst = {.entry = -1};
     const int first_wall = energy_entry(KIND_WALL, 0);
     /* Energy of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive.
-     * Beside it the energy at the start from rest says nothing. */
+     * Compared with it the energy of a start from rest says nothing. */
     const double flow = 0.5 * sim->fluid.k.mass * square(0.1 * sim->fluid.k.c0);
     const double driven = sim->effects & FX_OPEN ? flow * (double)sim->particles[KIND_FLUID].n : 0;
     find_energies(sim, energy);

@@ -181,7 +181,7 @@ static enum err create_solids(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* The step of rigid bodies and beams alone; beside solids the step is that of solids. */
+/* The step of rigid bodies and beams alone; with solids the step is that of solids. */
 static void set_step_of_bodies(struct simulation *sim)
 {
     const double never = (double)INFINITY;
