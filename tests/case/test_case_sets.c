@@ -89,7 +89,7 @@ static void test_each_is_refused(void)
 }
 
 /* What is right beside what is refused above. */
-static void test_these_are_taken(void)
+static void test_valid_sets_are_taken(void)
 {
     static const char *const sets[] = {"dp =\t10 mm", "dp=+10 mm", "dp=--10 mm", " dp = 1 %*1 m",
                                        "solid a.young=1 MPa"};
@@ -113,6 +113,6 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_each_is_refused);
-    RUN_TEST(test_these_are_taken);
+    RUN_TEST(test_valid_sets_are_taken);
     return UNITY_END();
 }

@@ -30,7 +30,7 @@ static void open(const char *set, const char *another)
     solid = &rig.sim.particles[KIND_SOLID];
 }
 
-static void test_wherever_there_are_substeps(void)
+static void test_impedance_acts_in_all_substeps(void)
 {
     static const char *const single[] = {"numerics.multirate=off", "numerics.fixed_step=1e-9"};
     for (size_t k = 0; k < COUNT_OF(single); k++) {
@@ -511,7 +511,7 @@ static void test_moving_clamps_owe_nothing(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_wherever_there_are_substeps);
+    RUN_TEST(test_impedance_acts_in_all_substeps);
     RUN_TEST(test_surface_of_a_straight_side);
     RUN_TEST(test_kick_and_settling_by_hand);
     RUN_TEST(test_kicks_of_a_heavy_body);

@@ -316,7 +316,7 @@ static double thrown(int seed, double safety)
 }
 
 /* One throw is a draw: 1.6e-4 to 5e-4. */
-static void test_throws(void)
+static void test_thrown_bodies_gain_no_energy(void)
 {
     enum { THROWS = 12 };
     double gain = 0, finer = 0;
@@ -363,7 +363,7 @@ int main(void)
     RUN_TEST(test_each_point_rubs_by_its_own_load);
     RUN_TEST(test_energy_of_the_slider);
     RUN_TEST(test_rolling_disc);
-    RUN_TEST(test_throws);
+    RUN_TEST(test_thrown_bodies_gain_no_energy);
     RUN_TEST(test_bound_of_friction);
     return UNITY_END();
 }

@@ -47,7 +47,7 @@ static double after(int64_t i, double dens)
 
 /* The kernel reaches over 22 particles within the fluid; a third of that, 7, and less are a
  * drop. */
-static void test_who_is_a_drop(void)
+static void test_which_particles_are_isolated(void)
 {
     const int64_t drop = at(41.5e-3, 40.5e-3);
     TEST_ASSERT_EQUAL_INT(3, simulation_count_near(&rig.sim, fluid->x[drop], fluid->y[drop],
@@ -191,7 +191,7 @@ int main(void)
 {
     UNITY_BEGIN();
     rig_one_thread();
-    RUN_TEST(test_who_is_a_drop);
+    RUN_TEST(test_which_particles_are_isolated);
     RUN_TEST(test_verlet_forgets_as_well);
     RUN_TEST(test_leapfrog_forgets_its_rates);
     RUN_TEST(test_limit_follows_the_sound_factor);
