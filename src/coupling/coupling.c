@@ -116,7 +116,7 @@ void coupling_predict(struct coupling *coupling, double dt)
 {
     if (coupling->impedance > 0)
         impulse_set_time(coupling, dt); /* for the force of the corrector */
-    predict_motion(coupling, coupling->stage * dt);
+    predict_motion(coupling, coupling->rates_at * dt);
 }
 
 double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time,
@@ -125,9 +125,9 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double rate
     struct particles *const particles = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, rates_time);
-    if (impedance && coupling->stage == 0) impulse_set_time(coupling, dt); /* not predicted */
+    if (impedance && coupling->rates_at == 0) impulse_set_time(coupling, dt); /* not predicted */
     const double middle = 0.5 * (coupling->solid->centred ? dt : dt - dt / n);
-    coupling->lead = middle - coupling->stage * dt;
+    coupling->lead = middle - coupling->rates_at * dt;
     if (particles->mean_fx) extrapolate_forces(coupling, dt, rates_time, first_step);
         /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)

@@ -20,7 +20,7 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool multirate;              /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    double stage;    /* of the integrator: when its rates are taken, in steps after the start */
+    double rates_at; /* of the integrator: when its rates are taken, in steps after the start */
     bool alternates; /* of the integrator: two solutions, which share forces and impulses */
     double lead;     /* s: from the last evaluation to the middle of the structure's kicks */
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
@@ -65,7 +65,7 @@ SPHFSI_INLINE double averaging_time(const struct coupling *coupling)
  * step, half a step old at its end, and half a step older at the corrector of `symplectic`. */
 SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
 {
-    return 0.5 + coupling->stage;
+    return 0.5 + coupling->rates_at;
 }
 
 /* Time over which the velocity is extrapolated, in half steps (T-35): from the middle of a
@@ -73,7 +73,7 @@ SPHFSI_INLINE double acceleration_age(const struct coupling *coupling)
  * extrapolates nothing, and has the bounds of the other integrators. */
 SPHFSI_INLINE double extrapolated_halves(const struct coupling *coupling)
 {
-    return coupling->multirate ? 1 + 2 * coupling->stage : 1;
+    return coupling->multirate ? 1 + 2 * coupling->rates_at : 1;
 }
 
 /* Weight of the acceleration of a step of dt in the mean. */

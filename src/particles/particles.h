@@ -11,8 +11,8 @@ enum group {
     G_DENSITY = 1 << 1,        /* fluid; walls and structures in contact with fluid */
     G_RATE = 1 << 2,           /* fluid, moving walls, structures */
     G_FLUID = 1 << 3,          /* fluid */
-    G_STAGE = 1 << 4,          /* start of a step: solids; fluid of the predictor-corrector */
-    G_STAGE_FLUID = 1 << 5,    /* predictor-corrector: fluid */
+    G_START = 1 << 4,          /* start of a step: solids; fluid of the predictor-corrector */
+    G_START_FLUID = 1 << 5,    /* predictor-corrector: fluid */
     G_VERLET = 1 << 6,         /* Verlet: fluid */
     G_LEAPFROG = 1 << 7,       /* leapfrog: fluid */
     G_REFERENCE = 1 << 8,      /* solid, moving walls */

@@ -13,7 +13,7 @@ static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_
     memset(particles, 0, sizeof *particles);
     if (!groups || points->n == 0) return ERR_OK;
     if (kind == KIND_FLUID) groups |= sim->integrator->fluid_groups;
-    if (kind == KIND_SOLID) groups |= G_STAGE;
+    if (kind == KIND_SOLID) groups |= G_START;
     const int64_t most = groups & G_OPEN ? open_capacity(sim->scene) : points->n;
     TRY(particles_create(particles, &sim->arena, most, groups, kind_names[kind], d));
     particles->n = points->n;
@@ -213,7 +213,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         .fluid = &sim->fluid,
         .solid = &sim->solid,
         .particles = &sim->particles[KIND_SOLID],
-        .stage = sim->integrator->stage,
+        .rates_at = sim->integrator->rates_at,
         .alternates = sim->integrator->alternates,
         .exchange_time = &sim->state.exchange_time,
     };
@@ -222,13 +222,13 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         TRY(wall_motion_create(&sim->wall_motion, a, sim->scene, walls, d));
         if (sim->effects & FX_RIGID)
             TRY(rigid_create(&sim->rigid, a, sim->scene, &sim->wall_motion, walls,
-                             sim->integrator->stage > 0 || !(sim->effects & FX_FLUID), d));
+                             sim->integrator->rates_at > 0 || !(sim->effects & FX_FLUID), d));
         if (sim->effects & FX_RIGID) sim->contact.rigid = &sim->rigid;
     }
     if (sim->effects & FX_BEAM) TRY(beams_create(&sim->beams, a, sim->scene, d));
     if (sim->effects & FX_BEAM && sim->effects & FX_RIGID) sim->beams.rigid = &sim->rigid;
     if (sim->effects & FX_BEAM && sim->effects & FX_FLUID)
-        TRY(beams_wet_create(&sim->beams, a, &sim->fluid.lines, walls, sim->integrator->stage,
+        TRY(beams_wet_create(&sim->beams, a, &sim->fluid.lines, walls, sim->integrator->rates_at,
                              sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
     if (sim->effects & FX_MOTION) move_walls(sim, 0);

@@ -28,7 +28,7 @@ void forget_fluid(struct particles *particles)
  * largest velocity; 1.1 leaves a margin for accelerations (T-30). */
 void measure_skin(struct simulation *sim)
 {
-    const bool predicts = sim->integrator->stage > 0;
+    const bool predicts = sim->integrator->rates_at > 0;
     const double moved = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->sorting.speed2) : 0;
     sim->sorting.skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + moved);
 }
@@ -103,7 +103,7 @@ static void measure_overhangs(struct simulation *sim, enum kind first)
 bool sorting_due(struct simulation *sim)
 {
     if (sim->effects & FX_OPEN && open_due(&sim->open)) return true;
-    if (sim->integrator->stage > 0) measure_overhangs(sim, KIND_WALL);
+    if (sim->integrator->rates_at > 0) measure_overhangs(sim, KIND_WALL);
     if (sim->sorting.skin_left > 1e-6 * sim->fluid.k.h) return false;
     measure_overhangs(sim, KIND_FLUID);
     return !(sim->sorting.skin_left > 0);

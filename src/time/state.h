@@ -80,7 +80,7 @@ struct integrator {
     /* T-33b: a decay of density or velocity at a rate m is followed up to m dt of these. */
     double density_decay, velocity_decay;
     unsigned fluid_groups; /* fields that it needs besides those of its effect */
-    double stage;    /* of the rates that advance the fluid, in steps after the start of the step */
+    double rates_at; /* of the rates that advance the fluid, in steps after the start of the step */
     bool centred;    /* `centred` of the solid's explicit steps (solid.h) */
     bool alternates; /* carries on two solutions, by turns */
 };

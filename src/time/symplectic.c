@@ -174,7 +174,7 @@ const struct integrator integrator_symplectic = {
     .largest_cfl = 0.4,
     .density_decay = 2,
     .velocity_decay = 2,
-    .fluid_groups = G_STAGE | G_STAGE_FLUID,
-    .stage = 0.5,
+    .fluid_groups = G_START | G_START_FLUID,
+    .rates_at = 0.5,
     .centred = true,
 };

@@ -214,7 +214,7 @@ static void twin(const char *integrator, bool centred)
     solid = &rig.sim.particles[KIND_SOLID];
     rig_steps(&rig, 30, 1);
     const double kicks = rig.sim.state.dt * (centred ? 0.5 : 0.5 - 0.5 / rig.sim.substeps);
-    assert_near(1e-18, kicks - rig.sim.coupling.stage * rig.sim.state.dt, rig.sim.coupling.lead,
+    assert_near(1e-18, kicks - rig.sim.coupling.rates_at * rig.sim.state.dt, rig.sim.coupling.lead,
                 "middle of the kicks");
     rig_evaluate(&rig);
     double *const field[FIELDS] = {solid->ux,
