@@ -482,14 +482,17 @@ static bool test_is_due(const struct simulation *sim)
            sim->state.time - account->tested_at >= TEST_TIME;
 }
 
+void energy_book_exchange(struct simulation *sim)
+{
+    const double open = open_energy(&sim->open);
+    energy_supply(sim, KIND_FLUID, 0, open - sim->state.energy.through_open);
+    sim->state.energy.through_open = open;
+}
+
 void energy_test_if_due(struct simulation *sim)
 {
     struct energy_account *const account = &sim->state.energy;
-    if (!keeps_account(sim)) return;
-    const double open = open_energy(&sim->open);
-    energy_supply(sim, KIND_FLUID, 0, open - account->through_open); /* not by the constraint */
-    account->through_open = open;
-    if (!test_is_due(sim)) return;
+    if (!keeps_account(sim) || !test_is_due(sim)) return;
     if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     sim->gain = energy_find_gain(sim);
     sim->gain.found = true;
@@ -504,6 +507,7 @@ void energy_book_step(struct simulation *sim, double dt)
         energy_book_evaluation(sim, *pending);
         *pending = 0;
     }
+    energy_book_exchange(sim);
     energy_test_if_due(sim);
     energy_book_evaluation(sim, *pending + 0.5 * dt);
     *pending = 0.5 * dt;

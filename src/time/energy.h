@@ -50,6 +50,9 @@ void energy_supply(struct simulation *sim, enum kind kind, int section, double w
 void energy_book_evaluation(struct simulation *sim, double dt);
 void energy_book_step(struct simulation *sim, double dt);
 
+/* Before the test: what buffers have exchanged since the last step, other than by forces. */
+void energy_book_exchange(struct simulation *sim);
+
 /* After n kicks of the solid within dt from ux0, uy0, vx0, vy0: the work on it. */
 void energy_book_solid(struct simulation *sim, double dt, int n);
 

@@ -122,6 +122,7 @@ static void symplectic_step(struct simulation *sim, double t_limit)
 
     bool hits;
     const double dt = timestep_choose(sim, t_limit, &hits);
+    energy_book_exchange(sim);
     energy_test_if_due(sim);
     const bool needs_fields =
         sim->effects & (FX_OPEN | FX_DAMPING_ZONE) || sim->force_hook[KIND_FLUID].accelerate;
