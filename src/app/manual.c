@@ -255,7 +255,7 @@ static bool meets_condition(const struct scene *scene, effect_set effects, const
     } condition[] = {
         {"ALWAYS", true},
         {"HYPERELASTIC", hyperelastic},
-        {"PACKED", scene->packed},
+        {"SETTLED", scene->settled},
         {"PROBED_MATERIAL", probed},
         {"SHIFTED_BY_OWN_SPEED", shifted == SHIFTING_OWN},
         {"SHIFTED_BY_LARGEST_SPEED", shifted == SHIFTING_LARGEST},

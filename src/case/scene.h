@@ -227,15 +227,14 @@ struct scene {
     double given_speed; /* largest that walls, open boundaries and the start give it, m/s */
     double domain_lower[2], domain_upper[2]; /* in effect */
     bool full;        /* there are open boundaries and, at the start, no free surface */
-    bool packed;      /* fluid near edges off its lattice (T-80) */
+    bool settled;     /* fluid near edges off its lattice (T-80) */
     bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */
 };
 
 /* Reads and checks a case, from text in memory or NULL: the file; messages use `path`, and file
  * names are relative to it. geometry/scene_points.h also samples its points. `sets` are the --set
- * arguments
- * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
- * "gate.young=1e6"). After success scene_free is due. */
+ * arguments ("key=value" or "section.key=value"; a named section is section NAME:
+ * "solid gate.young=1e6" or "gate.young=1e6"). After success scene_free is due. */
 enum err scene_read(struct scene *scene, const char *text, const char *path, int n_sets,
                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *scene);

@@ -52,8 +52,8 @@ static void warn_of_edges(struct check *check, const struct region *region, int 
 }
 
 /* A wet face of a body between the lines of the fluid's lattice leaves a gap, into which fluid that
- * starts under pressure expands, and gains energy. Fluid at faces in other directions is
- * packed. Beside water that rests under its own weight it is below 2e-4 of the available energy. */
+ * starts under pressure expands, and gains energy. Fluid at faces in other directions settles.
+ * Beside water that rests under its own weight it is below 2e-4 of the available energy. */
 static void warn_of_wet_faces(struct check *check, const struct region *region)
 {
     struct region face = *region;
@@ -216,7 +216,7 @@ static void warn_of_region(struct check *check, const struct region *region)
         if (region->lattice.fitted || layered) continue;
         if (beam && check->scene->beam[k_beam].thickness > 0 &&
             check->scene->top.scheme == SCHEME_STANDARD)
-            continue; /* fluid is packed there */
+            continue; /* fluid is settled there */
         warn_of_edges(check, region, k);
         if (region->kind == KIND_WALL && !shape->thin)
             warn_of_thin(check, region, shape, thickness(shape));

@@ -211,7 +211,7 @@ enum err scene_sample(struct scene *scene, struct diag *d)
     if (!err) err = geometry_check_bodies(&sampler);
     if (!err) err = problems_found(&sampler);
     if (!err) err = geometry_merge(&sampler, &points);
-    if (!err) err = geometry_pack(&sampler);
+    if (!err) err = geometry_settle(&sampler);
     if (!err) err = geometry_open(&sampler);
     if (!err) err = geometry_extent(&sampler);
     if (!err) err = geometry_check_joined(&sampler);

@@ -167,8 +167,8 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *sampler, const struct samples *samples) SPHFSI_CHECKED;
 
-/* Packs fluid near edges off its lattice, with `scheme = standard` (geometry/pack.c). */
-enum err geometry_pack(struct sampler *sampler) SPHFSI_CHECKED;
+/* Settles fluid near edges off its lattice, with `scheme = standard` (geometry/settle.c). */
+enum err geometry_settle(struct sampler *sampler) SPHFSI_CHECKED;
 
 /* The piece of a region at a place in the axes of its lattice, or -1. */
 SPHFSI_INLINE int geometry_piece_at(const struct region *region, double u, double v)

@@ -160,9 +160,9 @@ static void test_one_side_is_refused(void)
     rig_refuses(COLUMN "[numerics]\nsides = one\n", "would gain energy in fluid with");
 }
 
-/* A hull with round edges floats: packing leaves its inside dry. Ten particles had passed the line,
- * which stood up to 0.16 m above the water. */
-static void test_packing_does_not_pass_a_line(void)
+/* A hull with round edges floats: its inside stays dry as fluid settles. Ten particles had passed
+ * the line, which stood up to 0.16 m above the water. */
+static void test_settling_does_not_pass_a_line(void)
 {
 #define EDGE(x, sign)                                                        \
 #x sign "d, 0.4 + d; " #x sign "d, 0.4; " #x sign "c, 0.4 - a; " #x sign \
@@ -297,7 +297,7 @@ int main(void)
     RUN_TEST(test_light_plates_in_still_water);
     RUN_TEST(test_waves_that_no_step_resolves);
     RUN_TEST(test_one_side_is_refused);
-    RUN_TEST(test_packing_does_not_pass_a_line);
+    RUN_TEST(test_settling_does_not_pass_a_line);
     RUN_TEST(test_an_end_leaves_its_wall);
     RUN_TEST(test_a_held_end_stays_at_its_wall);
     RUN_TEST(test_a_float_with_edges_turns_as_a_rigid_one);

@@ -182,7 +182,7 @@ static void test_slanted_band_has_its_area(void)
     must_read(band, "scheme=paper");
     TEST_ASSERT_DOUBLE_WITHIN(0.01 * area, area, (double)total());
     TEST_ASSERT_TRUE(nearest() > 0.99);
-    must_read(band, "scheme=standard"); /* packed */
+    must_read(band, "scheme=standard"); /* settled */
     TEST_ASSERT_DOUBLE_WITHIN(1, area, (double)total());
     TEST_ASSERT_TRUE(nearest() > 0.8);
 }

@@ -389,7 +389,7 @@ static void test_fluid_beside_slopes_has_its_area(void)
 }
 
 /* A slope along the diagonal of the lattice: no water moves up it into the air, whatever dp is. */
-static void test_packed_water_keeps_below_its_surface(void)
+static void test_settled_water_keeps_below_its_surface(void)
 {
     static const double spacing[] = {4e-3, 5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 30e-3};
     for (size_t k = 0; k < COUNT_OF(spacing); k++) {
@@ -409,7 +409,7 @@ static void test_packed_water_keeps_below_its_surface(void)
 
 /* A uniform pressure pushes no particle of the water around a cylinder: the kernel's gradient sums
  * to nearly nothing, also beyond those that were moved. No two particles are near to each other. */
-static void test_fluid_around_a_cylinder_is_packed(void)
+static void test_fluid_around_a_cylinder_is_settled(void)
 {
     must_read("scheme = standard\ndp = 1 mm\nend_time = 1\n[fluid w]\nsound_speed = 20\n"
               "shape = box 0, 0, 40 mm, 40 mm\nminus = circle 20.3 mm, 19.6 mm, 6.4 mm\n"
@@ -500,8 +500,8 @@ int main(void)
     RUN_TEST(test_layers_are_even);
     RUN_TEST(test_space_is_filled);
     RUN_TEST(test_fluid_beside_slopes_has_its_area);
-    RUN_TEST(test_packed_water_keeps_below_its_surface);
-    RUN_TEST(test_fluid_around_a_cylinder_is_packed);
+    RUN_TEST(test_settled_water_keeps_below_its_surface);
+    RUN_TEST(test_fluid_around_a_cylinder_is_settled);
     RUN_TEST(test_connections_across_an_arc);
     RUN_TEST(test_a_periodic_domain_is_not_turned);
     return UNITY_END();

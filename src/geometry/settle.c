@@ -379,7 +379,7 @@ static enum err settle(struct settling *s)
     return ERR_OK;
 }
 
-enum err geometry_pack(struct sampler *sampler)
+enum err geometry_settle(struct sampler *sampler)
 {
     struct scene *const scene = sampler->scene;
     struct scene_points *const points = &scene->points[KIND_FLUID];
@@ -402,7 +402,7 @@ enum err geometry_pack(struct sampler *sampler)
     TRY(geometry_points(sampler, KIND_FLUID, points->n + most, false, &to));
     for (int k = 0; k < n_cut; k++) TRY(refill(&settling, &cut[k], &to));
     *points = to;
-    scene->packed = settling.cells.n > 0;
+    scene->settled = settling.cells.n > 0;
     TRY(add_air(&settling));
     TRY(gather(&settling));
     TRY(settle(&settling));
