@@ -86,6 +86,6 @@ void evidence_say(const struct scene *scene, const struct sphfsi_options *o)
     session_say(o, "expected error %sat accuracy = %s", paper ? "with scheme = paper, " : "",
                 paper ? "standard" : accuracy);
     for (int k = 0; k < scene->n_solid; k++) say_error(scene, KIND_SOLID, k, accuracy, o);
-    for (int k = 0; k < scene->n_fluid && scene->n_solid == 0; k++)
-        say_error(scene, KIND_FLUID, k, accuracy, o);
+    if (scene->n_solid) return;
+    for (int k = 0; k < scene->n_fluid; k++) say_error(scene, KIND_FLUID, k, accuracy, o);
 }

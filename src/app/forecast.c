@@ -115,7 +115,8 @@ static enum err measure(struct stretch *s, struct simulation *sim, double until,
         steps += step.amount[STEPS];
     }
     const double all = seconds_of(s), each = steps > 0 ? usual / steps : 0;
-    for (int k = 0; k < PHASE_COUNT && all > 0; k++) s->amount[k] *= each * s->amount[STEPS] / all;
+    if (all > 0)
+        for (int k = 0; k < PHASE_COUNT; k++) s->amount[k] *= each * s->amount[STEPS] / all;
     return e == ERR_GUARD ? ERR_OK : e;
 }
 

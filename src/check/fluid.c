@@ -320,8 +320,9 @@ static bool has_surface(const struct check *check)
 {
     static const double sides[4][2] = {{-1.2, 0}, {1.2, 0}, {0, -1.2}, {0, 1.2}};
     for (int64_t k = 0; k < check->points.n; k++)
-        for (int side = 0; side < 4 && check->points.bit[k] == POINT_FLUID; side++)
-            if (point_beside(check, k, sides[side], 1, POINT_ANY) < 0) return true;
+        if (check->points.bit[k] == POINT_FLUID)
+            for (int side = 0; side < 4; side++)
+                if (point_beside(check, k, sides[side], 1, POINT_ANY) < 0) return true;
     return false;
 }
 
@@ -361,7 +362,8 @@ static void warn_of_turning(struct check *check)
     const struct scene *const scene = check->scene;
     double nu = 0;
     for (int k = 0; k < scene->n_fluid; k++) nu = max2(nu, scene->fluid[k].laminar_viscosity);
-    for (int k = 0; k < scene->n_solid + scene->n_wall && nu > 0; k++) {
+    if (nu == 0) return;
+    for (int k = 0; k < scene->n_solid + scene->n_wall; k++) {
         const struct body b = body_at(scene, k);
         const bool solid = b.kind == KIND_SOLID;
         const int motion = solid ? -1 : scene_find(scene, SECTION_motion, b.motion);
@@ -369,10 +371,11 @@ static void warn_of_turning(struct check *check)
         const bool turns = solid ? scene->solid[k].clamp.n == 0 : m && m->turn.e[0];
         bool asked = solid;
         char name[SCENE_TEXT];
-        for (int p = 0; p < scene->n_probe && !solid; p++)
-            for (int n = 0; scene_listed(scene->probe[p].body, n, name); n++)
-                asked |=
-                    scene->probe[p].quantity == PROBE_FORCE && strcmp(name, b.common->name) == 0;
+        if (!solid)
+            for (int p = 0; p < scene->n_probe; p++)
+                for (int n = 0; scene_listed(scene->probe[p].body, n, name); n++)
+                    asked |= scene->probe[p].quantity == PROBE_FORCE &&
+                             strcmp(name, b.common->name) == 0;
         if (turns && asked && b.slip == SLIP_NONE)
             warn_section(
                 check, b.common,

@@ -88,8 +88,9 @@ double start_speed(const struct scene *scene, enum kind kind, int section,
                    const struct scene_expr *velocity)
 {
     const struct scene_points *const p = &scene->points[kind];
+    if (!velocity->e[0]) return 0;
     double most = 0;
-    for (int64_t k = 0; k < p->n && velocity->e[0]; k++) {
+    for (int64_t k = 0; k < p->n; k++) {
         if (p->body[k] != section) continue;
         double v[2];
         for (int c = 0; c < 2; c++)

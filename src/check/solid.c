@@ -13,8 +13,9 @@ static bool stands_on(const struct check *check, const char *support, int body)
     const struct points *const p = &check->points;
     const double *const gravity = check->scene->top.gravity;
     const double size = elementary_hypot(gravity[0], gravity[1]);
+    if (size == 0) return false;
     const double down[2] = {gravity[0] / size, gravity[1] / size};
-    for (int64_t k = 0; k < p->n && size > 0; k++) {
+    for (int64_t k = 0; k < p->n; k++) {
         if (p->kind[k] != KIND_SOLID || p->section[k] != body) continue;
         const int64_t below = point_beside(check, k, down, 0.9, POINT_BODY);
         if (below < 0) continue;

@@ -120,7 +120,8 @@ struct dim unit_dim(const char *unit)
     struct slice text = slice_of(unit + (inverse ? 2 : 0));
     char why[EXPR_WHY];
     unit_read(&text, &q, why);
-    for (int k = 0; k < 3 && inverse; k++) q.dim.power[k] *= -1;
+    if (inverse)
+        for (int k = 0; k < 3; k++) q.dim.power[k] *= -1;
     return q.dim;
 }
 

@@ -153,7 +153,8 @@ static void mirror_fields(const struct open_boundaries *o, struct open_member *m
         m->v[1] = particles->vy[i];
         m->p = w > 0 ? s[S_P] / w : (double)NAN;
         const double normal = flow_along(o, on_line, b->inward, (double)NAN);
-        for (int c = 0; c < 2 && !isnan(normal); c++) m->v[c] = normal * b->inward[c];
+        if (isnan(normal)) return;
+        for (int c = 0; c < 2; c++) m->v[c] = normal * b->inward[c];
         return;
     }
     scene_open_velocity(&at[OPEN_NOW], on_line, 0, m->v);

@@ -85,8 +85,9 @@ double wall_motion_speed2(const struct wall_motion *m, const struct particles *w
 
 double moving_wall_power(const struct moving_wall *b, const struct particles *walls)
 {
+    if (b->rests) return 0;
     double power = 0;
-    for (int64_t i = b->first; i < b->end && !b->rests; i++)
+    for (int64_t i = b->first; i < b->end; i++)
         power -= walls->fx[i] * walls->vx[i] + walls->fy[i] * walls->vy[i];
     return power;
 }

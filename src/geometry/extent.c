@@ -19,7 +19,8 @@ static void include_motion(const struct scene *scene, int wall, struct box2 *box
     const int motion = scene_wall_motion(scene, wall);
     if (motion < 0) return;
     const struct box2 start = box_of(scene, KIND_WALL, wall);
-    for (int k = 0; k < TIMES && start.low[0] <= start.high[0]; k++) {
+    if (start.low[0] > start.high[0]) return;
+    for (int k = 0; k < TIMES; k++) {
         const struct motion_state m =
             motion_at(scene, motion, scene->top.end_time * k / (TIMES - 1));
         for (int corner = 0; corner < 4; corner++) {

@@ -44,11 +44,12 @@ static const struct shape *line_at(const struct scene *scene, const struct shape
                                    const double end[2], bool *last)
 {
     const double nothing = 1e-6 * fabs(p->size);
-    for (int k = 0; k < scene->n_wall && p->bare; k++)
+    if (!p->bare) return NULL;
+    for (int k = 0; k < scene->n_wall; k++)
         for (int j = 0; j < scene->wall[k].shape.n; j++) {
             const struct shape *const q = &scene->wall[k].shape.item[j];
-            for (int n = 0; n < 2 && q != p && q->bare && !q->thin && q->kind == SHAPE_POLYLINE;
-                 n++) {
+            if (q == p || !q->bare || q->thin || q->kind != SHAPE_POLYLINE) continue;
+            for (int n = 0; n < 2; n++) {
                 const double *const at = q->pt[n ? q->n - 1 : 0];
                 *last = n;
                 if (fabs(at[0] - end[0]) <= nothing && fabs(at[1] - end[1]) <= nothing) return q;

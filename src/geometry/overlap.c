@@ -140,7 +140,8 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
     for (int64_t j = 0; j < samples->n; j++)
         if (kept[j] && sampler->regions[samples->region[j]].kind == kind)
             n += geometry_cut(scene, samples->x[j], samples->y[j], part);
-    for (int j = 0; j < scene->n_line && kind == KIND_WALL; j++) n += scene->line[j].n_dummies;
+    if (kind == KIND_WALL)
+        for (int j = 0; j < scene->n_line; j++) n += scene->line[j].n_dummies;
     TRY(geometry_points(sampler, kind, n, false, to));
     for (int r = 0; r < sampler->n_regions; r++) {
         const struct region *const region = &sampler->regions[r];

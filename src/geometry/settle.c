@@ -199,7 +199,8 @@ static enum err visit_lines(struct settling *s)
     const struct scene *const scene = s->sampler->scene;
     const struct scene_points *const p = &scene->points[KIND_FLUID];
     const double near = (0.5 - beside_line) * scene->top.dp;
-    for (int64_t k = 0; k < p->n && scene->n_line; k++) {
+    if (scene->n_line == 0) return ERR_OK;
+    for (int64_t k = 0; k < p->n; k++) {
         const double at[2] = {p->x[k], p->y[k]};
         double cell[2], left;
         if (geometry_line_distance(scene, at, &left) >= near) continue;

@@ -48,7 +48,8 @@ static enum err find_inside(struct sampler *sampler, const struct shape *line, b
     *found = false;
     for (int k = 0; k < sampler->n_regions; k++) {
         const struct outlines *const add = &sampler->regions[k].add;
-        for (int j = 0; j < add->n && sampler->regions[k].kind == KIND_FLUID; j++) {
+        if (sampler->regions[k].kind != KIND_FLUID) continue;
+        for (int j = 0; j < add->n; j++) {
             const double *const at = add->item[j].n ? add->item[j].pt[0] : add->item[j].centre;
             *found |= outlines_find(&o, at[0], at[1]) >= 0;
         }

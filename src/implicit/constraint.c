@@ -10,8 +10,8 @@ static void add_forces(const struct implicit *implicit, const struct hinges *hin
     for (int64_t k = 0; k < hinges->n_nodes; k++) {
         const struct hinge_node *const node = &hinges->node[k];
         const int64_t row = 2 * (int64_t)implicit->order[node->particle];
-        for (int c = 0; c < 2 && row >= 0; c++)
-            to[row + c] += node->weight * force[2 * node->hinge + c];
+        if (row < 0) continue;
+        for (int c = 0; c < 2; c++) to[row + c] += node->weight * force[2 * node->hinge + c];
     }
 }
 
@@ -22,8 +22,8 @@ static void subtract_motion(const struct implicit *implicit, const struct hinges
     for (int64_t k = 0; k < hinges->n_nodes; k++) {
         const struct hinge_node *const node = &hinges->node[k];
         const int64_t row = 2 * (int64_t)implicit->order[node->particle];
-        for (int c = 0; c < 2 && row >= 0; c++)
-            from[2 * node->hinge + c] -= node->weight * unknown[row + c];
+        if (row < 0) continue;
+        for (int c = 0; c < 2; c++) from[2 * node->hinge + c] -= node->weight * unknown[row + c];
     }
 }
 

@@ -105,7 +105,8 @@ static int find_fallen(struct solid *solid, const struct particles *particles, d
     for (int64_t i = 0; i < particles->n; i++) {
         const int bond = solid->body[particles->body[i]].bond;
         held[bond] |= implicit->order[i] < 0;
-        for (int c = 0; c < 2 && implicit->order[i] >= 0; c++) {
+        if (implicit->order[i] < 0) continue;
+        for (int c = 0; c < 2; c++) {
             const double f = implicit->unknown[2 * (int64_t)implicit->order[i] + c];
             solid->scratch[IMPLICIT_LEFT_OUT + c][i] = f;
             total[bond][c] += f;

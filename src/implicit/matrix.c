@@ -129,7 +129,8 @@ static void add_spring(struct implicit *implicit, const struct spring *spring, d
 {
     for (int m = 0; m < spring->n; m++) {
         const int64_t row = implicit->order[spring->node[m]];
-        for (int k = 0; k < spring->n && row >= 0; k++) {
+        if (row < 0) continue;
+        for (int k = 0; k < spring->n; k++) {
             const int64_t column = implicit->order[spring->node[k]];
             if (column >= 0 && column <= row)
                 envelope_add(&implicit->springs, row, column,

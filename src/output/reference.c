@@ -132,7 +132,8 @@ static void reference_curve(const struct reference *r, const struct curve *curve
 {
     expected->n = 0;
     const int rows = r->n > 1 ? r->n : curve->n;
-    for (int k = 0; k < rows && curve->n > 0; k++) {
+    if (curve->n == 0) return;
+    for (int k = 0; k < rows; k++) {
         const double t = r->n > 1 ? r->t[k] : curve->t[k];
         if (t < max2(from, curve->t[0]) || t > min2(until, curve->t[curve->n - 1])) continue;
         expected->t[expected->n] = t;

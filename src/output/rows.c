@@ -79,8 +79,8 @@ static void add_to_mean(const struct rows *f, const struct probe *probe)
 static void put_mean(const struct rows *f, const struct probe *probe, double *row)
 {
     const struct probe_mean *const m = probe->mean;
-    for (int c = 0; c < probe->columns && m->row == (double)f->due.k; c++)
-        row[probe->column + c] = m->sum[c] / m->covered;
+    if (m->row != (double)f->due.k) return;
+    for (int c = 0; c < probe->columns; c++) row[probe->column + c] = m->sum[c] / m->covered;
 }
 
 /* Calls a function for each probe of a file that has a mean. */

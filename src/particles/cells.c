@@ -274,11 +274,12 @@ int64_t cells_sort(struct cells *cells, enum kind kind, struct particles *partic
     struct cell_list *list = &cells->list[kind];
     const int64_t n = particles->n;
     if (n == 0) return 0;
-    for (int axis = 0; axis < 2 && kind == KIND_FLUID; axis++)
-        cells->crossings[axis] =
-            cells->periodic[axis]
-                ? wrap_positions(cells, axis, axis ? particles->y : particles->x, n)
-                : 0;
+    if (kind == KIND_FLUID)
+        for (int axis = 0; axis < 2; axis++)
+            cells->crossings[axis] =
+                cells->periodic[axis]
+                    ? wrap_positions(cells, axis, axis ? particles->y : particles->x, n)
+                    : 0;
     int64_t outside = 0;
 #pragma omp parallel for schedule(static) reduction(+ : outside)
     for (int64_t k = 0; k < n; k++) {

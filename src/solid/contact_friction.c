@@ -26,7 +26,8 @@ static void add_surface_force(const struct contact *contact, int32_t point, int3
     struct contact_point *const p = &contact->point[point];
     struct pressing_surface *const surface =
         surface_of_edge(contact, edge, distance, p->surface, &p->n_surfaces);
-    for (int c = 0; c < 2 && surface; c++) surface->force[c] += force[c];
+    if (surface)
+        for (int c = 0; c < 2; c++) surface->force[c] += force[c];
 }
 
 /* A wall is rigid and its points have no state: what they press is on the solid's points. */

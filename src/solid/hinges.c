@@ -268,7 +268,8 @@ void hinges_forces(struct hinges *hinges, struct particles *particles, double ti
         subtract_value(&hinges->node[k], value[0], value[1], hinges->force);
     }
     solve_hinges(hinges, particles, resisted);
-    for (int k = 0; k < 2 * hinges->n && dt > 0; k++) hinges->force[k] /= dt;
+    if (dt > 0)
+        for (int k = 0; k < 2 * hinges->n; k++) hinges->force[k] /= dt;
     hinges_push(hinges, hinges->force, particles->sx, particles->sy);
     hinges->kick_time = dt;
 }
@@ -282,7 +283,8 @@ void hinges_hold(struct hinges *hinges, double *const a[2], double *const force[
     solve_hinges(hinges, NULL, false);
     for (int64_t k = 0; k < hinges->n_nodes; k++) {
         const struct hinge_node *const node = &hinges->node[k];
-        for (int c = 0; c < 2 && node->inv_mass > 0; c++) {
+        if (node->inv_mass == 0) continue;
+        for (int c = 0; c < 2; c++) {
             const double f = node->weight * hinges->force[2 * node->hinge + c];
             a[c][node->particle] += node->inv_mass * f;
             force[c][node->particle] += f;

@@ -134,7 +134,8 @@ enum err loads_create(struct solid *solid, struct arena *a, const struct scene *
 
 void loads_move(struct loads *loads, double time)
 {
-    for (int b = 0; b < loads->scene->n_solid && loads->n_held; b++)
+    if (loads->n_held == 0) return;
+    for (int b = 0; b < loads->scene->n_solid; b++)
         loads->motion[b] = motion_at(loads->scene, moving_clamp(loads->scene, b), time);
 }
 

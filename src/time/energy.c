@@ -211,7 +211,8 @@ void energy_book_evaluation(struct simulation *sim, double dt)
         const double work = dt * moving_wall_power(wall, &sim->particles[KIND_WALL]);
         *(wall->driven ? &e->supplied : &e->from_fluid) += wall->driven ? work : -work;
     }
-    for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
+    if (!(sim->effects & FX_COUPLING)) return;
+    for (int64_t i = 0; i < solid->n; i++)
         entry_of(sim, KIND_SOLID, solid->body[i])->from_fluid +=
             dt * (solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i]);
 }
