@@ -4,6 +4,7 @@
  * skin (Verlet 1967). The laws are Eqs. 1 and 3b, in single precision, on one thread, for the same
  * particles. Prints CSV; the sums of all methods agree but for rounding. bench_neighbours [--reps
  * N] */
+#include "base/threads.h"
 #include "fluid/fluid.h"
 #include "particles/cells.h"
 

@@ -5,6 +5,7 @@
 
 #include "sphfsi.h"
 #include "output/json.h"
+#include "base/threads.h"
 #include "time/simulation.h"
 
 struct call {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The memory of a simulation: blocks that are allocated one by one and freed together. */
-#include "base/base.h"
+#include "base/threads.h"
 
 #include <stdlib.h>
 #ifdef __linux__

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * What nearly every file uses: compiler attributes and functions of scalars, errors, memory,
- * hashes, threads. */
+ * What every file uses: compiler attributes and functions of scalars, errors, memory. */
 #pragma once
 
 #include <assert.h>
-#include <locale.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#if defined __APPLE__
-#include <xlocale.h>
-#endif
 
 #define SPHFSI_INLINE static inline __attribute__((always_inline))
 #define SPHFSI_PRINTF(fmt_index, args_index) __attribute__((format(printf, fmt_index, args_index)))
@@ -32,6 +27,9 @@
 SPHFSI_INLINE double min2(double a, double b) { return a < b ? a : b; }
 SPHFSI_INLINE double max2(double a, double b) { return a > b ? a : b; }
 SPHFSI_INLINE double square(double a) { return a * a; }
+
+/* The least whole number not below a ratio, where an excess of 1e-9 of it counts as rounding. */
+SPHFSI_INLINE double whole_parts(double ratio) { return ceil(ratio * (1 - 1e-9)); }
 
 /* --- errors: a code for the program, one sentence for the user --- */
 
@@ -66,9 +64,6 @@ int diag_count(const struct diag *d);
 void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
 /* Adds a sentence to `more`; one that does not fit is left out. */
 void diag_more(struct diag *d, const char *text);
-
-/* The least whole number not below a ratio, where an excess of 1e-9 of it counts as rounding. */
-SPHFSI_INLINE double whole_parts(double ratio) { return ceil(ratio * (1 - 1e-9)); }
 
 /* Returns from the caller if the call fails. */
 #define TRY(call)                     \
@@ -110,92 +105,3 @@ void arena_free(struct arena *a);
 
 /* For tests: makes the n-th allocation from now fail (0: the next); negative: none. */
 void arena_fail_after(long n);
-
-/* --- FNV-1a hashes (Fowler, Noll and Vo), 64 bits --- */
-
-/* Every step is invertible: one changed byte always changes the hash. */
-#define HASH_START UINT64_C(0xcbf29ce484222325)
-#define HASH_PRIME UINT64_C(0x100000001b3)
-
-/* Continues hash h with n bytes; begin with HASH_START. */
-SPHFSI_INLINE uint64_t hash_bytes(uint64_t h, const void *bytes, size_t n)
-{
-    const unsigned char *const b = bytes;
-    for (size_t k = 0; k < n; k++) h = (h ^ b[k]) * HASH_PRIME;
-    return h;
-}
-
-/* Slot of cell (i, j) of an unbounded grid in a hash table with mask + 1 slots, a power of two. */
-SPHFSI_INLINE uint32_t hash_cell(int64_t i, int64_t j, uint32_t mask)
-{
-    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
-    key ^= key >> 29;
-    key *= 0xBF58476D1CE4E5B9u;
-    return (uint32_t)(key >> 32) & mask;
-}
-
-/* --- threads, of which a build without OpenMP has one; the clock; settings of a thread --- */
-
-/* Threads of one core, at most. */
-enum { THREADS_PER_CORE = 4 };
-
-/* Threads of the next parallel region; sets that number. */
-int thread_count(void);
-void thread_use(int n);
-
-/* Cores that this process may use. */
-int thread_cores(void);
-
-/* Threads that n particles keep busy; the most that they may be asked to occupy. */
-int thread_useful(int64_t n);
-int thread_limit(int64_t n);
-
-/* The choice between one thread and all by the time that steps take: a thread without a core, on a
- * machine that other programs use, delays all others. Now and then some steps use the other number;
- * the faster one stays. Bits do not depend on it. */
-struct team {
-    int most, now, chosen; /* threads to use at most, in the next step, and between trials */
-    int steps;             /* of the present block */
-    double seconds;        /* of the present block */
-    double last, each;     /* s a step of `chosen`: in its last block, in the faster of two */
-    double settled;        /* the same at the last trial */
-    double wait;           /* s until the next trial */
-};
-
-void team_begin(struct team *team, int most);
-
-/* Adds a step of that many seconds; returns the number of threads for the next one. */
-int team_next(struct team *team, double seconds);
-
-/* Inside a parallel region: its number of threads, and the index of the calling thread. */
-int thread_team(void);
-int thread_index(void);
-
-/* Seconds of the monotonic clock; and those that this thread has had a core. */
-double wall_clock(void);
-double thread_clock(void);
-
-/* The clock of phases of steps in this thread: the first of both, or the second one, which is
- * slower to read but does not go on while other programs have the core. */
-double phase_clock(void);
-/* Adds the time since `since` to that of a phase; returns the present time. */
-SPHFSI_INLINE double phase_end(double *seconds, double since)
-{
-    const double now = phase_clock();
-    *seconds += now - since;
-    return now;
-}
-void phase_clock_use(bool of_thread);
-
-/* Settings of the calling thread that the library changes during a call: the locale, since numbers
- * in files have a decimal point, and the number of threads of parallel regions. */
-struct host {
-    locale_t locale;
-    int threads;
-};
-
-/* Puts settings in effect for this thread; returns those that were. */
-struct host host_use(struct host settings);
-
-/* Sets the locale "C" and, unless it is 0, a number of threads; what was goes to *before. */
-enum err host_enter(struct host *before, int threads, struct diag *d) SPHFSI_CHECKED;

@@ -2,7 +2,7 @@
  * Points in square cells, in a hash table: sparse scenes need no more memory than dense ones. */
 #pragma once
 
-#include "base/base.h"
+#include "base/hash.h"
 
 struct point_grid {
     double side;   /* of a cell, m */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Clocks, the number of threads that a step uses, and the locale during a call. */
-#include "base/base.h"
+#include "base/threads.h"
 
 #include <pthread.h>
 #include <time.h>

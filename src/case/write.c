@@ -2,6 +2,7 @@
  * The effective case: all values in SI units, constants evaluated. */
 #include "case/case.h"
 #include "base/csv.h"
+#include "base/hash.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sets up the fluid, runs the passes of an evaluation in order, and shifts particles. */
 #include "fluid/fluid.h"
+#include "base/threads.h"
 
 static struct fluid_constants constants_of(const struct scene *scene)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The neighbour clusters of a cluster of particles, and the pairs of both. Included by
  * fluid/sweep.h and coupling/force.h, once for each precision. */
+#include "base/threads.h"
 
 _Static_assert((int)CLUSTER == (int)GROUP, "a group of lanes is a cluster");
 

@@ -2,6 +2,7 @@
  * The buffers of open boundaries: their memory, the particles that they exchange with the fluid,
  * and the sums of what has come in. */
 #include "fluid/open.h"
+#include "base/hash.h"
 
 /* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this far
  * in front of it is relabelled without delay. Smaller oscillations create no copies. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The format of checkpoints: blocks under one checksum, their files, and how they are loaded. */
 #include "output/checkpoint.h"
+#include "base/hash.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Appends snapshots to a spare copy that then replaces the file, also after a restart. */
 #include "output/snapshot.h"
+#include "base/threads.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sorts particles into cells, and measures how far they are outside of theirs. */
 #include "particles/cells.h"
+#include "base/threads.h"
 
 /* A particle outside the grid is sorted after all cells. */
 enum { OUTSIDE = -1 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Allocates, permutes and hashes all fields of a kind. */
 #include "particles/particles.h"
+#include "base/hash.h"
 
 const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};
 

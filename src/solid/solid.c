@@ -3,6 +3,7 @@
 #include "solid/contact.h"
 #include "solid/hinges.h"
 #include "solid/loads.h"
+#include "base/threads.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A run in memory: its creation, the order of a step, and its continuation from a checkpoint. */
 #include "time/simulation.h"
+#include "base/hash.h"
 #include "time/advance.h"
 #include "time/guards.h"
 #include "time/timestep.h"

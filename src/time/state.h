@@ -3,6 +3,7 @@
  * which all files of this folder work on. */
 #pragma once
 
+#include "base/threads.h"
 #include "beam/beam.h"
 #include "coupling/coupling.h"
 #include "fluid/damping.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Ground floor: errors, memory that fails cleanly. */
 #define _GNU_SOURCE /* RUSAGE_THREAD */
-#include "base/base.h"
+#include "base/threads.h"
 
 #include "unity.h"
 

@@ -2,6 +2,7 @@
  * Elementary functions: rounded correctly where long double can tell, and the same bits everywhere.
  */
 #include "base/elementary.h"
+#include "base/hash.h"
 #include "base/base.h"
 #include "unity.h"
 
