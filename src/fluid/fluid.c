@@ -209,15 +209,6 @@ void fluid_find_near(struct fluid *fluid, const struct cells *cells)
     fluid->walls_placed = false;
 }
 
-static void update_dummies(struct fluid *fluid, struct particles kinds[KIND_COUNT],
-                           const struct cells *cells)
-{
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (fluid->n_near_fluid[kind])
-            fluid->sweeps->update_dummies(fluid, kinds, cells, (enum kind)kind);
-    fluid->walls_placed = !fluid->never_skip;
-}
-
 void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
                     const struct cells *cells, double phase_seconds[PHASE_COUNT])
 {
@@ -229,7 +220,10 @@ void fluid_evaluate(struct fluid *fluid, struct particles kinds[KIND_COUNT],
         since = phase_end(&phase_seconds[PHASE_slope], since);
     }
     if (fluid->effects & (FX_WALL | FX_COUPLING)) {
-        update_dummies(fluid, kinds, cells);
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            if (fluid->n_near_fluid[kind])
+                fluid->sweeps->update_dummies(fluid, kinds, cells, (enum kind)kind);
+        fluid->walls_placed = !fluid->never_skip;
         since = phase_end(&phase_seconds[PHASE_wall], since);
     }
     const int32_t n_active = cells->list[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
