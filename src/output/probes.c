@@ -7,8 +7,8 @@
 static double offset(const struct probe *probe, const struct particles *particles, int k,
                      double reach, double *x, double *y)
 {
-    *x = (particles->X[probe->particle[k]] - probe->of->point[0]) / reach;
-    *y = (particles->Y[probe->particle[k]] - probe->of->point[1]) / reach;
+    *x = (particles->X[probe->particle[k]] - probe->given->point[0]) / reach;
+    *y = (particles->Y[probe->particle[k]] - probe->given->point[1]) / reach;
     return square(square(max2(0, 1 - (*x * *x + *y * *y))));
 }
 
@@ -40,8 +40,8 @@ static enum err attach(struct probe *probe, const struct simulation *sim, struct
     const struct particles *const particles = &sim->particles[KIND_SOLID];
     const double reach = 2 * scene_solid_h(sim->scene, probe->body);
     for (int64_t i = 0; i < particles->n; i++) {
-        const double x = particles->X[i] - probe->of->point[0],
-                     y = particles->Y[i] - probe->of->point[1];
+        const double x = particles->X[i] - probe->given->point[0],
+                     y = particles->Y[i] - probe->given->point[1];
         if (particles->body[i] != probe->body || square(x) + square(y) >= square(reach)) continue;
         TRY(arena_more(a, &probe->particle, probe->n, "probe", d));
         probe->particle[probe->n++] = (int32_t)i;
@@ -56,14 +56,14 @@ static enum err attach_to_beam(struct probe *probe, const struct simulation *sim
 {
     const struct beams *const beams = &sim->beams;
     const struct scene_beam *const given = &sim->scene->beam[probe->beam];
-    probe->place = beam_find(beams, probe->beam, probe->of->point);
+    probe->place = beam_find(beams, probe->beam, probe->given->point);
     const double off = probe->place.distance;
     if (probe->target != TARGET_SOLID_POINT ||
         off <= 0.5 * beams->element[probe->place.element].length || off <= 0.5 * given->thickness)
         return ERR_OK;
-    return fail_at(d, sim->scene, probe->of->common.line,
+    return fail_at(d, sim->scene, probe->given->common.line,
                    "[probe %s] point = %g, %g is %.3g m from the line of [beam %s]; move it there",
-                   probe->of->common.name, probe->of->point[0], probe->of->point[1], off,
+                   probe->given->common.name, probe->given->point[0], probe->given->point[1], off,
                    given->common.name);
 }
 
@@ -78,7 +78,7 @@ static enum need need_of(const struct probe *probe)
     };
     for (int k = 0; k < probe->n_bodies; k++)
         if (probe->bodies[k].kind == KIND_WALL) return NEED_WALL_FORCES;
-    return needs[probe->of->quantity];
+    return needs[probe->given->quantity];
 }
 
 static void refresh(struct simulation *sim, enum need need)
@@ -101,9 +101,9 @@ static enum err find_bodies(struct probe *probe, const struct scene *scene, stru
                             struct diag *d)
 {
     char name[SCENE_TEXT];
-    while (scene_listed(probe->of->body, probe->n_bodies, name)) probe->n_bodies++;
+    while (scene_listed(probe->given->body, probe->n_bodies, name)) probe->n_bodies++;
     TRY(arena_array(a, &probe->bodies, probe->n_bodies, "probe", d));
-    for (int k = 0; k < probe->n_bodies && scene_listed(probe->of->body, k, name); k++)
+    for (int k = 0; k < probe->n_bodies && scene_listed(probe->given->body, k, name); k++)
         probe->bodies[k] = find_body(scene, name);
     return ERR_OK;
 }
@@ -112,7 +112,7 @@ static enum err find_bodies(struct probe *probe, const struct scene *scene, stru
 static enum err attach_to_body(struct probe *probe, const struct simulation *sim, struct arena *a,
                                struct diag *d)
 {
-    const struct probe_body on = find_body(sim->scene, probe->of->on);
+    const struct probe_body on = find_body(sim->scene, probe->given->on);
     if (on.kind == KIND_WALL) {
         probe->motion = scene_wall_motion(sim->scene, on.body);
         return ERR_OK;
@@ -125,7 +125,7 @@ static enum err create_probe(struct probe *probe, const struct scene_probe *sp,
                              const struct simulation *sim, struct arena *a, struct diag *d)
 {
     *probe =
-        (struct probe){.of = sp,
+        (struct probe){.given = sp,
                        .target = scene_probe_target(sp),
                        .columns = slice_count(slice_of(quantity_table[sp->quantity].columns), ','),
                        .motion = -1,
@@ -248,8 +248,8 @@ static void add_forces(const struct probe *probe, const struct particles *partic
         if (particles->body[i] != body) continue;
         out[0] += fx[i];
         out[1] += fy[i];
-        out[2] += (particles->x[i] - probe->of->point[0]) * fy[i] -
-                  (particles->y[i] - probe->of->point[1]) * fx[i];
+        out[2] += (particles->x[i] - probe->given->point[0]) * fy[i] -
+                  (particles->y[i] - probe->given->point[1]) * fx[i];
     }
 }
 
@@ -326,7 +326,7 @@ static void rigid_reaction(const struct probe *probe, const struct simulation *s
             rigid_spring_force(&sim->rigid, probe->spring, out, at);
         out[2] = 0;
     }
-    out[2] += (at[0] - probe->of->point[0]) * out[1] - (at[1] - probe->of->point[1]) * out[0];
+    out[2] += (at[0] - probe->given->point[0]) * out[1] - (at[1] - probe->given->point[1]) * out[0];
 }
 
 static void energy(const struct probe *probe, const struct simulation *sim, double out[3])
@@ -351,7 +351,7 @@ static void move_with_wall(const struct probe *probe, const struct simulation *s
 /* Where a point of the fluid is now. */
 static void present_point(const struct probe *probe, const struct simulation *sim, double at[2])
 {
-    memcpy(at, probe->of->point, sizeof probe->of->point);
+    memcpy(at, probe->given->point, sizeof probe->given->point);
     move_with_wall(probe, sim, at);
     if (probe->n > 0) {
         const struct particles *const particles = &sim->particles[KIND_SOLID];
@@ -364,8 +364,8 @@ static void present_point(const struct probe *probe, const struct simulation *si
 
 static void surface_pressure(const struct probe *probe, const struct simulation *sim, double out[3])
 {
-    double from[2] = {probe->of->point[0], probe->of->point[1]},
-           to[2] = {probe->of->to[0], probe->of->to[1]};
+    double from[2] = {probe->given->point[0], probe->given->point[1]},
+           to[2] = {probe->given->to[0], probe->given->to[1]};
     move_with_wall(probe, sim, from);
     move_with_wall(probe, sim, to);
     fluid_pressure_on(sim, from, to, out);
@@ -380,9 +380,9 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
     const struct beam_state *const a = &beams->state[node[0]], *const b = &beams->state[node[1]];
     const double part = probe->place.part;
     struct body_energy energy;
-    switch ((enum probe_quantity)probe->of->quantity) {
+    switch ((enum probe_quantity)probe->given->quantity) {
     case PROBE_SECTION_FORCE: beam_section(beams, &probe->place, row); return;
-    case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->of->point, row); return;
+    case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->given->point, row); return;
     case PROBE_ENERGY:
         energy = beam_energy(beams, probe->beam);
         row[0] = energy.kinetic, row[1] = energy.elastic, row[2] = 0;
@@ -392,10 +392,10 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
     for (int c = 0; c < 2; c++) {
         const double v = a->v[c] + part * (b->v[c] - a->v[c]);
         row[c] = v;
-        if (probe->of->quantity == PROBE_DISPLACEMENT) {
+        if (probe->given->quantity == PROBE_DISPLACEMENT) {
             row[c] = a->x[c] + part * (b->x[c] - a->x[c]);
             rate[c] = v;
-        } else if (probe->of->quantity == PROBE_ACCELERATION) {
+        } else if (probe->given->quantity == PROBE_ACCELERATION) {
             row[c] = a->a[c] + part * (b->a[c] - a->a[c]);
         }
     }
@@ -412,7 +412,7 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
         return;
     }
     if (probe->target == TARGET_FLUID_POINT) present_point(probe, sim, at);
-    switch ((enum probe_quantity)probe->of->quantity) {
+    switch ((enum probe_quantity)probe->given->quantity) {
     case PROBE_DISPLACEMENT:
         weighted_sum(probe, solid->ux, solid->uy, row);
         weighted_sum(probe, solid->vx, solid->vy, rate);
@@ -442,9 +442,9 @@ static void evaluate(const struct probe *probe, struct simulation *sim, double *
     case PROBE_STRESS: stress(probe, sim, row); break;
     case PROBE_LEVEL: *row = fluid_level(sim, at[0], at[1]); break;
     case PROBE_FORCE: force(probe, sim, row); break;
-    case PROBE_FRONT: *row = fluid_front(sim, probe->of->direction); break;
+    case PROBE_FRONT: *row = fluid_front(sim, probe->given->direction); break;
     case PROBE_ENERGY: energy(probe, sim, row); break;
-    case PROBE_FLUX: *row = fluid_flux(sim, probe->of->point, probe->of->to); break;
+    case PROBE_FLUX: *row = fluid_flux(sim, probe->given->point, probe->given->to); break;
     case PROBE_STRAIN: strain(probe, sim, row); break;
     case PROBE_POSE: (probe->kind == KIND_WALL ? rigid_pose : pose)(probe, sim, row, rate); break;
     case PROBE_SURFACE_PRESSURE: surface_pressure(probe, sim, row); break;

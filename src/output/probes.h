@@ -18,7 +18,7 @@ struct probe_mean {
 };
 
 struct probe {
-    const struct scene_probe *of;
+    const struct scene_probe *given;
     enum probe_target target;
     int columns, file, column; /* `column`: its first in the file */
     enum kind kind;            /* of the body: KIND_WALL of a rigid one */

@@ -300,8 +300,8 @@ static enum err write_loads(struct json *j, const char *folder, const struct pro
     char path[PATH_BYTES], name[PROBE_COLUMN_TEXT];
     for (int p = 0; p < probes->n; p++) {
         const struct probe *const probe = &probes->probe[p];
-        if (probe->of->quantity != PROBE_FORCE && probe->of->quantity != PROBE_REACTION &&
-            probe->of->quantity != PROBE_SURFACE_PRESSURE)
+        if (probe->given->quantity != PROBE_FORCE && probe->given->quantity != PROBE_REACTION &&
+            probe->given->quantity != PROBE_SURFACE_PRESSURE)
             continue;
         TRY(path_join(path, folder, probes->file[probe->file].name, d));
         for (int c = 0; probe_column(&scene->probe[p], c, name, sizeof name); c++) {

@@ -65,7 +65,7 @@ static double between(const struct rows *f, int c, double time)
 static void add_to_mean(const struct rows *f, const struct probe *probe)
 {
     struct probe_mean *const m = probe->mean;
-    const double from = max2(f->before[0], f->next - probe->of->average);
+    const double from = max2(f->before[0], f->next - probe->given->average);
     const double to = min2(f->now[0], f->next), row = (double)f->due.k;
     if (f->before[0] < 0 || !(from < to)) return;
     if (m->row != row) *m = (struct probe_mean){.row = row};
@@ -166,7 +166,7 @@ static void list_files(struct row_files *r, const struct scene *scene)
         f.due.interval = from->interval;
         for (int m = 0; m < r->probes->n; m++)
             if (r->probes->probe[m].file == k)
-                f.window = max2(f.window, r->probes->probe[m].of->average);
+                f.window = max2(f.window, r->probes->probe[m].given->average);
         if (r->ledger || f.window > 0) add_file(r, f);
     }
     struct rows f = {.name = "ledger.csv", .header = ledger_header + 1, .file = -1};
@@ -188,7 +188,7 @@ static enum err allocate(const struct row_files *r, struct rows *f, struct arena
     f->before[0] = f->now[0] = -1;
     for (int k = 0; f->file >= 0 && k < r->probes->n; k++) {
         const struct probe *const probe = &r->probes->probe[k];
-        if (probe->file == f->file && probe->of->quantity == PROBE_POSE)
+        if (probe->file == f->file && probe->given->quantity == PROBE_POSE)
             f->angle[probe->column + 2] = true;
     }
     return ERR_OK;
@@ -205,13 +205,13 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
     list_files(r, sim->scene);
     size_t n = 0;
     for (int k = 0; k < r->n; k++) n += 2 * (size_t)r->file[k].columns;
-    for (int k = 0; k < p->n; k++) n += p->probe[k].of->average > 0 ? MEAN : 0;
+    for (int k = 0; k < p->n; k++) n += p->probe[k].given->average > 0 ? MEAN : 0;
     double *carried = arena_alloc(a, n, sizeof *carried, "rows", d);
     if (!carried) return ERR_MEMORY;
     sim->carried.n = (int64_t)n;
     sim->carried.value = carried;
     for (int k = 0; k < p->n; k++) {
-        if (!(p->probe[k].of->average > 0)) continue;
+        if (!(p->probe[k].given->average > 0)) continue;
         p->probe[k].mean = (struct probe_mean *)(void *)carried;
         *p->probe[k].mean = (struct probe_mean){.row = -1};
         carried += MEAN;

@@ -59,10 +59,10 @@ static void weights_reproduce_linear_fields(const char *point)
     set_linear_field();
     double row[8], rate[8];
     probes_sample(&probes, &rig.sim, 0, false, row, rate);
-    const double *at = probes.probe[0].of->point;
+    const double *at = probes.probe[0].given->point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5 + 2 * at[0] - 3 * at[1], row[1]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.25 + at[0] + 4 * at[1], row[2]);
-    at = probes.probe[1].of->point;
+    at = probes.probe[1].given->point;
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (0.5 + 2 * at[0] - 3 * at[1]), row[3]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (-0.25 + at[0] + 4 * at[1]), row[4]);
 }
