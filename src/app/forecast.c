@@ -45,7 +45,7 @@ static double seconds_of(const struct stretch *s)
     return seconds;
 }
 
-/* Without rows. */
+/* The time of steps alone, without that of output. */
 static double seconds_of_steps(const struct stretch *s)
 {
     return seconds_of(s) - s->amount[PHASE_output];

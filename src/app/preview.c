@@ -17,7 +17,7 @@ struct drawing {
     double x[8 * SCENE_MAX_SECTIONS], y[8 * SCENE_MAX_SECTIONS]; /* of the numbers, pixels */
 };
 
-/* With the palette of Okabe and Ito, for colour-blind readers. */
+/* Colours are those of Okabe and Ito, for colour-blind readers. */
 static const char style[] =
     "<style>svg{background:#fff}text{font:13px sans-serif}.title{font:bold 16px sans-serif}"
     ".middle,.label{text-anchor:middle}.end{text-anchor:end}.label{font-weight:bold;"
@@ -112,7 +112,7 @@ static void put_body(struct drawing *g, enum kind kind, int body,
     put_legend(g, place, common, held ? "clamped where dark" : "");
 }
 
-/* What has one or two points, as far as the case gives them. */
+/* Marks a section that has one or two points, as far as the case gives them. */
 static void put_mark(struct drawing *g, const struct scene_section_common *common)
 {
     const enum section_id id = (enum section_id)common->section;

@@ -25,7 +25,7 @@ SPHFSI_INLINE int64_t point_grid_cell(const struct point_grid *g, double x)
     return (int64_t)floor(x / g->side);
 }
 
-/* Of the points in a cell the last one inserted is visited first. */
+/* Inserts point k. The last one inserted in a cell is visited first. */
 SPHFSI_INLINE void point_grid_insert(struct point_grid *g, int64_t k)
 {
     const uint32_t slot =

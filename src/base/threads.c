@@ -47,7 +47,7 @@ int thread_useful(int64_t n)
     return (int)(n < 2 * PARTICLES ? 1 : n / PARTICLES < INT16_MAX ? n / PARTICLES : INT16_MAX);
 }
 
-/* With fewer particles a thread has not one vector of them. */
+/* A thread has at least one vector of particles, 16 in float. */
 int thread_limit(int64_t n)
 {
     enum { PARTICLES = 16 };

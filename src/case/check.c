@@ -358,7 +358,7 @@ static enum err check_fluid_probe(struct reader *r, const struct scene_probe *p,
     return ERR_OK;
 }
 
-/* Without it, a place would be the origin. For forces it is, since they need no place. */
+/* Refuses a probe without its point: the place would be the origin, which forces may be about. */
 static enum err check_point(struct reader *r, const struct scene_probe *p, const char *key,
                             const char *quantity)
 {

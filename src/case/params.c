@@ -124,7 +124,7 @@ const struct expr *param_expr(const struct param *param, const void *section, in
     return offset ? ((const struct scene_expr *)field)->e[component] : NULL;
 }
 
-/* With the expressions of a TIME_VECTOR, which follow its numbers. */
+/* Size of a value, with the expressions of a TIME_VECTOR, which follow its numbers. */
 static size_t size_of(const struct param *param)
 {
     return param->size + (param->expr_offset ? sizeof(struct scene_expr) : 0);

@@ -41,7 +41,7 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
 
 /* --- a step of dt of the fluid --- */
 
-/* With a predictor and sub-steps, before its evaluation: moves the structure ahead. */
+/* Moves the structure ahead, before the evaluation of a predictor with sub-steps. */
 void coupling_predict(struct coupling *coupling, double dt);
 
 /* After the evaluation, whose rates act for `rates_time`: n sub-steps of the structure.

@@ -144,7 +144,7 @@ struct dim_text dim_text(const struct dim *dim);
 /* --- expr/text.c --- */
 
 struct slice slice_of(const char *text);
-/* Without its first n characters; without blanks at both ends. */
+/* A slice without its first n characters; one without blanks at both ends. */
 struct slice slice_after(struct slice s, size_t n);
 struct slice slice_trimmed(struct slice s);
 /* Cuts a trimmed piece off the front of `rest` at a separator outside parentheses; false: none. */

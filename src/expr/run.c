@@ -23,7 +23,7 @@ static int table_row(const struct expr_table *table, double x, bool back)
     return low;
 }
 
-/* With derivatives in the argument. Between rows linear, with slopes cubic; outside constant. */
+/* Value and derivatives of a table: between rows linear, with slopes cubic; outside constant. */
 static struct expr_jet table_at(const struct expr_table *table, double x, bool back)
 {
     const int last = table->n - 1, k = table_row(table, x, back);

@@ -247,7 +247,7 @@ SPHFSI_INLINE int32_t fluid_line_of(const struct fluid *fluid, enum kind kind, i
     return fluid->effects & FX_THIN && kind == KIND_WALL ? fluid->lines.of_wall[i] : 0;
 }
 
-/* What its line says of particle i; NULL: it is on no line. */
+/* The dummy of a thin line that particle i is; NULL: it is on no line. */
 SPHFSI_INLINE const struct line_dummy *fluid_line_dummy(const struct fluid *fluid, enum kind kind,
                                                         int64_t i)
 {

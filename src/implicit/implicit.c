@@ -60,14 +60,14 @@ static void take_mean_stress(const struct solid *solid, struct particles *partic
 
 /* --- matrix --- */
 
-/* With the state and the step that the particles hold as those of the matrix. */
+/* Factors the matrix of the state and the step that the particles hold for it. */
 static void factor(struct solid *solid, const struct particles *particles)
 {
     implicit_factor(solid, particles, *particles->matrix_dt, 0, particles->matrix_nx,
                     particles->matrix_ny);
 }
 
-/* With the present state as that of the matrix. */
+/* Factors the matrix of the present state. */
 static void factor_here(struct solid *solid, struct particles *particles, double dt)
 {
     const size_t bytes = (size_t)particles->n * sizeof *particles->ux;

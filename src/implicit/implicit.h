@@ -93,7 +93,7 @@ double implicit_period(struct solid *solid, struct particles *particles);
 enum err constraint_create(struct implicit *implicit, const struct hinges *hinges, struct arena *a,
                            struct diag *d) SPHFSI_CHECKED;
 
-/* What forces at the hinges do to their points, with the present factors. */
+/* Finds what forces at the hinges do to the points of these, with the present factors. */
 void constraint_factor(struct implicit *implicit, const struct hinges *hinges);
 
 /* Where the points are sought for the time: there, or halfway from where they are. */

@@ -17,11 +17,11 @@ struct checkpoint {
 
 enum { CHECKPOINT_VERSION_TEXT = 48 };
 
-/* What counters may hold in it; beyond what any number of a run is. */
+/* The most that counters of a checkpoint may hold; beyond what any number of a run is. */
 #define COUNTS 0x1p62
 #define FINITE 1e300
 
-/* Contents of the header of a valid one. */
+/* Contents of the header of a valid checkpoint. */
 struct checkpoint_info {
     double time;
     int64_t steps, count[KIND_COUNT];

@@ -36,7 +36,7 @@ uint64_t simulation_hash(struct simulation *sim);
 /* Brings DERIVED fields that output uses up to date without changing the state. */
 void simulation_refresh(struct simulation *sim);
 
-/* Also finds the fluid's force on all walls: a step needs that on moving ones alone. */
+/* As simulation_refresh, and finds the force on all walls: a step needs it on moving ones only. */
 void simulation_wall_forces(struct simulation *sim);
 
 /* --- sorting.c --- */
