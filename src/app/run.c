@@ -220,13 +220,12 @@ static enum err advance(struct run *r)
     TRY(relax(r));
     rows_follow(&r->rows, r->sim);
     TRY(observe(r->sim, r->sim->state.time, r->diag));
-    TRY(write_due(r));
-    while (r->sim->state.time < r->session.scene.top.end_time) {
-        TRY(simulation_step(r->sim, (double)INFINITY, r->diag));
+    for (;;) {
         TRY(write_due(r));
         TRY(between_steps(r));
+        if (r->sim->state.time >= r->session.scene.top.end_time) return ERR_OK;
+        TRY(simulation_step(r->sim, (double)INFINITY, r->diag));
     }
-    return ERR_OK;
 }
 
 /* --- end --- */
@@ -471,7 +470,10 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
     TRY(references_open(&r->references, &r->session.scene, r->probes.n_files, r->probes.file,
                         &r->arena, r->diag));
     r->record.references = &r->references;
-    if (r->options->requests) r->options->requests->begun = 1;
+    if (r->options->requests) {
+        r->rows.stop = &r->options->requests->stop;
+        r->options->requests->begun = 1;
+    }
     TRY(run_dir_open(&r->dir, path, use, r->diag));
     TRY(begin_run(r));
     return simulate(r);

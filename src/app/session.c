@@ -213,10 +213,11 @@ void session_close(struct session *session)
     scene_free(&session->scene);
 }
 
-/* Most steps and rows. `step`: the longest of the program; keys: times between two, 0: not set. */
+/* Most steps, and most rows or files. `step`: the longest of the program; keys: times between two,
+ * 0: not set. */
 static enum err check_counts(const struct scene *scene, double step, struct diag *d)
 {
-    static const double max_count = 1e10;
+    static const double max_steps = 1e10, max_outputs = 1e7;
     static const struct {
         enum section_id section;
         const char *key, *what;
@@ -226,23 +227,24 @@ static enum err check_counts(const struct scene *scene, double step, struct diag
                    {SECTION_output, "snapshot_interval", "snapshots"},
                    {SECTION_output, "checkpoint_interval", "checkpoints"},
                    {SECTION_probe, "interval", "rows"}};
-    const double end = scene->top.end_time, least = end / max_count;
+    const double end = scene->top.end_time;
     for (size_t k = 0; k < COUNT_OF(between); k++)
         for (int j = 0; j < section_count(scene, between[k].section); j++) {
             const char *const key = between[k].key;
+            const double most = between[k].section == SECTION_numerics ? max_steps : max_outputs;
             const double time = param_number(param_find(between[k].section, key),
                                              section_at(scene, between[k].section, j));
-            if (time > 0 && time < least)
+            if (time > 0 && end / time > most)
                 return fail_at(d, scene, scene_line(scene, between[k].section, j, key),
                                "%s = %g s gives %.3g %s until %g s, more than the limit of %g; "
                                "choose at least %.3g s",
-                               key, time, end / time, between[k].what, end, max_count, least);
+                               key, time, end / time, between[k].what, end, most, end / most);
         }
-    if (step >= least) return ERR_OK;
+    if (step >= end / max_steps) return ERR_OK;
     return fail_at(d, scene, scene_line(scene, SECTION_top, 0, "end_time"),
                    "the run needs about %.3g steps of %.3g s until end_time = %g s, more than the "
                    "limit of %g; choose at most %.3g s",
-                   end / step, step, end, max_count, max_count * step);
+                   end / step, step, end, max_steps, max_steps * step);
 }
 
 /* Puts the name of the case before a message from code that does not know it. */

@@ -91,12 +91,20 @@ static void put_mean(const struct rows *f, const struct probe *probe, double *ro
 
 /* --- rows --- */
 
-/* Writes the rows up to the present state. Those after the end are left to a restart, with the
- * state before. */
+/* A step may pass the end and may hold any number of rows. The first row of a file has no state
+ * before. */
+static bool rows_end(const struct row_files *r, const struct rows *f)
+{
+    const bool stopped = r->stop && *r->stop && isfinite(r->end) && f->before[0] >= 0;
+    return stopped || f->next > r->end;
+}
+
+/* Writes the rows up to the present state. Those after the end or a stop are left to a restart,
+ * with the state before. */
 static enum err write_rows(const struct row_files *r, struct rows *f, struct diag *d)
 {
     double row[SERIES_MAX_COLUMNS];
-    while (f->next <= r->end || f->next > f->now[0]) {
+    while (f->next > f->now[0] || !rows_end(r, f)) {
         FOR_MEANS(r, f, probe) add_to_mean(f, probe);
         if (f->next > f->now[0]) {
             f->before[0] = -1;
@@ -200,7 +208,9 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
     enum { MEAN = sizeof(struct probe_mean) / sizeof(double) };
     const bool ends =
         ledger && sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
-    *r = (struct row_files){p, ledger, ends ? sim->scene->top.end_time : HUGE_VAL, 0, NULL};
+    *r = (struct row_files){.probes = p,
+                            .ledger = ledger,
+                            .end = ends ? sim->scene->top.end_time : HUGE_VAL};
     TRY(arena_array(a, &r->file, (size_t)p->n_files + 1, "rows", d));
     list_files(r, sim->scene);
     size_t n = 0;

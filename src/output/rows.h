@@ -6,6 +6,8 @@
 #include "base/files.h"
 #include "output/probes.h"
 
+#include <signal.h>
+
 /* --- series.c: time series as CSV: a header, then rows, each written at once --- */
 
 struct series {
@@ -69,8 +71,9 @@ struct rows {
 /* All files of a run, the ledger last. */
 struct row_files {
     struct probes *probes;
-    bool ledger; /* and all rows; false: means only */
-    double end;  /* s: no row is later; the last step passes it */
+    bool ledger;                       /* and all rows; false: means only */
+    double end;                        /* s: no row is later; the last step passes it */
+    const volatile sig_atomic_t *stop; /* no longer 0: a restart writes the rest; or NULL */
     int n;
     struct rows *file;
 };

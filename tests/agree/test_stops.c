@@ -14,11 +14,13 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 static struct sphfsi_requests requests;
 static int64_t stop_after, save_after, steps_done;
-static int stops; /* of all forms */
+static int stops;            /* of all forms */
+static int64_t stop_in_step; /* a step of this number, while its rows are written; 0: none */
 
 void setUp(void) {}
 
@@ -29,6 +31,8 @@ static void watch(void *context, const struct sphfsi_progress *p)
     (void)context;
     steps_done = p->steps;
     if (p->steps >= stop_after) requests.stop = SIGTERM;
+    const struct itimerval soon = {.it_value = {0, 3000}};
+    if (stop_in_step > 0 && p->steps + 1 == stop_in_step) setitimer(ITIMER_REAL, &soon, NULL);
     /* Looked at after the next step, or batch of steps of a lone solid. */
     if (save_after > 0 && p->steps + 1 >= save_after) requests.checkpoint = 1, save_after = -1;
 }
@@ -196,6 +200,45 @@ static void sweep(const struct form *f)
         "output.snapshot_interval=1.5 ms", "numerics.skin=0.002", "water.velocity=1 m/s, 0 m/s", \
         "P.interval=0.2 ms"
 
+/* --- a stop while rows are written --- */
+
+static void stop_now(int number) { requests.stop = number == SIGALRM ? SIGTERM : 0; }
+
+/* The time that the rows reach. */
+static double last_row(const char *folder)
+{
+    size_t size;
+    char *const rows = read_all(folder, "probes.csv", &size);
+    rows[size - 1] = '\0';
+    const double time = strtod(strrchr(rows, '\n') + 1, NULL);
+    free(rows);
+    return time;
+}
+
+/* The rest of the step's rows is left to the restart, which may be stopped as well. */
+static void between_rows(void)
+{
+    const struct form f = {"between rows", NULL, 1, {TINY, "output.probe_interval=0.01 us"}};
+    char whole[PATH_BYTES], cut[PATH_BYTES];
+    int left = 0;
+    snprintf(whole, sizeof whole, "%s", tiny_path("whole"));
+    snprintf(cut, sizeof cut, "%s", tiny_path("cut"));
+    stop_after = INT64_MAX;
+    save_after = -1;
+    run(&f, whole, 1, false, NULL);
+    signal(SIGALRM, stop_now);
+    for (stop_in_step = 1; stop_in_step < 4;) {
+        run(&f, cut, 1, stop_in_step > 1, NULL);
+        const double stopped = strtod(strstr(sphfsi_error(), " at ") + 4, NULL);
+        left += last_row(cut) < stopped - 1e-6;
+        stop_in_step = steps_done + 1;
+    }
+    stop_in_step = 0;
+    run(&f, cut, 1, true, NULL);
+    same(whole, cut, f.name);
+    TEST_ASSERT_TRUE(left > 0);
+}
+
 /* The integrator of this number, "integrator=NAME", or false: the case knows no more. */
 static bool integrator_of(int k, char text[64])
 {
@@ -299,6 +342,7 @@ int main(void)
     if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
     UNITY_BEGIN();
     RUN_TEST(shipped_cases);
+    RUN_TEST(between_rows);
     RUN_TEST(every_integrator_with_sub_steps);
     RUN_TEST(every_integrator_at_a_single_rate);
     printf("found: %d stops\n", stops);

@@ -23,13 +23,13 @@ expect 1 'dp' "$case" --set dp=-1 --out "$dir/none"
 expect 1 'dpp' "$case" --set dpp=1 --out "$dir/none"
 expect 1 'fixed_step = 1e-300 s gives 2e+298 steps until 0.02 s' "$case" --out "$dir/none" \
     --set numerics.fixed_step=1e-300
-expect 1 'ledger_interval = 1e-12 s gives 2e+10 rows' "$case" --out "$dir/none" \
-    --set output.ledger_interval=1e-12
+expect 1 'ledger_interval = 1.9e-09 s gives 1.05e+07 rows' "$case" --out "$dir/none" \
+    --set output.ledger_interval=1.9e-9
 expect 1 'ledger_interval = 1e-11 s gives 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
     --set output.ledger_interval=1e-11 --until 1000
 expect 1 'needs about 3.* steps of .* until end_time = 1e.09 s, more than the limit of 1e.10' \
-    "$case" --out "$dir/none" --set end_time=1e9 --set output.ledger_interval=1 \
-    --set output.probe_interval=1 --set output.snapshot_interval=1e6
+    "$case" --out "$dir/none" --set end_time=1e9 --set output.ledger_interval=1e3 \
+    --set output.probe_interval=1e3 --set output.snapshot_interval=1e6
 [ ! -e "$dir/none" ] || fail "wrong input made a folder"
 
 # --- explaining writes nothing ---
