@@ -33,6 +33,7 @@ struct rigid_equations {
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
     double push_change[3];            /* change by contact with solids and beams */
     double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */
+    double near, turn[2];             /* an angle at the end of the step; its cosine and sine */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */
 void rigid_solve(struct rigid *rigid, int k, double end, double rates_time);

@@ -108,16 +108,41 @@ void rigid_add_hinges(struct rigid *rigid, double time)
     }
 }
 
+/* Cosine and sine of the angle to which a step turns a body: to round-off by those of an angle near
+ * it, since the sweeps change the angle little. */
+static void turn_after(const struct rigid *rigid, int k, double late, double turn[2])
+{
+    struct rigid_equations *const eq = &rigid->eq[k];
+    const double angle = rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, late);
+    double off = angle - eq->near;
+    if (!(fabs(off) < 1e-6)) {
+        eq->near = angle;
+        eq->turn[0] = elementary_cos(angle);
+        eq->turn[1] = elementary_sin(angle);
+        off = 0;
+    }
+    const double cosine = 1 - 0.5 * square(off);
+    turn[0] = cosine * eq->turn[0] - off * eq->turn[1];
+    turn[1] = cosine * eq->turn[1] + off * eq->turn[0];
+}
+
 /* Where a step takes the point of a hinge on a body. */
 static void place_after(const struct rigid *rigid, int k, const double at[2], double late,
                         double place[2])
 {
     const struct rigid_body *const body = &rigid->body[k];
-    double x[3], arm[2];
-    for (int c = 0; c < 3; c++) x[c] = rigid->state[k].x[c] + rigid_displacement(rigid, k, c, late);
-    if (body->fixed) rigid_follow_hinge(rigid, k, rigid->end, x);
-    rigid_arm(rigid, k, at, x[2], arm);
-    for (int c = 0; c < 2; c++) place[c] = body->centre[c] + x[c] + arm[c];
+    const double *const from = body->fixed ? body->fixed->at : body->centre;
+    const double x = at[0] - from[0], y = at[1] - from[1];
+    double turn[2];
+    turn_after(rigid, k, late, turn);
+    for (int c = 0; c < 2; c++)
+        place[c] = from[c] + rigid->state[k].x[c] + rigid_displacement(rigid, k, c, late);
+    if (body->fixed) {
+        const struct motion_state m = motion_at(rigid->scene, body->hinge_motion, rigid->end);
+        memcpy(place, motion_of_point(&m, from[0], from[1]).x, 2 * sizeof *place);
+    }
+    place[0] += turn[0] * x - turn[1] * y;
+    place[1] += turn[1] * x + turn[0] * y;
 }
 
 double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late)

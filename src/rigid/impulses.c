@@ -119,7 +119,10 @@ static void add_load(struct rigid *rigid, const struct rigid_row *row)
 
 void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_step *step)
 {
-    for (int k = 0; k < rigid->n; k++) memset(rigid->eq[k].touch, 0, sizeof rigid->eq[k].touch);
+    for (int k = 0; k < rigid->n; k++) {
+        memset(rigid->eq[k].touch, 0, sizeof rigid->eq[k].touch);
+        rigid->eq[k].near = (double)NAN;
+    }
     rigid->n_rows = 0;
     rigid_add_pairs(rigid, time);
     rigid_add_hinges(rigid, time);
