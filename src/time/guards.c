@@ -426,7 +426,8 @@ static enum err check_newton(const struct simulation *sim, struct diag *d)
                      "fixed_step or %s may help",
                      time_text(sim).text, solid ? "solid" : "beams", sim->state.dt,
                      solid ? implicit->residual : sim->beams.residual,
-                     solid ? "solid_steps = explicit" : "more damping");
+                     solid ? "solid_steps = explicit"
+                           : "an `element` shorter than sqrt(EI/N), with the axial force N,");
 }
 
 enum err guards_check(struct simulation *sim, struct diag *d)

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static struct rig rig;
 
@@ -343,6 +344,23 @@ static void test_beams_begin_beside_each_other_and_bodies(void)
     }
 }
 
+/* A line without much bending stiffness falls about its end: its axial force N, of some 100 N/m,
+ * buckles elements longer than sqrt(EI/N). The run stops and says so, and shorter ones go on. */
+static void test_a_line_needs_short_elements(void)
+{
+    static const char line[] =
+        "dp = 0.05\nend_time = 2\ngravity = 0, -9.81\n[beam b]\nshape = polyline: 0, 0; 1, 0\n"
+        "hinge = 0, 0\nmass = 10\naxial_stiffness = 1e6\nbending_stiffness = 0.3\n"
+        "[contact off]\nenabled = off\n";
+    enum err e = ERR_OK;
+    rig_open(&rig, line, NULL);
+    while (rig.sim.state.time < 2 && e == ERR_OK) e = simulation_step(&rig.sim, 2, &rig.diag);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "shorter than sqrt(EI/N)"), rig.diag.text);
+    rig_open(&rig, line, "beam b.element=0.025", NULL);
+    rig_run(&rig, 2);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -357,5 +375,6 @@ int main(void)
     RUN_TEST(test_three_beams_are_joined_in_a_ring);
     RUN_TEST(test_bad_input_is_refused);
     RUN_TEST(test_beams_begin_beside_each_other_and_bodies);
+    RUN_TEST(test_a_line_needs_short_elements);
     return UNITY_END();
 }
