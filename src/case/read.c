@@ -54,7 +54,7 @@ static enum err allocate_sections(struct reader *r)
 
 /* --- `like` --- */
 
-/* `like = NAME`: values of an earlier section become the defaults, but not its regions. */
+/* `like = NAME`: values of an earlier section become the defaults, but not regions and points. */
 static enum err inherit(struct reader *r, const struct param *like, struct scene_section_common *to)
 {
     char *const target = (void *)to;
@@ -68,9 +68,12 @@ static enum err inherit(struct reader *r, const struct param *like, struct scene
         if (strcmp(from->name, name) != 0) continue;
         memcpy(to + 1, from + 1, section_table[like->section].size - sizeof *to);
         memcpy(target + like->offset, name, sizeof name);
-        for (int p = 0; p < PARAM_COUNT; p++)
-            if (param_table[p].section == like->section && param_repeats(&param_table[p]))
-                param_set_default(&param_table[p], target);
+        for (int p = 0; p < PARAM_COUNT; p++) {
+            const struct param *const own = &param_table[p];
+            const bool point = own->type == PARAM_VECTOR && strcmp(own->unit, "m") == 0;
+            if (own->section == like->section && (point || param_repeats(own)))
+                param_set_default(own, target);
+        }
         return ERR_OK;
     }
     if (r->incomplete) return ERR_INPUT; /* it may be defined in an invalid line */
@@ -100,10 +103,15 @@ static enum err read_section(struct reader *r, int section)
     void *const target = section_of(r, &r->sections[section]);
     r->entry = case_entry(r, section, "like");
     if (like && r->entry) TRY(case_go_on(r, inherit(r, like, target)));
-    /* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
-    struct scene_fluid *const fluid = id == SECTION_fluid ? target : NULL;
-    if (fluid && case_entry(r, section, "surface")) fluid->pressure.e[0] = NULL;
-    if (fluid && case_entry(r, section, "pressure")) fluid->surface = (double)NAN;
+    /* One that is given replaces the other one that is inherited. */
+    static const char *const instead[][2] = {{"surface", "pressure"},
+                                             {"pressure", "surface"},
+                                             {"density", "mass"},
+                                             {"mass", "density"}};
+    for (size_t k = 0; like && k < COUNT_OF(instead); k++) {
+        const struct param *const other = param_find(id, instead[k][1]);
+        if (other && case_entry(r, section, instead[k][0])) param_set_default(other, target);
+    }
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = r->entry = &r->entries[k];
         if (e->section != section) continue;

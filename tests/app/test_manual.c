@@ -62,6 +62,7 @@ static const char scene_text[] =
 /* Beams are beside no fluid. */
 static const char beam_text[] =
     "dp = 2 mm\nend_time = 1\n[wall floor]\nshape = box 0.9, 0, 1.1, 4 mm\n[motion lift]\n"
+    "[beam plate]\nshape = polyline: 0, 1; 1, 1\nthickness = 1 mm\nyoung = 1e6\nmass = 1\n"
     "[beam more]\nshape = polyline: 0, 0; 1, 0\nclamp = 0.5, 0\nthickness = 1 mm\n"
     "young = 1e6\ndensity = 1000\n"
     "[load more]\nbody = more\nshape = box 0, -0.1, 1, 0.1\nforce = 1, 0\n";
@@ -108,6 +109,7 @@ static void example_is_accepted(const struct param *param)
         snprintf(set, sizeof set, "%s%s.%s=%s", word,
                  !section_table[param->section].named ? ""
                  : first                              ? " water"
+                 : is(param, "rigid", "like")         ? " barge"
                  : param->section == SECTION_rigid    ? " raft"
                                                       : " more",
                  param->key, example);

@@ -234,6 +234,23 @@ static void test_like_inherits_values_but_no_regions(void)
     TEST_ASSERT_EQUAL_STRING("b", scene.solid[1].common.name);
 }
 
+static void test_like_of_rigid_bodies_and_beams(void)
+{
+    parse(TOP "[rigid a]\ndensity = 500\nspin = 2\ncentre = 3 mm, 4 mm\nhinge = 5 mm, 5 mm\n"
+              "shape = box 0, 0, 10 mm, 10 mm\n"
+              "[rigid b]\nlike = a\nshape = box 20 mm, 0, 30 mm, 10 mm\n"
+              "[beam c]\nyoung = 1e6\nthickness = 1 mm\ndensity = 900\nclamp = 0, 50 mm\n"
+              "shape = polyline: 0, 50 mm; 0.1, 50 mm\n"
+              "[beam d]\nlike = c\nmass = 0.8\nshape = polyline: 0, 90 mm; 0.1, 90 mm\n",
+          0, NULL);
+    TEST_ASSERT_EQUAL_DOUBLE(500, scene.rigid[1].density);
+    TEST_ASSERT_EQUAL_DOUBLE(2, scene.rigid[1].spin);
+    TEST_ASSERT_TRUE(isnan(scene.rigid[1].centre[0]) && scene.rigid[1].hinge.n == 0);
+    TEST_ASSERT_EQUAL_DOUBLE(1e6, scene.beam[1].young);
+    TEST_ASSERT_TRUE(isnan(scene.beam[1].density) && scene.beam[1].mass == 0.8);
+    TEST_ASSERT_EQUAL_INT(0, scene.beam[1].clamp.n);
+}
+
 static void test_sound_speed_follows_eq_3(void)
 {
     parse(TOP "[fluid w]\nshape = box 0, 0, 9 mm, 9 mm\nmax_speed = 2 m/s\nmax_pressure = 9 kPa\n",
@@ -418,6 +435,7 @@ int main(void)
     RUN_TEST(test_scheme);
     RUN_TEST(test_a_key_wins_over_the_scheme);
     RUN_TEST(test_like_inherits_values_but_no_regions);
+    RUN_TEST(test_like_of_rigid_bodies_and_beams);
     RUN_TEST(test_sound_speed_follows_eq_3);
     RUN_TEST(test_line_ends_and_marks_of_other_systems);
     RUN_TEST(test_every_kind_of_value_comes_back);
