@@ -237,9 +237,13 @@ static void say_end(const struct sphfsi_options *o, const struct simulation *sim
     char text[1024];
     if (sim->state.particle_steps > r->start_particle_steps)
         session_say(o, "%.3g million particle steps a second", 1e-6 * report_rate(sim, r));
-    if (sim->effects & FX_ENERGY_ACCOUNT)
-        session_say(o, "energy gained: at most %.3g J/m, %.2g %% of the available energy",
-                    sim->state.gain, 100 * sim->state.gain_share);
+    if (sim->effects & FX_ENERGY_ACCOUNT) {
+        const double told = sim->guard.warned_gain;
+        (told > 0 && sim->state.gain_share > told
+             ? session_result
+             : session_say)(o, "energy gained: at most %.3g J/m, %.2g %% of the available energy",
+                            sim->state.gain, 100 * sim->state.gain_share);
+    }
     if (sim->effects & FX_FLUID)
         session_say(o,
                     "fluid particles lost: %lld; largest number inside walls and solids at the "

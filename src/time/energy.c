@@ -593,8 +593,8 @@ enum err energy_guard(struct simulation *sim, struct diag *d)
     /* A gain at the interface may be less than what the rest loses. */
     if ((g.term == TERM_INTERFACE ? g.all : g.share) > GAIN_LIMIT)
         return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s may help", text, remedy);
-    if (!sim->guard.warned_energy)
-        diag_warn(d, "%s. The results may be invalid; %s may help", text, remedy);
-    sim->guard.warned_energy = true;
+    if (g.share < 2 * sim->guard.warned_gain) return ERR_OK;
+    sim->guard.warned_gain = g.share;
+    diag_warn(d, "%s. The results may be invalid; %s may help", text, remedy);
     return ERR_OK;
 }

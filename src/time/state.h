@@ -16,8 +16,9 @@ struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
     double speed_limit; /* m/s: at the speed of sound no flow is weakly compressible */
     double step_limit;  /* s: a smaller step stops the run */
-    bool warned_speed, warned_dens, warned_det, warned_step, warned_entered, warned_energy,
-        warned_contact, warned_voids, warned_rigid, warned_beams, warned_beam_in_solid,
+    double warned_gain; /* of energy: the share in the last warning of it, or 0 */
+    bool warned_speed, warned_dens, warned_det, warned_step, warned_entered, warned_contact,
+        warned_voids, warned_rigid, warned_beams, warned_beam_in_solid,
         warned_left[ENERGY_ENTRIES]; /* of each section */
     bool case_at_fault; /* what stopped the run would stop it with shorter steps, too */
 };
