@@ -429,8 +429,46 @@ static enum err warn_of_gaps(struct check *check)
     return ERR_OK;
 }
 
+/* --- points of rigid bodies --- */
+
+/* A point that moves with a rigid body, further from it than the body is long. A hinge may be. */
+static void warn_of_far_point(const struct check *check, const struct scene_section_common *common,
+                              const char *key, const double at[2], int rigid)
+{
+    const struct scene *const scene = check->scene;
+    const int wall = scene_rigid_wall(scene, rigid);
+    const struct region *const region = &check->shapes.regions[scene->n_solid + wall];
+    const struct box2 *const box = &region->add.box;
+    struct box2 point;
+    lattice_place(&region->lattice, at[0], at[1], point.low);
+    memcpy(point.high, point.low, sizeof point.high);
+    if (box2_near(&point, box, max2(box->high[0] - box->low[0], box->high[1] - box->low[1])))
+        return;
+    warn_at(check->diag, scene,
+            scene_line(scene, (enum section_id)common->section, common->index, key),
+            "%s %s = %g, %g is further from [rigid %s] than the body is long, and moves with it; "
+            "choose a point of the body",
+            section_title(common).text, key, at[0], at[1], scene->rigid[rigid].common.name);
+}
+
+static void warn_of_far_points(const struct check *check)
+{
+    const struct scene *const scene = check->scene;
+    for (int k = 0; k < scene->n_rigid; k++)
+        if (!isnan(scene->rigid[k].centre[0]))
+            warn_of_far_point(check, &scene->rigid[k].common, "centre", scene->rigid[k].centre, k);
+    for (int k = 0; k < scene->n_spring; k++) {
+        const struct scene_spring *const spring = &scene->spring[k];
+        const int body = scene_find(scene, SECTION_rigid, spring->body),
+                  other = scene_find(scene, SECTION_rigid, spring->other);
+        if (body >= 0) warn_of_far_point(check, &spring->common, "from", spring->from, body);
+        if (other >= 0) warn_of_far_point(check, &spring->common, "to", spring->to, other);
+    }
+}
+
 enum err warn_of_shapes(struct check *check)
 {
+    warn_of_far_points(check);
     for (int k = 0; k < check->shapes.n_regions; k++)
         warn_of_region(check, &check->shapes.regions[k]);
     for (int k = 0; k < check->shapes.n_regions; k++)

@@ -43,6 +43,23 @@ static void test_fluid_a_little_beside_its_wall(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins"), warnings);
 }
 
+static void test_points_far_from_rigid_bodies(void)
+{
+#define BOX "[rigid a]\nshape = box 0.1, 0, 0.2, 0.2\ndensity = 500\n"
+#define LINE "[spring s]\nbody = a\nstiffness = 1\n"
+    read(HEAD BOX "centre = 0.1, 0.3\n" LINE "from = 0.3, 0\nto = 9, 9\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD BOX LINE "from = 3, 3\nto = 9, 9\n");
+    expect("start.cfg:10: [spring s] from = 3, 3 is further from [rigid a] than the body is long");
+    read(HEAD BOX "centre = 0.15, 0.5\n" LINE "from = 0.2, 0\nto = 9, 9\n");
+    expect("start.cfg:7: [rigid a] centre = 0.15, 0.5 is further from");
+    read(HEAD BOX "[rigid b]\nshape = circle 1, 0, 0.1\ndensity = 1\n" LINE
+                  "other = b\nfrom = 0.2, 0\nto = 2, 0\n");
+    expect("[spring s] to = 2, 0 is further from [rigid b]");
+#undef BOX
+#undef LINE
+}
+
 static void test_fluid_without_the_pressure_of_its_weight(void)
 {
     read(HEAD "[fluid water]\nsound_speed = 10\nshape = box 0, 0, 0.1, 0.05\n" TANK);
@@ -185,6 +202,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_fluid_a_little_beside_its_wall);
+    RUN_TEST(test_points_far_from_rigid_bodies);
     RUN_TEST(test_fluid_without_the_pressure_of_its_weight);
     RUN_TEST(test_a_body_force_that_drives_a_periodic_flow);
     RUN_TEST(test_a_motion_near_the_speed_of_sound);
