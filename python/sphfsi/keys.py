@@ -49,7 +49,7 @@ def _wrong(key: Mapping, value: Any) -> str:
     if kind == "choice":
         return f"give one of {', '.join(key['choices'])}"
     if kind in ("number", "whole number"):
-        if not isinstance(value, Integral if kind == "whole number" else Real):
+        if not isinstance(value, Integral if kind == "whole number" else Real) or value != value:
             return f"give a {kind}"
         return _range(key, value)
     if kind.startswith("two ") and not (isinstance(value, Sequence) and len(value) == 2):

@@ -79,7 +79,9 @@ enum err case_change_check(const char *old, const char *now, bool fork, struct d
     } while (a.length > 0 && a.length == b.length && memcmp(a.text, b.text, (size_t)a.length) == 0);
     if (a.length == 0 && b.length == 0) return ERR_OK;
     /* The section of a key that only the case has; the checkpoint's line is in a later one. */
-    const char *const section = is_key(&b) && !is_key(&a) ? b.section : a.section;
+    const char *const section = is_key(&b) && !is_key(&a)    ? b.section
+                                : !is_key(&a) && !is_key(&b) ? "a section:"
+                                                             : a.section;
     const int shown_a = a.length < 200 ? a.length : 200, shown_b = b.length < 200 ? b.length : 200;
     return diag_fail(
         d, ERR_INPUT, "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",

@@ -92,7 +92,8 @@ static enum err refuse_meeting(const struct check *check, const struct scene_bea
                                beam->common.name, at[0], at[1]);
             return fail_at(check->diag, check->scene, line->line,
                            "[beam %s] meets [beam %s] at (%.6g, %.6g) m without a joint; give "
-                           "[beam %s] a `clamp` or `hinge` = X, Y, %s there, or move one of them",
+                           "[beam %s] a `clamp` or `hinge` = X, Y, %s there, besides joints with "
+                           "other beams, or move one of them",
                            beam->common.name, other->common.name, at[0], at[1], beam->common.name,
                            other->common.name);
         }

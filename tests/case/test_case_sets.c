@@ -36,6 +36,7 @@ static const struct {
     {TOP SOLID, "soild.young=1e6", "the case has no section `soild`"},
     {TOP SOLID, "zzzzzzzzzz.young=1e6", "the case has no section `zzzzzzzzzz`"},
     {TOP, "zzzzzzzzzz.young=1e6", "the case has no section `zzzzzzzzzz`"},
+    {TOP SOLID, "solid.young=1e6", "there is no section `solid`; did you mean `a`?"},
     {TOP SOLID, "a.yuong=1e6", "did you mean `young`?"},
     {TOP SOLID, "a.zzzzzzzzzzz=1e6", "unknown key `zzzzzzzzzzz`"},
     {TOP SOLID, "zzzzzzzzzzz=1e6", "unknown key or constant `zzzzzzzzzzz`"},

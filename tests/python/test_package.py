@@ -283,6 +283,7 @@ def test_errors():
         "gate: law = 3: give one of paper, svk, neo_hookean: stress law": {"gate": {"law": 3}},
         "top: gravity = (0, 1, 2): give two numbers": {"gravity": (0, 1, 2)},
         "top: dp = None: give a number": {"dp": None},
+        "top: dp = nan: give a number": {"dp": float("nan")},
         "output: snapshot_compression = 1.5: give a whole number":
             {"output": {"snapshot_compression": 1.5}},
     }.items():
