@@ -395,7 +395,7 @@ static enum err load_checkpoint(struct run *r)
     TRY(fork ? checkpoint_fork(&r->recent, r->sim, r->diag)
              : checkpoint_apply(&r->recent, r->sim, r->diag));
     /* The last step of a finished run passes its end. */
-    const double last = r->sim->state.dt * (r->sim->effects & FX_FLUID ? 1 : SOLID_BATCH);
+    const double last = r->sim->state.dt * simulation_batch(r->sim);
     if (simulation_time(r->sim) - last >= r->session.scene.top.end_time)
         return diag_fail(
             r->diag, ERR_INPUT,

@@ -206,8 +206,7 @@ enum err rows_create(struct row_files *r, struct probes *p, struct simulation *s
                      struct arena *a, struct diag *d)
 {
     enum { MEAN = sizeof(struct probe_mean) / sizeof(double) };
-    const bool ends =
-        ledger && sim->effects & FX_FLUID; /* a batch of a solid's steps: all its rows */
+    const bool ends = ledger && simulation_batch(sim) == 1; /* of a batch: all its rows */
     *r = (struct row_files){.probes = p,
                             .ledger = ledger,
                             .end = ends ? sim->scene->top.end_time : HUGE_VAL};

@@ -15,12 +15,13 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
     SPHFSI_CHECKED;
 void simulation_free(struct simulation *sim);
 
-/* Most steps of solids without fluid in one call. */
+/* Most steps of a call: SOLID_BATCH of solids without fluid that nothing else needs singly. */
 enum { SOLID_BATCH = 16 };
+int simulation_batch(const struct simulation *sim);
 
-/* Advances by one time step, of a solid without fluid by up to SOLID_BATCH, ending at t_limit (>
- * time) at the latest. INFINITY: the physics alone sets the step. The observer sees the state
- * before and after. ERR_GUARD: the state is invalid; d has the message. */
+/* Advances by one time step, or by up to simulation_batch, ending at t_limit (> time) at the
+ * latest. INFINITY: the physics alone sets the step. The observer sees the state before and after.
+ * ERR_GUARD: the state is invalid; d has the message. */
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* After the STATE fields, n of each kind and sim->state have been loaded from a checkpoint:

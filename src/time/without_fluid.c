@@ -79,6 +79,13 @@ static void add_hook_work(struct simulation *sim, double dt)
                           (hook->ax[i] * particles->vx[i] + hook->ay[i] * particles->vy[i]));
 }
 
+int simulation_batch(const struct simulation *sim)
+{
+    const bool single = sim->effects & FX_FLUID || sim->solid.force_hook || sim->gravity_varies ||
+                        sim->solid.implicit || sim->rigid.n || sim->beams.n;
+    return single ? 1 : SOLID_BATCH;
+}
+
 enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
     struct state *const st = &sim->state;
@@ -87,8 +94,7 @@ enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag 
     const bool near = timestep_watch_contact(sim, sim->solid.time, implicit ? 1 : SOLID_BATCH);
     const double bound = timestep_bound(sim);
     const bool hook = sim->solid.force_hook != NULL;
-    const bool single = hook || sim->gravity_varies || implicit || sim->rigid.n || sim->beams.n;
-    const int batch = single ? 1 : SOLID_BATCH;
+    const int batch = simulation_batch(sim);
     /* Rounding of the times must not add a step. */
     const double left = t_limit - begin, steps = max2(1, ceil(left / bound - 1e-6));
     const bool hits = steps <= batch;

@@ -46,6 +46,19 @@ for set in thickness=6mm element=2cm; do
     expect 1 "fork: the case has changed since the checkpoint: .beam bar. .${set%=*} = " \
         "$dir/beam.cfg" --fork "$dir/all" --set "bar.$set" --out "$dir/off"
 done
+
+# No row is after the end, which the last step passes.
+long=("$dir/beam.cfg" --set numerics.fixed_step=0.04)
+expect 0 'long: 0.52 s simulated' "${long[@]}" --out "$dir/long"
+for file in probes ledger; do
+    [ "$(tail -n 1 "$dir/long/$file.csv" | cut -d, -f1)" = 0.5 ] || fail "rows after the end"
+done
+expect 0 'simulated' "${long[@]}" --until 0.6 --out "$dir/longer"
+expect 0 'simulated' "${long[@]}" --until 0.6 --out "$dir/long" --restart
+cmp "$dir/long/probes.csv" "$dir/longer/probes.csv" || fail "rows beyond the end of a run"
+expect 1 'fixed_step = 0.04 s is longer than the run, which ends at 0.01 s' "${long[@]}" \
+    --until 0.01 --out "$dir/off"
+
 expect 1 '\[probe tip\] point = 3, 2 is 1 m from the line of \[beam bar\]' \
     "$dir/beam.cfg" --set tip.point=3,2 --out "$dir/off"
 expect 1 '\[beam bar\] has no such quantity; a beam has displacement' \
