@@ -34,7 +34,7 @@ done
 grep -q ' 0.0 % of a step  deformation' "$dir/said" && fail "phases that take nothing are listed"
 explain --threads 2
 says 'cost with up to 2 threads'
-explain --until 1e6
+explain --until 1e4
 says 'disk at most [0-9.]* GB'
 
 # Of two springs, the one whose long arm limits the step.

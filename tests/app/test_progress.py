@@ -21,8 +21,8 @@ ENV = {**os.environ, "OMP_NUM_THREADS": "1"}
 def on_a_terminal(out, until, lines):
     """What a terminal gets of a run that is interrupted after so many lines."""
     ours, theirs = pty.openpty()
-    process = subprocess.Popen([SPHFSI, STILL, "--out", out, "--until", until], stderr=theirs,
-                               env=ENV,
+    process = subprocess.Popen([SPHFSI, STILL, "--out", out, "--until", until, "--set",
+                                "dp=2.5 mm"], stderr=theirs, env=ENV,
                                stdout=subprocess.DEVNULL)
     os.close(theirs)
     said = b""
@@ -38,7 +38,7 @@ def on_a_terminal(out, until, lines):
 
 
 def check_terminal(folder):
-    end = 1e6
+    end = 1e4
     said = on_a_terminal(str(folder / "long"), f"{end:g}", 6)
     parts = said.split("\r")
     # The last of these clears the line for what the program says at the end.
@@ -51,8 +51,8 @@ def check_terminal(folder):
     last = rows[-1]
     assert abs(float(last[1]) - 100 * times[-1] / end) < 0.0501, last[0]
     assert last[4] == "acoustic", last[4]
-    # 100 particles; so many steps to come at this rate.
-    hours = (end - times[-1]) / float(last[3]) * 100 / (1e6 * float(last[5])) / 3600
+    # 1600 particles; so many steps to come at this rate.
+    hours = (end - times[-1]) / float(last[3]) * 1600 / (1e6 * float(last[5])) / 3600
     assert last[6].endswith(" h"), last[0]
     assert 0.5 * hours < float(last[6].removesuffix(" h")) < 2 * hours, (last[0], hours)
     assert "\n" not in said[:said.rindex("\r")], "the line is not written over"
