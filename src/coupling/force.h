@@ -126,18 +126,13 @@ SPHFSI_INLINE void force_on_cell(const struct fluid *fluid, struct particles *pa
     }
 }
 
-/* Whether the wetted surface of the particles of a kind is needed (T-35a, T-95). */
-SPHFSI_INLINE bool needs_wetted(effect_set effects, enum kind kind)
-{
-    return effects & (kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID | FX_BEAM);
-}
-
 void SWEEP(find_force)(const struct fluid *fluid, struct particles *particles, enum kind kind,
                        const struct cells *cells, bool all)
 {
     const struct vector_constants k = constants_of_sweep(fluid);
     const effect_set effects = fluid->effects & (effect_set)SURFACE_EFFECTS;
-    const bool wetted = needs_wetted(fluid->effects, kind);
+    /* T-35a, T-95 */
+    const bool wetted = fluid->effects & (kind == KIND_SOLID ? FX_IMPEDANCE : FX_RIGID | FX_BEAM);
     const int32_t *const cell = fluid->near_fluid[kind], n = fluid->n_near_fluid[kind];
 #pragma omp parallel for schedule(static) num_threads(fluid->threads)
     for (int32_t m = 0; m < n; m++)

@@ -67,8 +67,7 @@ void evaluate_rates(struct simulation *sim, double time)
     if (sim->effects & FX_OPEN) {
         const double start = phase_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */
-        const bool counts = time == sim->state.time;
-        open_set(&sim->open, time, counts);
+        open_set(&sim->open, time, time == sim->state.time);
         phase_add(sim, PHASE_open, start);
     }
     if (sim->effects & FX_ANTUONO) sim->fluid.keeps_slopes = keeps_slopes(sim, time);
