@@ -133,7 +133,7 @@ static enum err refuse_other_motion(const struct beams *beams, const struct beam
     const struct scene *const scene = beams->scene;
     const int movers[] = {other->mover, held->mover};
     struct section_title motion[2] = {{"no motion"}, {"no motion"}};
-    if (held->row[0] >= 0 || movers[0] == movers[1]) return ERR_OK;
+    if (held->unknown[0] >= 0 || movers[0] == movers[1]) return ERR_OK;
     for (int k = 0; k < 2; k++)
         if (movers[k] >= 0) motion[k] = section_title(&scene->motion[movers[k]].common);
     return fail_at(d, scene, other->line,
@@ -163,7 +163,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
             continue;
         }
         const int body = rigid_find(beams->scene, at->other);
-        if (node->body >= 0 || (body >= 0 && node->row[0] < 0))
+        if (node->body >= 0 || (body >= 0 && node->unknown[0] < 0))
             return fail_at(d, beams->scene, at->line,
                            "[beam %s] %s = %g, %g, %s: another `clamp` or `hinge` holds this "
                            "point; where one is on a [rigid], it must be the only one",
@@ -178,7 +178,7 @@ static enum err hold(struct beams *beams, int beam, const struct hinge_list *lis
         node->mover = wall >= 0 ? scene_wall_motion(beams->scene, wall)
                                 : scene_find(beams->scene, SECTION_motion, given->motion);
         TRY(refuse_other_motion(beams, &before, node, d));
-        for (int c = 0; c < (turns ? 2 : 3); c++) node->row[c] = -1;
+        for (int c = 0; c < (turns ? 2 : 3); c++) node->unknown[c] = -1;
     }
     return ERR_OK;
 }
@@ -249,21 +249,21 @@ static enum err share_holds(struct beams *beams, struct diag *d)
         for (int c = 0; c < 3; c++) {
             struct beam_node *const to = owner_of(beams, k, c);
             const struct beam_node *const from = &beams->node[k];
-            if (from->row[c] >= 0 || to == from) continue;
+            if (from->unknown[c] >= 0 || to == from) continue;
             if (c == 0) TRY(refuse_other_motion(beams, to, from, d));
-            to->row[c] = -1;
+            to->unknown[c] = -1;
             to->mover = from->mover;
             to->line = from->line;
         }
     return ERR_OK;
 }
 
-static void share_rows(struct beams *beams)
+static void share_unknowns(struct beams *beams)
 {
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const struct beam_node *const to = owner_of(beams, k, c);
-            beams->node[k].row[c] = to->row[c];
+            beams->node[k].unknown[c] = to->unknown[c];
             beams->node[k].mover = c == 0 ? to->mover : beams->node[k].mover;
         }
 }
@@ -273,10 +273,10 @@ static enum err refuse_held_twice(const struct beams *beams, struct diag *d)
 {
     for (int k = 0; k < beams->n_nodes; k++) {
         const struct beam_node *const node = &beams->node[k];
-        bool twice = node->body >= 0 && node->row[0] < 0;
+        bool twice = node->body >= 0 && node->unknown[0] < 0;
         for (int j = 0; j < k; j++)
             twice |= node->body >= 0 && beams->node[j].body >= 0 &&
-                     node->row[0] == beams->node[j].row[0];
+                     node->unknown[0] == beams->node[j].unknown[0];
         if (twice)
             return fail_at(d, beams->scene, node->line,
                            "more than one `clamp` or `hinge` holds the beams that are joined at "
@@ -294,9 +294,9 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             const struct beam_node *const node = &beams->node[k];
-            if (node->row[c] >= 0 && node->joined[c == 2] < 0) beams->node[k].row[c] = n++;
+            if (node->unknown[c] >= 0 && node->joined[c == 2] < 0) beams->node[k].unknown[c] = n++;
         }
-    share_rows(beams);
+    share_unknowns(beams);
     TRY(refuse_held_twice(beams, d));
     int64_t *const first = arena_alloc(temp, (size_t)n, sizeof *first, what, d);
     if (!first) return ERR_MEMORY;
@@ -305,8 +305,8 @@ static enum err number_unknowns(struct beams *beams, struct arena *a, struct are
         for (int r = 0; r < 6; r++)
             for (int c = 0; c < 6; c++) {
                 const int *const node = beams->element[m].node;
-                const int64_t row = beams->node[node[r / 3]].row[r % 3],
-                              column = beams->node[node[c / 3]].row[c % 3];
+                const int64_t row = beams->node[node[r / 3]].unknown[r % 3],
+                              column = beams->node[node[c / 3]].unknown[c % 3];
                 if (row >= 0 && column >= 0 && column < first[row]) first[row] = column;
             }
     return envelope_create(&beams->matrix, a, n, first, d);
@@ -320,7 +320,7 @@ static enum err set_start(struct beams *beams, struct diag *d)
         double *const v = beams->state[k].v;
         for (int c = 0; c < 2; c++)
             v[c] = beams->state[k].w[c] =
-                given->velocity.e[c] && node->row[c] >= 0
+                given->velocity.e[c] && node->unknown[c] >= 0
                     ? expr_at(given->velocity.e[c], node->X[0], node->X[1])
                     : 0;
         if (!isfinite(v[0] + v[1]))

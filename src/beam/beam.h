@@ -53,15 +53,15 @@ enum { BEAM_NUMBERS = sizeof(struct beam_state) / sizeof(double) };
 
 struct beam_node {
     int beam;
-    double X[2];    /* at the start, m */
-    double mass[3]; /* kg/m, kg/m, kg m */
-    double length;  /* of the line that it represents, m */
-    int64_t row[3]; /* of the unknowns; -1: held */
-    int mover;      /* motion of its clamp or hinge; -1: in place */
-    int joined[2];  /* nodes of other beams that have its place, its angle; -1: none */
-    int body;       /* rigid body that it is joined to; -1: none */
-    bool pivots;    /* by a hinge */
-    int line;       /* of its clamp or hinge in the case */
+    double X[2];        /* at the start, m */
+    double mass[3];     /* kg/m, kg/m, kg m */
+    double length;      /* of the line that it represents, m */
+    int64_t unknown[3]; /* its place among the unknowns; -1: held */
+    int mover;          /* motion of its clamp or hinge; -1: in place */
+    int joined[2];      /* nodes of other beams that have its place, its angle; -1: none */
+    int body;           /* rigid body that it is joined to; -1: none */
+    bool pivots;        /* by a hinge */
+    int line;           /* of its clamp or hinge in the case */
 };
 
 /* In a step: see beams_advance. */

@@ -166,7 +166,7 @@ static void add_pair(struct beams *beams, struct beam_pair *t, int wall, const d
     if (!held) motion_initial(&contact->begin[wall], at, t->row.X);
     beam_row_aim(beams, &t->row);
     for (int k = 0; k < t->n; k++)
-        for (int c = 0; c < 2; c++) held &= beams->node[t->node[k]].row[c] < 0;
+        for (int c = 0; c < 2; c++) held &= beams->node[t->node[k]].unknown[c] < 0;
     if (held || t->gap + min2(0, along_pair(beams, t)) > reach || t->gap > beams->scene->top.dp)
         return;
     if (t->row.e[0] == 0 && t->row.e[1] == 0) return;
@@ -334,7 +334,7 @@ static double along_unknowns(const struct beams *beams, const struct beam_pair *
     double sum = -beam_row_moved_by(beams, &t->row, vector);
     for (int k = 0; k < t->n; k++)
         for (int c = 0; c < 2; c++) {
-            const int64_t row = beams->node[t->node[k]].row[c];
+            const int64_t row = beams->node[t->node[k]].unknown[c];
             if (row >= 0) sum += t->part[k] * t->row.e[c] * vector[row];
         }
     return sum;
@@ -354,7 +354,7 @@ static void find_yields(struct beams *beams)
         memset(column, 0, (size_t)beams->size * sizeof *column);
         for (int k = 0; k < t->n; k++)
             for (int c = 0; c < 2; c++) {
-                const int64_t row = beams->node[t->node[k]].row[c];
+                const int64_t row = beams->node[t->node[k]].unknown[c];
                 if (row >= 0) column[row] += t->part[k] * t->row.e[c];
             }
         envelope_solve(&beams->matrix, column);

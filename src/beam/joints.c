@@ -36,11 +36,11 @@ static void add_joint(struct beams *beams, int k, int c)
     const struct beam_node *const node = &beams->node[k];
     struct beam_joints *const joints = beams->joints;
     struct beam_joint *const joint = &joints->joint[joints->n++];
-    *joint = (struct beam_joint){.node = k, .component = c, .unknown = node->row[c]};
+    *joint = (struct beam_joint){.node = k, .component = c, .unknown = node->unknown[c]};
     joint->row = (struct beam_row){.body = node->body, .X = {node->X[0], node->X[1]}};
     joint->row.e[c] = 1;
     for (int j = 0; j < beams->n_nodes; j++)
-        joint->mass += beams->node[j].row[c] == node->row[c] ? beams->node[j].mass[c] : 0;
+        joint->mass += beams->node[j].unknown[c] == node->unknown[c] ? beams->node[j].mass[c] : 0;
 }
 
 enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *d)
@@ -126,7 +126,7 @@ static double meet(struct beams *beams)
         }
         const double impulse = -faster / (1 / j->mass + beam_row_yields(beams, &j->row));
         for (int k = 0; k < beams->n_nodes; k++)
-            if (beams->node[k].row[c] == j->unknown) beams->state[k].v[c] += impulse / j->mass;
+            if (beams->node[k].unknown[c] == j->unknown) beams->state[k].v[c] += impulse / j->mass;
         beam_row_kick(beams, &j->row, impulse);
     }
     return largest;

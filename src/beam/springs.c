@@ -25,8 +25,8 @@ static void add_stiffness(struct beams *beams, int k, const double along[2], dou
     for (int c = 0; c < 2; c++)
         for (int e = 0; e <= c; e++) {
             const double own = along[c] * along[e];
-            if (node->row[c] >= 0 && node->row[e] >= 0)
-                envelope_add(&beams->matrix, node->row[c], node->row[e],
+            if (node->unknown[c] >= 0 && node->unknown[e] >= 0)
+                envelope_add(&beams->matrix, node->unknown[c], node->unknown[e],
                              stiff * own + across * ((c == e) - own));
         }
 }

@@ -84,8 +84,8 @@ static void add_matrix(const struct beams *beams, const struct beam_element *e, 
 {
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++) {
-            const int64_t row = beams->node[e->node[r / 3]].row[r % 3],
-                          column = beams->node[e->node[c / 3]].row[c % 3];
+            const int64_t row = beams->node[e->node[r / 3]].unknown[r % 3],
+                          column = beams->node[e->node[c / 3]].unknown[c % 3];
             if (row >= 0 && column >= 0 && column <= row)
                 envelope_add(&beams->matrix, row, column, matrix[r][c]);
         }
@@ -156,14 +156,14 @@ static struct largest find_residual(struct beams *beams, double dt)
         const struct beam_node *const node = &beams->node[k];
         const struct beam_step *const s = &beams->step[k];
         for (int c = 0; c < 3; c++) {
-            if (node->row[c] < 0) continue;
+            if (node->unknown[c] < 0) continue;
             const double scale = c < 2 ? 1 : 1 / node->length, push = inertia(beams, k, c, dt);
             const double off =
                 s->load[c] + s->fluid[c] + s->touch[c] - s->force[c] - s->resisted[c] - push;
             const double stiff =
                 node->mass[c] / dt * (2 / dt + beams->beam[node->beam].given->mass_damping);
-            beams->unknown[node->row[c]] += off;
-            envelope_add(&beams->matrix, node->row[c], node->row[c], stiff);
+            beams->unknown[node->unknown[c]] += off;
+            envelope_add(&beams->matrix, node->unknown[c], node->unknown[c], stiff);
             most.force = max2(most.force, scale * max2(fabs(s->load[c] + s->touch[c]), fabs(push)));
             most.force = max2(most.force, scale * max2(fabs(s->fluid[c]), fabs(s->resisted[c])));
             most.rounding =
@@ -172,7 +172,7 @@ static struct largest find_residual(struct beams *beams, double dt)
     }
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
-            const int64_t row = beams->node[k].row[c];
+            const int64_t row = beams->node[k].unknown[c];
             const double scale = c < 2 ? 1 : 1 / beams->node[k].length;
             const double off = row >= 0 ? scale * fabs(beams->unknown[row]) : 0;
             most.off = isfinite(off) ? max2(off, most.off) : (double)NAN;
@@ -187,8 +187,8 @@ static bool correct(struct beams *beams)
     if (!beams_correct_pairs(beams)) return false;
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++)
-            if (beams->node[k].row[c] >= 0)
-                beams->step[k].d[c] += beams->unknown[beams->node[k].row[c]];
+            if (beams->node[k].unknown[c] >= 0)
+                beams->step[k].d[c] += beams->unknown[beams->node[k].unknown[c]];
     beams_move_bodies(beams);
     return true;
 }
@@ -226,7 +226,7 @@ static void begin(struct beams *beams, double time, double dt)
         place_held(beams, k, time + dt, x, v);
         for (int c = 0; c < 3; c++) {
             s->d[c] = dt * s->v[c];
-            if (beams->node[k].row[c] >= 0) continue;
+            if (beams->node[k].unknown[c] >= 0) continue;
             s->d[c] = c < 2 ? x[c] - s->x[c] : 2 * elementary_tan(0.5 * (x[c] - s->x[c]));
         }
     }
@@ -242,7 +242,7 @@ static double finish_held(struct beams *beams, int k, const double v[3], double 
     const double damping = beams->beam[node->beam].given->mass_damping;
     double work = 0;
     for (int c = 0; c < 3; c++) {
-        if (node->row[c] >= 0) continue;
+        if (node->unknown[c] >= 0) continue;
         const double other = s->force[c] + s->resisted[c] - s->fluid[c] - s->load[c] - s->touch[c] +
                              node->mass[c] * damping * s->d[c] / dt;
         now->v[c] = v[c];
@@ -267,7 +267,7 @@ static void finish(struct beams *beams, double time, double dt)
         place_held(beams, k, time + dt, x, v);
         for (int c = 0; c < 3; c++) {
             const double heavy = c < 2 && beam->given->gravity ? node->mass[c] * g[c] : 0;
-            if (node->row[c] < 0) now->x[c] = x[c];
+            if (node->unknown[c] < 0) now->x[c] = x[c];
             now->reaction[c] = 0;
             beam->driven += (s->load[c] - heavy) * s->d[c];
         }
@@ -319,8 +319,8 @@ static int64_t count_free(const struct beams *beams)
     for (int k = 0; k < beams->n; k++) {
         int hinges = 0, clamps = 0;
         for (int j = beams->beam[k].first_node; j < beams->beam[k].end_node; j++) {
-            hinges += beams->node[j].row[0] < 0;
-            clamps += beams->node[j].row[2] < 0;
+            hinges += beams->node[j].unknown[0] < 0;
+            clamps += beams->node[j].unknown[2] < 0;
         }
         n += clamps || hinges > 1 ? 0 : hinges ? 1 : 3;
     }
@@ -336,7 +336,7 @@ static int64_t count_below(struct beams *beams, double omega2, bool springs)
     if (springs) beams_stiffen(beams);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
-            const int64_t row = beams->node[k].row[c];
+            const int64_t row = beams->node[k].unknown[c];
             if (row >= 0)
                 envelope_add(&beams->matrix, row, row, -0.5 * omega2 * beams->node[k].mass[c]);
         }

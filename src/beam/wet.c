@@ -12,7 +12,7 @@ static void find_carriers(const struct beams *beams, const struct beam *b)
     double mass = 0, *const carries = beams->carries;
     for (int k = b->first_node; k < b->end_node; k++) mass += beams->node[k].mass[0];
     for (int k = b->first_node; k < b->end_node; k++) {
-        if (beams->node[k].row[0] < 0 || beams->node[k].body >= 0) {
+        if (beams->node[k].unknown[0] < 0 || beams->node[k].body >= 0) {
             memset(&carries[b->first_node], 0, (size_t)(k - b->first_node) * sizeof *carries);
             carries[k] = 1;
             return;
