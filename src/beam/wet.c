@@ -34,7 +34,7 @@ enum err beams_wet_create(struct beams *beams, struct arena *a, struct lines *li
     TRY(arena_array(a, &beams->line, beams->n, what, d));
     TRY(arena_array(a, &beams->carries, beams->n_nodes, what, d));
     for (int k = 0; k < lines->n; k++) {
-        const int beam = lines->line[k].scene->wall - scene_beam_wall(beams->scene, 0);
+        const int beam = lines->line[k].given->wall - scene_beam_wall(beams->scene, 0);
         if (beam < 0) continue;
         beams->line[beam] = &lines->line[k];
         beams->line[beam]->bends = true;
@@ -144,7 +144,7 @@ double beams_place(struct beams *beams, double since)
 /* The nodes of the part of dummy j, and its element. */
 static int element_of(const struct beams *beams, int beam, int64_t j)
 {
-    return beams->beam[beam].first_element + beams->line[beam]->scene->dummy[j].part;
+    return beams->beam[beam].first_element + beams->line[beam]->given->dummy[j].part;
 }
 
 /* The part across the beam of a vector at a dummy, to its ends; adds that along it, and its moment
@@ -225,7 +225,7 @@ void beams_find_fluid(struct beams *beams, const struct beam_times *times)
     memset(beams->added, 0, (size_t)beams->n_elements * sizeof *beams->added);
     for (int k = 0; k < beams->n; k++) {
         double along[3] = {0};
-        for (int64_t j = 0; j < beams->line[k]->scene->n_dummies; j++)
+        for (int64_t j = 0; j < beams->line[k]->given->n_dummies; j++)
             add_dummy(beams, k, j, along);
         share_out(beams, k, along);
     }
@@ -266,6 +266,6 @@ void beams_return_impulse(struct beams *beams, const struct beam_times *times)
         }
     }
     for (int k = 0; k < beams->n; k++)
-        for (int64_t j = 0; j < beams->line[k]->scene->n_dummies; j++)
+        for (int64_t j = 0; j < beams->line[k]->given->n_dummies; j++)
             add_pressure(beams, k, j, left * before / after, dt / after);
 }

@@ -254,7 +254,7 @@ SPHFSI_INLINE const struct line_dummy *fluid_line_dummy(const struct fluid *flui
     const int32_t of = fluid_line_of(fluid, kind, i);
     if (!of) return NULL;
     const struct thin_line *const line = &fluid->lines.line[of - 1];
-    return &line->scene->dummy[i - line->first];
+    return &line->given->dummy[i - line->first];
 }
 
 /* The line that has to lie between fluid and particle i of a kind, from 1; 0: none. */

@@ -3,13 +3,13 @@
 #include "fluid/wall_motion.h"
 #include "geometry/motion.h"
 
-static int parts_of(const struct thin_line *line) { return line->scene->n - 1; }
+static int parts_of(const struct thin_line *line) { return line->given->n - 1; }
 
 /* The ends as the scene has them, at rest. */
 static void start_ends(struct thin_line *line)
 {
     for (int k = 0; k < parts_of(line); k++) {
-        const double *const a = line->scene->pt[k], *const b = line->scene->pt[k + 1];
+        const double *const a = line->given->pt[k], *const b = line->given->pt[k + 1];
         const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
         for (int last = 0; last < 2; last++)
             line->end[2 * k + last] =
@@ -44,7 +44,7 @@ SPHFSI_INLINE void arm_of(const struct line_dummy *dummy, const struct line_end 
 
 void line_tangent(const struct thin_line *line, int64_t j, double t[2])
 {
-    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_dummy *const dummy = &line->given->dummy[j];
     const struct line_end *const end = &line->end[2 * dummy->part];
     double n[2];
     for (int c = 0; c < 2; c++)
@@ -56,8 +56,8 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2])
 
 void line_slides(const struct thin_line *line, int64_t i, double t[2])
 {
-    const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
-    const struct scene_line *const from = line->scene;
+    const struct line_dummy *const dummy = &line->given->dummy[i - line->first];
+    const struct scene_line *const from = line->given;
     const bool tip[] = {from->tip[0] && from->extend[0] == 0, from->tip[1] && from->extend[1] == 0};
     const bool first = dummy->part == 0 && tip[0],
                last = dummy->part + 1 == parts_of(line) && tip[1];
@@ -87,7 +87,7 @@ static void carry(const struct thin_line *line, int64_t j, double v[2], double a
 
 static void place_dummy(const struct thin_line *line, int64_t j, struct particles *walls)
 {
-    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_dummy *const dummy = &line->given->dummy[j];
     const int64_t i = line->first + j;
     double x[2] = {0}, v[2] = {0}, a[2] = {0};
     for (int last = 0; last < 2; last++) {
@@ -115,7 +115,7 @@ static void place_dummy(const struct thin_line *line, int64_t j, struct particle
 
 void line_foot(const struct thin_line *line, int64_t j, double at[2])
 {
-    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_dummy *const dummy = &line->given->dummy[j];
     const struct line_end *const end = &line->end[2 * dummy->part];
     for (int c = 0; c < 2; c++)
         at[c] = (1 - dummy->along) * end[0].x[c] + dummy->along * end[1].x[c];
@@ -131,7 +131,7 @@ static void place_with(const struct moving_wall *wall, const double at[2], doubl
  * no distance. */
 static void leave_walls(struct thin_line *line)
 {
-    const struct scene_line *const from = line->scene;
+    const struct scene_line *const from = line->given;
     for (int last = 0; last < 2; last++) {
         const double *const at = line->end[last ? 2 * parts_of(line) - 1 : 0].x;
         double start[2], inner[2];
@@ -182,14 +182,14 @@ static void place_pieces(struct thin_line *line)
 void line_place(struct thin_line *line, struct particles *walls, bool predicted)
 {
 #pragma omp parallel for schedule(static)
-    for (int64_t j = 0; j < line->scene->n_dummies; j++) place_dummy(line, j, walls);
+    for (int64_t j = 0; j < line->given->n_dummies; j++) place_dummy(line, j, walls);
     if (!predicted) leave_walls(line);
     place_pieces(line);
 }
 
 void line_at_ends(const struct thin_line *line, int64_t j, double x, double y, double to[6])
 {
-    const struct line_dummy *const dummy = &line->scene->dummy[j];
+    const struct line_dummy *const dummy = &line->given->dummy[j];
     for (int last = 0; last < 2; last++) {
         const double weight = last ? dummy->along : 1 - dummy->along;
         double arm[2];
@@ -211,11 +211,11 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
     TRY(arena_array(a, &lines->filled, walls->n, what, d));
     for (int k = 0; k < lines->n; k++) {
         struct thin_line *const line = &lines->line[k];
-        line->scene = &scene->line[k];
+        line->given = &scene->line[k];
         const int parts = parts_of(line);
-        line->first = line->scene->first;
+        line->first = line->given->first;
         line->dp = scene->top.dp;
-        for (int64_t j = 0; j < line->scene->n_dummies; j++)
+        for (int64_t j = 0; j < line->given->n_dummies; j++)
             lines->of_wall[line->first + j] = k + 1;
         TRY(arena_array(a, &line->end, 2 * (size_t)parts, what, d));
         TRY(arena_array(a, &line->piece, (size_t)parts + 2, what, d));
@@ -233,9 +233,9 @@ void lines_tie(struct lines *lines, const struct wall_motion *m)
             const struct moving_wall *const wall = &m->body[b];
             struct thin_line *const line = &lines->line[k];
             if (wall->motion < 0) continue;
-            if (line->scene->wall == wall->section) line->own = wall;
+            if (line->given->wall == wall->section) line->own = wall;
             for (int last = 0; last < 2; last++)
-                if (line->scene->extend[last] > 0 && line->scene->into[last] == wall->section)
+                if (line->given->extend[last] > 0 && line->given->into[last] == wall->section)
                     line->into[last] = wall;
         }
 }

@@ -11,8 +11,8 @@ static double vector_value(double x, double y, int column)
 static double beam_value(enum data what, const struct simulation *sim, const struct thin_line *line,
                          int64_t i)
 {
-    const int beam = line->scene->wall - scene_beam_wall(sim->scene, 0);
-    const struct line_dummy *const dummy = &line->scene->dummy[i - line->first];
+    const int beam = line->given->wall - scene_beam_wall(sim->scene, 0);
+    const struct line_dummy *const dummy = &line->given->dummy[i - line->first];
     double section[4]; /* in the order of the data from the axial force on */
     if (beam < 0) return 0;
     if (what == D_THICKNESS) return sim->scene->beam[beam].thickness;

@@ -143,7 +143,7 @@ static void test_snapshots_have_what_is_in_the_section(void)
     const struct particles *const walls = &rig.sim.particles[KIND_WALL];
     const struct thin_line *const line = rig.sim.beams.line[0];
     for (int64_t i = 0; i < walls->n; i++) {
-        const int on = i >= line->first && i < line->first + line->scene->n_dummies;
+        const int on = i >= line->first && i < line->first + line->given->n_dummies;
         double value[D_COUNT];
         for (int what = D_THICKNESS; what <= D_CURVATURE; what++)
             value[what] = snapshot_value((enum data)what, &rig.sim, KIND_WALL, i, 0);
@@ -208,9 +208,9 @@ static void test_a_held_end_stays_at_its_wall(void)
         rig_open(&rig, text, k % 2 ? "integrator=leapfrog" : "integrator=symplectic", NULL);
         rig_steps(&rig, 20, 1);
         const struct thin_line *const line = &rig.sim.fluid.lines.line[0];
-        TEST_ASSERT_TRUE(line->scene->extend[0] > 0);
+        TEST_ASSERT_TRUE(line->given->extend[0] > 0);
         TEST_ASSERT_FALSE_MESSAGE(line->tip[0], scenes[k / 2]);
-        TEST_ASSERT_TRUE(line->extend[0] == line->scene->extend[0]);
+        TEST_ASSERT_TRUE(line->extend[0] == line->given->extend[0]);
     }
 }
 

@@ -318,12 +318,12 @@ static void test_places_and_loads(void)
         sum[1] += walls->fy[j];
         sum[2] += walls->x[j] * walls->fy[j] - walls->y[j] * walls->fx[j];
     }
-    TEST_ASSERT_EQUAL_INT64(walls->n - line->first, line->scene->n_dummies);
-    for (int64_t j = 0; j < line->scene->n_dummies; j++) {
+    TEST_ASSERT_EQUAL_INT64(walls->n - line->first, line->given->n_dummies);
+    for (int64_t j = 0; j < line->given->n_dummies; j++) {
         line_at_ends(line, j, walls->fx[line->first + j], walls->fy[line->first + j], load);
         for (int last = 0; last < 2; last++) {
             const double *const f = load + 3 * last,
-                                *const at = line->end[2 * line->scene->dummy[j].part + last].x;
+                                *const at = line->end[2 * line->given->dummy[j].part + last].x;
             handed[0] += f[0];
             handed[1] += f[1];
             handed[2] += f[2] + at[0] * f[1] - at[1] * f[0];
