@@ -235,18 +235,18 @@ static enum err check_counts(const struct scene *scene, double step, struct diag
             const double time = param_number(param_find(between[k].section, key),
                                              section_at(scene, between[k].section, j));
             if (time > 0 && end / time > most)
-                return fail_at(d, scene, scene_line(scene, between[k].section, j, key),
+                return fail_at(d, scene, key_line(scene, between[k].section, j, key),
                                "%s = %g s gives %.3g %s until %g s, more than the limit of %g; "
                                "choose at least %.3g s",
                                key, time, end / time, between[k].what, end, most, end / most);
         }
     if (scene->numerics.fixed_step > end)
-        return fail_at(d, scene, scene_line(scene, SECTION_numerics, 0, "fixed_step"),
+        return fail_at(d, scene, key_line(scene, SECTION_numerics, 0, "fixed_step"),
                        "fixed_step = %g s is longer than the run, which ends at %g s; choose a "
                        "shorter step",
                        scene->numerics.fixed_step, end);
     if (step >= end / max_steps) return ERR_OK;
-    return fail_at(d, scene, scene_line(scene, SECTION_top, 0, "end_time"),
+    return fail_at(d, scene, key_line(scene, SECTION_top, 0, "end_time"),
                    "the run needs about %.3g steps of %.3g s until end_time = %g s, more than the "
                    "limit of %g; choose at most %.3g s",
                    end / step, step, end, max_steps, max_steps * step);

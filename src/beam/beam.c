@@ -227,7 +227,7 @@ static enum err create_springs(struct beams *beams, struct arena *a, struct diag
         const int node = e->node[place.part > 0.5];
         const double *const X = beams->node[node].X;
         if (place.distance > 0.5 * e->length)
-            return fail_at(d, scene, scene_line(scene, SECTION_spring, k, "from"),
+            return fail_at(d, scene, key_line(scene, SECTION_spring, k, "from"),
                            "[spring %s] from = %g, %g is %.3g m from [beam %s]; move it onto its "
                            "line",
                            given->common.name, given->from[0], given->from[1], place.distance,

@@ -3,7 +3,7 @@
  * (T-103). beams_advance below tells the order of a step. */
 #pragma once
 
-#include "fluid/lines.h"
+#include "fluid/thin_lines.h"
 #include "implicit/envelope.h"
 #include "rigid/rigid.h"
 

@@ -398,7 +398,7 @@ static enum err check_top(struct reader *r, const void *section)
             const double t = top->end_time * n / TIMES;
             const struct expr *const e = top->gravity_in_time.e[c];
             if (!isfinite(expr_of(e, t)))
-                return bad_line(r, scene_line(r->scene, SECTION_top, 0, "gravity"),
+                return bad_line(r, key_line(r->scene, SECTION_top, 0, "gravity"),
                                 "gravity = %s%.200s%s: component %d is not finite at t = %g s; it "
                                 "must be finite at all times up to end_time",
                                 c ? "..., " : "", expr_source(e), c ? "" : ", ...", c + 1, t);
@@ -414,15 +414,15 @@ static enum err check_solid_steps(struct reader *r)
     static const char with[] = "numerics.solid_steps = implicit";
     if (scene->numerics.solid_steps != SOLID_STEPS_IMPLICIT) return ERR_OK;
     if (scene->numerics.solid_precision == SOLID_PRECISION_SINGLE)
-        return bad_line(r, scene_line(scene, SECTION_numerics, 0, "solid_precision"),
+        return bad_line(r, key_line(scene, SECTION_numerics, 0, "solid_precision"),
                         "%s computes in double precision, but solid_precision = single; use auto",
                         with);
     if (scene->n_fluid > 0 && scene->numerics.multirate == MULTIRATE_OFF)
-        return bad_line(r, scene_line(scene, SECTION_numerics, 0, "multirate"),
+        return bad_line(r, key_line(scene, SECTION_numerics, 0, "multirate"),
                         "%s gives the solid steps of its own, but multirate = off; use auto", with);
     for (int k = 0; k < scene->n_solid; k++)
         if (scene->solid[k].hourglass > 0 && scene->solid[k].hourglass_form == HOURGLASS_PRINTED)
-            return bad_line(r, scene_line(scene, SECTION_solid, k, "hourglass_form"),
+            return bad_line(r, key_line(scene, SECTION_solid, k, "hourglass_form"),
                             "[solid %s] hourglass_form = printed has no energy, which %s needs; "
                             "use variational",
                             scene->solid[k].common.name, with);
@@ -434,7 +434,7 @@ static enum err check_numerics(struct reader *r, const void *section)
 {
     const double value = ((const struct scene_numerics *)section)->solid_h_over_dp;
     if (value == 0 || value >= 1.1) return check_solid_steps(r);
-    return bad_line(r, scene_line(r->scene, SECTION_numerics, 0, "solid_h_over_dp"),
+    return bad_line(r, key_line(r->scene, SECTION_numerics, 0, "solid_h_over_dp"),
                     "solid_h_over_dp = %g is too small, so particles would have too few "
                     "neighbours; use 1.1 to 2, or 0 for the value of h_over_dp",
                     value);

@@ -87,7 +87,7 @@ bool effect_enabled(const struct scene *scene, enum effect effect, struct effect
 #define HAS_GRAVITY has_gravity(scene, source)
 #define PROBES_WALL enabled_by(source, SECTION_probe, "quantity", first_wall_force(scene))
 #define THIN_LINES \
-    enabled_by(source, SECTION_wall, "shape", scene->n_line > 0 ? scene->line[0].wall : -1)
+    enabled_by(source, SECTION_wall, "shape", scene->n_thin > 0 ? scene->thin[0].wall : -1)
 #define LATER false
 #define EFFECT(name, when, ...) \
     if (effect == EFFECT_##name) return when;
@@ -205,7 +205,7 @@ static const struct owned {
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
 static int line_of(const struct scene *scene, const struct effect_source *source)
 {
-    const int line = scene_line(scene, source->section, source->index, source->key);
+    const int line = key_line(scene, source->section, source->index, source->key);
     return line == LINE_NONE ? 1 : line;
 }
 

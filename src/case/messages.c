@@ -21,7 +21,7 @@ enum err problem(struct reader *r, struct problem_place at, const char *format, 
     const struct entry *const e = at.entry;
     const struct scene_section_common *const s = at.section;
     struct problem p = {.line = e ? e->line : s ? s->line : at.line};
-    if (at.key) p.line = scene_line(r->scene, (enum section_id)s->section, s->index, at.key);
+    if (at.key) p.line = key_line(r->scene, (enum section_id)s->section, s->index, at.key);
     if (e && e->set) snprintf(place, sizeof place, "--set %.100s", e->set);
     if (at.value)
         snprintf(head, sizeof head, "%s = %.60s%s: ", e ? e->key : at.key, at.value,

@@ -70,7 +70,7 @@ const struct scene_given *scene_given(const struct scene *scene, enum section_id
     return NULL;
 }
 
-int scene_line(const struct scene *scene, enum section_id section, int index, const char *key)
+int key_line(const struct scene *scene, enum section_id section, int index, const char *key)
 {
     const struct scene_given *const given = scene_given(scene, section, index, key);
     const struct scene_section_common *const common = section_at(scene, section, index);

@@ -26,7 +26,7 @@ extern const struct section_info section_table[SECTION_COUNT + 1]; /* and [const
 const struct scene_given *scene_given(const struct scene *scene, enum section_id section, int index,
                                       const char *key);
 /* The line of a key; without it, that of its section; LINE_NONE: neither is given. 0: by --set. */
-int scene_line(const struct scene *scene, enum section_id section, int index, const char *key);
+int key_line(const struct scene *scene, enum section_id section, int index, const char *key);
 
 enum param_type {
     PARAM_REAL,

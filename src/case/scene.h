@@ -156,7 +156,7 @@ struct line_dummy {
 };
 
 /* A thin line (T-110): n points, with n - 1 parts between them. */
-struct scene_line {
+struct scene_thin_line {
     int wall, n;
     double (*pt)[2];
     double extend[2];         /* how far it continues into a wall beyond its ends, m */
@@ -217,8 +217,8 @@ struct scene {
     /* [n_rigid]; a [rigid] is the wall and the motion of its number from the end of these. */
     struct rigid_motion *rigid_motion;
     struct rigid_mass *rigid_mass; /* [n_rigid], by sampling */
-    int n_line;
-    struct scene_line *line;       /* by sampling, in the order of the walls */
+    int n_thin;
+    struct scene_thin_line *thin;  /* by sampling, in the order of the walls */
     struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h;                                     /* smoothing length */
@@ -338,9 +338,9 @@ SPHFSI_INLINE int scene_rigid_motion(const struct scene *scene, int rigid)
 /* The thin line that a particle of a wall is a dummy of, from 1; 0: none. */
 SPHFSI_INLINE int scene_line_of(const struct scene *scene, int64_t wall_particle)
 {
-    for (int k = 0; k < scene->n_line; k++)
-        if (wall_particle >= scene->line[k].first &&
-            wall_particle < scene->line[k].first + scene->line[k].n_dummies)
+    for (int k = 0; k < scene->n_thin; k++)
+        if (wall_particle >= scene->thin[k].first &&
+            wall_particle < scene->thin[k].first + scene->thin[k].n_dummies)
             return k + 1;
     return 0;
 }

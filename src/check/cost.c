@@ -50,7 +50,7 @@ static void warn_of_damping(const struct simulation *sim, struct diag *d)
     for (int k = 0; k < sim->scene->n_solid; k++) {
         const struct scene_solid *const body = &sim->scene->solid[k];
         if (!(body->damping_time > 0)) continue;
-        warn_at(d, sim->scene, scene_line(sim->scene, SECTION_solid, k, "damping_time"),
+        warn_at(d, sim->scene, key_line(sim->scene, SECTION_solid, k, "damping_time"),
                 "[solid %s] damping_time = %g s makes the steps of the solid %.3g times shorter; a "
                 "shorter damping_time allows longer steps",
                 body->common.name, body->damping_time, free / sim->solid.stable_step);
@@ -76,7 +76,7 @@ static void warn_of_bounds(const struct simulation *sim, struct diag *d)
     for (size_t k = 0; k < COUNT_OF(owner); k++) {
         const double bound = sim->dt_bound[owner[k].bound];
         if (!(bound > 0 && bound < 0.1 * acoustic)) continue;
-        warn_at(d, scene, scene_line(scene, owner[k].section, 0, owner[k].key),
+        warn_at(d, scene, key_line(scene, owner[k].section, 0, owner[k].key),
                 "%s limits the time step to %.3g s, while sound waves would allow %.3g times as "
                 "much. The run becomes longer by this factor; a %s %s may help",
                 owner[k].key, bound, acoustic / bound, owner[k].change, owner[k].key);

@@ -433,7 +433,7 @@ enum err warn_of_fluid(struct check *check)
         warn_of_density(check, f);
         warn_of_start_gap(check, f);
         warn_of_weight(check, f);
-        warn_of_speed(check, scene_line(scene, SECTION_fluid, f, "velocity"),
+        warn_of_speed(check, key_line(scene, SECTION_fluid, f, "velocity"),
                       start_speed(scene, KIND_FLUID, f, &scene->fluid[f].velocity),
                       "[fluid %s] begins with", scene->fluid[f].common.name);
     }

@@ -445,7 +445,7 @@ static void warn_of_far_point(const struct check *check, const struct scene_sect
     if (box2_near(&point, box, max2(box->high[0] - box->low[0], box->high[1] - box->low[1])))
         return;
     warn_at(check->diag, scene,
-            scene_line(scene, (enum section_id)common->section, common->index, key),
+            key_line(scene, (enum section_id)common->section, common->index, key),
             "%s %s = %g, %g is further from [rigid %s] than the body is long, and moves with it; "
             "choose a point of the body",
             section_title(common).text, key, at[0], at[1], scene->rigid[rigid].common.name);

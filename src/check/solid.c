@@ -93,7 +93,7 @@ static void warn_of_full_clamp(struct check *check, int body)
         held += p->body[k] == body && p->clamped[k];
     }
     if (held > 0 && held == all)
-        warn_at(check->diag, check->scene, scene_line(check->scene, SECTION_solid, body, "clamp"),
+        warn_at(check->diag, check->scene, key_line(check->scene, SECTION_solid, body, "clamp"),
                 "`clamp` holds all %lld particles of [solid %s], so it cannot deform; make the "
                 "clamp smaller, or use a [wall], which is faster",
                 all, check->scene->solid[body].common.name);
@@ -165,7 +165,7 @@ static void warn_of_material(struct check *check, int body)
     const double speed = start_speed(scene, KIND_SOLID, body, &b->velocity);
     const double sound = sqrt(b->young / b->density);
     if (speed > sound)
-        warn_at(check->diag, scene, scene_line(scene, SECTION_solid, body, "velocity"),
+        warn_at(check->diag, scene, key_line(scene, SECTION_solid, body, "velocity"),
                 "[solid %s] begins with up to %.4g m/s, faster than waves in it, "
                 "sqrt(young/density) = %.3g m/s: an impact crushes it and a guard stops the run; "
                 "check the units of `velocity`, `young` and `density`",

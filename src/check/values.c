@@ -35,7 +35,7 @@ static void warn_of_sliding(struct check *check)
     for (int k = 0; k < scene->n_solid + scene->n_wall; k++) {
         const struct body b = body_at(scene, k);
         if (b.slip != SLIP_FREE || (b.kind == KIND_WALL && !*b.motion)) continue;
-        warn_at(check->diag, check->scene, scene_line(scene, SECTION_numerics, 0, "sides"),
+        warn_at(check->diag, check->scene, key_line(scene, SECTION_numerics, 0, "sides"),
                 "sides = one drags the fluid that slides along %s, as if the body were larger "
                 "by a spacing all round: the added mass of a cylinder of 10 spacings is 40 %% too "
                 "large; use sides = both, or slip = none",
@@ -76,7 +76,7 @@ static void warn_of_table(struct check *check, const struct param *key, int k, i
     const double last = e && key->scope & EXPR_IN_TIME ? expr_table_end(e, key->scope) : HUGE_VAL,
                  end = last + (motion ? motion->start : 0), until = scene->top.end_time;
     if (end >= (motion ? min2(until, motion->stop) : until) * (1 - 1e-9)) return;
-    warn_at(check->diag, scene, scene_line(scene, key->section, k, key->key),
+    warn_at(check->diag, scene, key_line(scene, key->section, k, key->key),
             "%s%s%s = %.200s: its table ends at t = %.6g s, before end_time = %.6g s, and its last "
             "two rows differ: %s; continue the table, end it at rest, or use end_time = %.6g s",
             key->section ? section_title(section).text : "", key->section ? " " : "", key->key,
@@ -125,8 +125,7 @@ static void warn_of_open(struct check *check, const struct scene_open *open)
     if (open->absorb > 0 && wave < reach)
         warn_at(
             check->diag, scene,
-            scene_line(scene, (enum section_id)open->common->section, open->common->index,
-                       "absorb"),
+            key_line(scene, (enum section_id)open->common->section, open->common->index, "absorb"),
             "%s absorb = %g s lets only waves shorter than c0 absorb/4 = %.3g m pass, but "
             "the fluid resolves none shorter than 2 h = %.3g m. So sound is reflected; absorb = "
             "4 L/c0 lets waves up to the length L pass",

@@ -5,7 +5,7 @@
 #include "particles/clusters.h"
 #include "case/effects.h"
 #include "fluid/eos.h"
-#include "fluid/lines.h"
+#include "fluid/thin_lines.h"
 
 #define ETA2 0.01 /* (eta/h)^2 */
 /* r0 of law_repulsion over the mean spacing of fluid and dummy. It is 1 for a thin line, so that no

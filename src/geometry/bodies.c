@@ -154,7 +154,7 @@ enum err geometry_check_joined(struct sampler *sampler)
         TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &sampler->temp, sampler->diag));
         for (int64_t n = 0; n < p->n; n++) point_grid_insert(&table, n);
         if (touches(scene, &table, k, other, reach)) continue;
-        TRY(geometry_refuse(sampler, scene_line(scene, SECTION_solid, k, "joined"),
+        TRY(geometry_refuse(sampler, key_line(scene, SECTION_solid, k, "joined"),
                             "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
                             "away from it; move it, or leave `joined` out",
                             scene->solid[k].common.name, scene->solid[k].joined, reach));

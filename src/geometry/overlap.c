@@ -123,7 +123,7 @@ enum err geometry_points(struct sampler *sampler, enum kind kind, int64_t n, boo
     TRY(arena_array(a, &to->y, n, what, sampler->diag));
     TRY(arena_array(a, &to->body, n, what, sampler->diag));
     if (kind == KIND_SOLID) TRY(arena_array(a, &to->clamped, n, what, sampler->diag));
-    if (kind == KIND_WALL && sampler->scene->n_line)
+    if (kind == KIND_WALL && sampler->scene->n_thin)
         TRY(arena_array(a, &to->volume, n, what, sampler->diag));
     if (open) TRY(arena_array(a, &to->open, n, what, sampler->diag));
     return ERR_OK;
@@ -141,7 +141,7 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
         if (kept[j] && sampler->regions[samples->region[j]].kind == kind)
             n += geometry_cut(scene, samples->x[j], samples->y[j], part);
     if (kind == KIND_WALL)
-        for (int j = 0; j < scene->n_line; j++) n += scene->line[j].n_dummies;
+        for (int j = 0; j < scene->n_thin; j++) n += scene->thin[j].n_dummies;
     TRY(geometry_points(sampler, kind, n, false, to));
     for (int r = 0; r < sampler->n_regions; r++) {
         const struct region *const region = &sampler->regions[r];

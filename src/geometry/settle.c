@@ -199,7 +199,7 @@ static enum err visit_lines(struct settling *s)
     const struct scene *const scene = s->sampler->scene;
     const struct scene_points *const p = &scene->points[KIND_FLUID];
     const double near = (0.5 - beside_line) * scene->top.dp;
-    if (scene->n_line == 0) return ERR_OK;
+    if (scene->n_thin == 0) return ERR_OK;
     for (int64_t k = 0; k < p->n; k++) {
         const double at[2] = {p->x[k], p->y[k]};
         double cell[2], left;
@@ -310,7 +310,7 @@ static enum err gather(struct settling *s)
                     continue;
                 if (moves) s->particle[s->n] = k;
                 const int line = kind == KIND_WALL ? scene_line_of(scene, k) : 0;
-                const struct scene_line *const of = line ? &scene->line[line - 1] : NULL;
+                const struct scene_thin_line *const of = line ? &scene->thin[line - 1] : NULL;
                 const struct line_dummy *const dummy = of ? &of->dummy[k - of->first] : NULL;
                 if (dummy && !dummy->same_side) s->line[s->n] = line;
                 const double dp =

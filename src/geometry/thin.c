@@ -6,7 +6,7 @@
 #include "geometry/sampling.h"
 #include "particles/kernel.h"
 
-static struct line_part line_part_at(const struct scene_line *line, int k)
+static struct line_part line_part_at(const struct scene_thin_line *line, int k)
 {
     return line_part(line->pt[k], line->pt[k + 1]);
 }
@@ -20,7 +20,8 @@ static double distance_from(const struct line_part *part, const double at[2], do
     return elementary_hypot(*left, place[0] - min2(max2(place[0], 0), part->length));
 }
 
-static void place_of(const struct scene_line *line, const struct line_dummy *dummy, double at[2])
+static void place_of(const struct scene_thin_line *line, const struct line_dummy *dummy,
+                     double at[2])
 {
     const struct line_part part = line_part_at(line, dummy->part);
     place_on_part(&part, dummy->along * part.length + dummy->beyond, dummy->off, at);
@@ -30,8 +31,6 @@ static bool is_closed(int n, double (*const pt)[2])
 {
     return pt[0][0] == pt[n - 1][0] && pt[0][1] == pt[n - 1][1];
 }
-
-static bool line_is_closed(const struct scene_line *line) { return is_closed(line->n, line->pt); }
 
 static int rows_of_line(const struct scene *scene)
 {
@@ -46,7 +45,7 @@ static double beam_half_thickness(const struct scene_beam *beam)
 
 /* Whether a place beside a part is nearer to another one. A place as far from both belongs to the
  * first of them that has it on the same side. */
-static bool belongs_elsewhere(const struct scene_line *line, const struct line_dummy *dummy,
+static bool belongs_elsewhere(const struct scene_thin_line *line, const struct line_dummy *dummy,
                               double dp)
 {
     const struct line_part own = line_part_at(line, dummy->part);
@@ -66,17 +65,17 @@ static bool belongs_elsewhere(const struct scene_line *line, const struct line_d
 
 /* Whether a dummy within the thickness lies beyond the face there: beside a corner, or beyond the
  * line's end. */
-static bool lies_outside(const struct scene_line *line, const struct line_dummy *dummy)
+static bool lies_outside(const struct scene_thin_line *line, const struct line_dummy *dummy)
 {
     const bool end = dummy->beyond < 0 ? dummy->part == 0 : dummy->part == line->n - 2;
-    return dummy->beyond != 0 && ((end && !line_is_closed(line)) ||
+    return dummy->beyond != 0 && ((end && !is_closed(line->n, line->pt)) ||
                                   elementary_hypot(dummy->off, dummy->beyond) > line->half);
 }
 
 /* A row of a part's dummies for the fluid on one side (1: left, -1: right). Rows have the stations
  * (j + 1/2) step of the whole line; `start`: where the part begins; `from`, `to`: how deep the row
  * lies below the face, in dp. */
-static enum err lay_row(struct sampler *sampler, struct scene_line *line, int k, double start,
+static enum err lay_row(struct sampler *sampler, struct scene_thin_line *line, int k, double start,
                         double step, double side, double from, double to)
 {
     const double dp = sampler->scene->top.dp, length = line_part_at(line, k).length,
@@ -106,7 +105,7 @@ static enum err lay_row(struct sampler *sampler, struct scene_line *line, int k,
 
 /* T-110f: rows from the face on, as deep as the kernel, and at least to the line; it cuts the row
  * that it meets. */
-static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k, double start,
+static enum err lay_part(struct sampler *sampler, struct scene_thin_line *line, int k, double start,
                          double step, double side)
 {
     const double half = line->half / sampler->scene->top.dp,
@@ -121,7 +120,7 @@ static enum err lay_part(struct sampler *sampler, struct scene_line *line, int k
 
 /* A line that ends at a wall continues into it, so that the fluid of one side does not see the
  * wall's particles below the other side. The wall may end there, too. */
-static double extension(const struct sampler *sampler, struct scene_line *line, bool last)
+static double extension(const struct sampler *sampler, struct scene_thin_line *line, bool last)
 {
     const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
     const double reach = KERNEL_REACH * sampler->scene->h, dp = sampler->scene->top.dp;
@@ -139,19 +138,19 @@ static double extension(const struct sampler *sampler, struct scene_line *line, 
 
 /* Whether an end of a line lies on another part of it or of another line, also through a periodic
  * side: no fluid flows round it. */
-static bool is_joined(const struct scene *scene, const struct scene_line *line, bool last)
+static bool is_joined(const struct scene *scene, const struct scene_thin_line *line, bool last)
 {
     const double *const end = line->pt[last ? line->n - 1 : 0];
-    for (int j = 0; j < scene->n_line; j++)
-        for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct line_part part = line_part_at(&scene->line[j], k);
+    for (int j = 0; j < scene->n_thin; j++)
+        for (int k = 0; k + 1 < scene->thin[j].n; k++) {
+            const struct line_part part = line_part_at(&scene->thin[j], k);
             for (int image = 0; image < 9; image++) {
                 const int times[2] = {image % 3 - 1, image / 3 - 1};
                 double at[2], left;
                 for (int c = 0; c < 2; c++)
                     at[c] = end[c] + times[c] * scene_periodic(scene, c) *
                                          (scene->domain.upper[c] - scene->domain.lower[c]);
-                const bool own = &scene->line[j] == line && k == (last ? line->n - 2 : 0) &&
+                const bool own = &scene->thin[j] == line && k == (last ? line->n - 2 : 0) &&
                                  at[0] == end[0] && at[1] == end[1];
                 if (!own && distance_from(&part, at, &left) < 0.5 * scene->top.dp) return true;
             }
@@ -163,9 +162,9 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
 {
     struct scene *const scene = sampler->scene;
     const int beam = wall - scene_beam_wall(scene, 0);
-    TRY(arena_more(&scene->arena, &scene->line, scene->n_line, "thin walls", sampler->diag));
-    struct scene_line *const line = &scene->line[scene->n_line++];
-    *line = (struct scene_line){.wall = wall, .n = shape->n, .pt = shape->pt};
+    TRY(arena_more(&scene->arena, &scene->thin, scene->n_thin, "thin walls", sampler->diag));
+    struct scene_thin_line *const line = &scene->thin[scene->n_thin++];
+    *line = (struct scene_thin_line){.wall = wall, .n = shape->n, .pt = shape->pt};
     if (beam >= 0) line->half = beam_half_thickness(&scene->beam[beam]);
     double length = 0, start = 0;
     for (int k = 0; k + 1 < line->n; k++) {
@@ -174,7 +173,7 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
         line->longest = max2(line->longest, part);
     }
     const double step = length / max2(1, round(length / scene->top.dp));
-    for (int last = 0; last < 2 && !line_is_closed(line); last++) {
+    for (int last = 0; last < 2 && !is_closed(line->n, line->pt); last++) {
         line->extend[last] = extension(sampler, line, last);
         line->tip[last] = true;
     }
@@ -195,9 +194,9 @@ double geometry_line_distance(const struct scene *scene, const double at[2], dou
 {
     double nearest = (double)INFINITY, its_left;
     *left = 0;
-    for (int j = 0; j < scene->n_line; j++)
-        for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct line_part part = line_part_at(&scene->line[j], k);
+    for (int j = 0; j < scene->n_thin; j++)
+        for (int k = 0; k + 1 < scene->thin[j].n; k++) {
+            const struct line_part part = line_part_at(&scene->thin[j], k);
             const double distance = distance_from(&part, at, &its_left);
             if (distance < nearest) *left = its_left;
             nearest = min2(nearest, distance);
@@ -207,11 +206,11 @@ double geometry_line_distance(const struct scene *scene, const double at[2], dou
 
 bool geometry_in_beam(const struct scene *scene, const double at[2])
 {
-    for (int j = 0; j < scene->n_line; j++)
-        for (int k = 0; k + 1 < scene->line[j].n; k++) {
-            const struct scene_line *const line = &scene->line[j];
+    for (int j = 0; j < scene->n_thin; j++)
+        for (int k = 0; k + 1 < scene->thin[j].n; k++) {
+            const struct scene_thin_line *const line = &scene->thin[j];
             const struct line_part part = line_part_at(line, k);
-            const bool closed = line_is_closed(line);
+            const bool closed = is_closed(line->n, line->pt);
             double place[2], left;
             relative_to_part(&part, at, place);
             if ((place[0] > 0 || k > 0 || closed) &&
@@ -265,8 +264,8 @@ int geometry_between(const struct scene *scene, const double from[2], const doub
 {
     const double offset[2] = {to[0] - from[0], to[1] - from[1]};
     const double length2 = square(offset[0]) + square(offset[1]), length = sqrt(length2);
-    for (int j = 0; j < scene->n_line; j++) {
-        const struct scene_line *const line = &scene->line[j];
+    for (int j = 0; j < scene->n_thin; j++) {
+        const struct scene_thin_line *const line = &scene->thin[j];
         const double piece = 1 / max2(length * line->longest, 1e-300);
         bool odd = false;
         for (int k = 0; k + 1 < line->n; k++) {
@@ -310,9 +309,9 @@ enum err geometry_thin(struct sampler *sampler)
             TRY(refuse_contact(sampler, k, &scene->wall[k].shape.item[j]));
             TRY(add_line(sampler, k, &scene->wall[k].shape.item[j]));
         }
-    for (int k = 0; k < scene->n_line; k++)
+    for (int k = 0; k < scene->n_thin; k++)
         for (int last = 0; last < 2; last++)
-            if (is_joined(scene, &scene->line[k], last)) scene->line[k].tip[last] = false;
+            if (is_joined(scene, &scene->thin[k], last)) scene->thin[k].tip[last] = false;
     return ERR_OK;
 }
 
@@ -320,8 +319,8 @@ int geometry_cut(const struct scene *scene, double x, double y, double to[2][3])
 {
     const struct scene_lattice *const l = &scene->lattice;
     const double at[2] = {x, y}, nothing = 1e-6;
-    for (int k = 0; k < 2 * scene->n_line; k++) {
-        const struct scene_line *const line = &scene->line[k / 2];
+    for (int k = 0; k < 2 * scene->n_thin; k++) {
+        const struct scene_thin_line *const line = &scene->thin[k / 2];
         const bool last = k % 2;
         const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
         const double along = part.t[0] * l->turn[0] + part.t[1] * l->turn[1],
@@ -348,7 +347,7 @@ int geometry_cut(const struct scene *scene, double x, double y, double to[2][3])
 void geometry_thin_store(struct scene *scene, int wall)
 {
     struct scene_points *const to = &scene->points[KIND_WALL];
-    for (struct scene_line *line = scene->line; line < scene->line + scene->n_line; line++) {
+    for (struct scene_thin_line *line = scene->thin; line < scene->thin + scene->n_thin; line++) {
         if (line->wall != wall) continue;
         line->first = to->n;
         for (int64_t j = 0; j < line->n_dummies; j++) {

@@ -396,7 +396,7 @@ static enum err check_springs(struct simulation *sim, struct diag *d)
                          "%s: %s: [spring %s] has a force of %g N/m with a slope of %g N/m^2 at e "
                          "= %.6g m; both must be finite, so change `force`: min(e, E) in place "
                          "of e keeps the force of E above E",
-                         scene_place(scene, scene_line(scene, SECTION_spring, k, "force")).text,
+                         scene_place(scene, key_line(scene, SECTION_spring, k, "force")).text,
                          time_text(sim).text, s->common.name, spring_force(s, e),
                          spring_slope(s, e), e);
     }

@@ -449,7 +449,7 @@ static void test_connections_across_an_arc(void)
               "shape = polyline thickness -0.05: 0, 0.2; 0, 0; 0.2, 0; 0.2, 0.2\n[wall a]\n"
               "shape = arc: 0.1, 0, 0.06, 0, 180 deg\n",
               NULL);
-    const struct scene_line *const line = &scene.line[0];
+    const struct scene_thin_line *const line = &scene.thin[0];
     uint64_t state = 1;
     int crossed = 0;
     TEST_ASSERT_TRUE(line->n > 100 && line->extend[0] > 0.01);

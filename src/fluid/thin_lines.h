@@ -17,7 +17,7 @@ struct line_end {
 };
 
 struct thin_line {
-    const struct scene_line *given;
+    const struct scene_thin_line *given;
     int64_t first;        /* number of its first dummy among the particles of walls */
     struct line_end *end; /* [2 * parts]: those of part k are 2k and 2k + 1 */
     int n_pieces;

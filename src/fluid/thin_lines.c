@@ -57,7 +57,7 @@ void line_tangent(const struct thin_line *line, int64_t j, double t[2])
 void line_slides(const struct thin_line *line, int64_t i, double t[2])
 {
     const struct line_dummy *const dummy = &line->given->dummy[i - line->first];
-    const struct scene_line *const from = line->given;
+    const struct scene_thin_line *const from = line->given;
     const bool tip[] = {from->tip[0] && from->extend[0] == 0, from->tip[1] && from->extend[1] == 0};
     const bool first = dummy->part == 0 && tip[0],
                last = dummy->part + 1 == parts_of(line) && tip[1];
@@ -131,7 +131,7 @@ static void place_with(const struct moving_wall *wall, const double at[2], doubl
  * no distance. */
 static void leave_walls(struct thin_line *line)
 {
-    const struct scene_line *const from = line->given;
+    const struct scene_thin_line *const from = line->given;
     for (int last = 0; last < 2; last++) {
         const double *const at = line->end[last ? 2 * parts_of(line) - 1 : 0].x;
         double start[2], inner[2];
@@ -204,14 +204,14 @@ enum err lines_create(struct lines *lines, struct arena *a, const struct scene *
                       struct particles *walls, struct diag *d)
 {
     static const char what[] = "thin walls";
-    lines->n = scene->n_line;
+    lines->n = scene->n_thin;
     lines->volume = scene->points[KIND_WALL].volume;
     TRY(arena_array(a, &lines->line, lines->n, what, d));
     TRY(arena_array(a, &lines->of_wall, walls->n, what, d));
     TRY(arena_array(a, &lines->filled, walls->n, what, d));
     for (int k = 0; k < lines->n; k++) {
         struct thin_line *const line = &lines->line[k];
-        line->given = &scene->line[k];
+        line->given = &scene->thin[k];
         const int parts = parts_of(line);
         line->first = line->given->first;
         line->dp = scene->top.dp;
