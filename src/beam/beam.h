@@ -72,7 +72,7 @@ struct beam_step {
     double fluid[3], resisted[3]; /* in fluid: its force, and its resistance (T-105) */
     double d[3];                  /* displacement; twice the tangent of half the rotation */
     double touch[3];              /* of contact (T-106) and joints (T-107), N/m and N */
-    double faster[3];             /* in fluid: its mean velocity less that of the step before */
+    double excess[3];             /* in fluid: its mean velocity less that of the step before */
 };
 
 /* A [beam]: its nodes and elements are `first` to `end` - 1. */

@@ -118,13 +118,13 @@ static double meet(struct beams *beams)
         const struct beam_joint *const j = &beams->joints->joint[n];
         const int c = j->component;
         double *const v = &beams->state[j->node].v[c];
-        const double faster = *v - beam_row_speed(beams, &j->row);
-        largest = max2(largest, fabs(faster));
+        const double excess = *v - beam_row_speed(beams, &j->row);
+        largest = max2(largest, fabs(excess));
         if (!(j->mass > 0)) {
-            *v -= faster;
+            *v -= excess;
             continue;
         }
-        const double impulse = -faster / (1 / j->mass + beam_row_yields(beams, &j->row));
+        const double impulse = -excess / (1 / j->mass + beam_row_yields(beams, &j->row));
         for (int k = 0; k < beams->n_nodes; k++)
             if (beams->node[k].unknown[c] == j->unknown) beams->state[k].v[c] += impulse / j->mass;
         beam_row_kick(beams, &j->row, impulse);

@@ -240,11 +240,11 @@ static void add_pressure(struct beams *beams, int beam, int64_t j, double left, 
     struct particles *const p = beams->walls;
     const int64_t i = line->first + j;
     const int *const node = beams->element[element_of(beams, beam, j)].node;
-    double normal[6], faster = 0;
+    double normal[6], excess = 0;
     wetted(line, j, p, normal);
-    for (int r = 0; r < 6; r++) faster += normal[r] * beams->step[node[r / 3]].faster[r % 3];
+    for (int r = 0; r < 6; r++) excess += normal[r] * beams->step[node[r / 3]].excess[r % 3];
     p->interface_pressure[i] =
-        left * p->interface_pressure[i] - 2 * part * impedance(beams) * faster;
+        left * p->interface_pressure[i] - 2 * part * impedance(beams) * excess;
 }
 
 void beams_return_impulse(struct beams *beams, const struct beam_times *times)
@@ -261,8 +261,8 @@ void beams_return_impulse(struct beams *beams, const struct beam_times *times)
             now->impulse[c] = left * now->impulse[c] - dt * s->resisted[c];
             beams->beam[beams->node[k].beam].received += (s->fluid[c] - s->resisted[c]) * s->d[c];
             now->w[c] = s->d[c] / dt;
-            s->faster[c] = now->w[c] - s->w[c];
-            now->a[c] += weight * (s->faster[c] / (0.5 * (times->last + dt)) - now->a[c]);
+            s->excess[c] = now->w[c] - s->w[c];
+            now->a[c] += weight * (s->excess[c] / (0.5 * (times->last + dt)) - now->a[c]);
         }
     }
     for (int k = 0; k < beams->n; k++)

@@ -55,13 +55,13 @@ void impedance_kick(const struct particles *particles, int64_t first, int64_t en
         particles->vy[i] += kick_time * particles->sy[i];
         const double along =
             particles->vx[i] * particles->face_x[i] + particles->vy[i] * particles->face_y[i];
-        const double faster = along - particles->face_v[i];
-        particles->vx[i] -= faster * particles->face_x[i];
-        particles->vy[i] -= faster * particles->face_y[i];
-        particles->face_dv[i] += faster;
+        const double excess = along - particles->face_v[i];
+        particles->vx[i] -= excess * particles->face_x[i];
+        particles->vy[i] -= excess * particles->face_y[i];
+        particles->face_dv[i] += excess;
         const double after =
             particles->vx[i] * particles->face_x[i] + particles->vy[i] * particles->face_y[i];
-        particles->face_work[i] -= 0.5 * faster * (before + after);
+        particles->face_work[i] -= 0.5 * excess * (before + after);
         particles->ux[i] = particles->ux[i] + drift * particles->vx[i] + next * particles->vx[i];
         particles->uy[i] = particles->uy[i] + drift * particles->vy[i] + next * particles->vy[i];
     }

@@ -70,18 +70,18 @@ void line_slides(const struct thin_line *line, int64_t i, double t[2])
 static void carry(const struct thin_line *line, int64_t j, double v[2], double a[2])
 {
     const struct line_carrier *const by = &line->carrier;
-    double t[2], foot[2], faster[2] = {0};
+    double t[2], foot[2], excess[2] = {0};
     line_tangent(line, j, t);
     line_foot(line, j, foot);
     const double arm[2] = {foot[0] - by->x[0], foot[1] - by->x[1]}, across[2] = {-arm[1], arm[0]};
     for (int c = 0; c < 2; c++) {
-        faster[0] += t[c] * (by->v[c] + by->spin * across[c] - v[c]);
-        faster[1] +=
+        excess[0] += t[c] * (by->v[c] + by->spin * across[c] - v[c]);
+        excess[1] +=
             t[c] * (by->a[c] + by->spin_rate * across[c] - square(by->spin) * arm[c] - a[c]);
     }
     for (int c = 0; c < 2; c++) {
-        v[c] += faster[0] * t[c];
-        a[c] += faster[1] * t[c];
+        v[c] += excess[0] * t[c];
+        a[c] += excess[1] * t[c];
     }
 }
 

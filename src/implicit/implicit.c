@@ -120,10 +120,10 @@ static void find_one(const struct solid *solid, const struct particles *particle
                  ay = 2 / dt * (particles->vy[i] - start[START_VY][i]);
     double x = particles->sx[i] - ax, y = particles->sy[i] - ay;
     if (particles->face_x) { /* T-35a at the mean velocity */
-        const double faster = particles->vx[i] * particles->face_x[i] +
+        const double excess = particles->vx[i] * particles->face_x[i] +
                               particles->vy[i] * particles->face_y[i] - particles->face_v[i];
-        x -= faster * particles->face_x[i];
-        y -= faster * particles->face_y[i];
+        x -= excess * particles->face_x[i];
+        y -= excess * particles->face_y[i];
     }
     to[0] = body->mass * x;
     to[1] = body->mass * y;
@@ -207,9 +207,9 @@ static void book_impedance(struct particles *particles, double dt)
     for (int64_t i = 0; i < particles->n; i++) {
         const double along = particles->vx[i] * particles->face_x[i] +
                              particles->vy[i] * particles->face_y[i],
-                     faster = dt * (along - particles->face_v[i]);
-        particles->face_dv[i] += faster;
-        particles->face_work[i] -= faster * along;
+                     excess = dt * (along - particles->face_v[i]);
+        particles->face_dv[i] += excess;
+        particles->face_work[i] -= excess * along;
     }
 }
 

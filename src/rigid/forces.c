@@ -151,7 +151,7 @@ void rigid_solve(struct rigid *rigid, int k, double end, double rates_time)
     for (int c = 0; c < 3; c++) {
         eq->change[c] = f.base[c] - s->v[c];
         for (int j = 0; j < f.n; j++) eq->change[c] += f.B[c][j] * q[j];
-        eq->faster[c] = eq->change[c] - rates_time * s->a[c];
+        eq->excess[c] = eq->change[c] - rates_time * s->a[c];
     }
 }
 
@@ -163,7 +163,7 @@ void rigid_find_reaction(struct rigid *rigid, int k, double rates_time)
     const bool free = !body->given->hinge.n && along[0] == 0 && along[1] == 0 && body->given->turns;
     for (int c = 0; c < 3; c++) {
         double needed = body->mass[c] * eq->change[c] - eq->impulse[c];
-        for (int e = 0; e < 3; e++) needed += eq->resisting[c][e] * eq->faster[e];
+        for (int e = 0; e < 3; e++) needed += eq->resisting[c][e] * eq->excess[e];
         rigid->state[k].reaction[c] = free ? 0 : needed / rates_time;
     }
 }

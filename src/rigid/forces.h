@@ -29,7 +29,7 @@ struct rigid_equations {
     double from_fluid[3];             /* the fluid's part of the impulse */
     double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
     double at_start[3];               /* velocity at the time of the start */
-    double change[3], faster[3];      /* of the velocity before, and delta */
+    double change[3], excess[3];      /* of the velocity before, and delta */
     double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
     double push_change[3];            /* change by contact with solids and beams */
     double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */

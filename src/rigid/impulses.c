@@ -134,7 +134,7 @@ void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_st
         struct rigid_equations *const eq = &rigid->eq[k];
         for (int c = 0; c < 3; c++) {
             eq->change[c] += eq->touch[RIGID_IMPACT][c] + eq->touch[RIGID_STEP][c];
-            eq->faster[c] += eq->touch[RIGID_STEP][c];
+            eq->excess[c] += eq->touch[RIGID_STEP][c];
         }
     }
     for (int k = 0; k < rigid->n_rows; k++) add_load(rigid, &rigid->row[k]);

@@ -94,16 +94,16 @@ static void find_fluid(const struct rigid *rigid, const struct rigid_body *body,
 }
 
 /* T-97: the pressure that gives the fluid the impulse: `left` of that before, and a new one;
- * `faster` is the velocity beyond the expected one. */
+ * `excess` is the velocity beyond the expected one. */
 static void add_pressure(const struct rigid *rigid, const struct rigid_body *body, double left,
-                         const double faster[3])
+                         const double excess[3])
 {
     struct particles *const p = rigid->walls;
     for (int64_t i = body->wall->first; i < body->wall->end; i++) {
         const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
         double normal[3], along = 0;
         with_moment(&body->wall->placed, p->x[i], p->y[i], p->wet_x[i], p->wet_y[i], normal);
-        for (int c = 0; c < 3 && wet > 0; c++) along += normal[c] / wet * faster[c];
+        for (int c = 0; c < 3 && wet > 0; c++) along += normal[c] / wet * excess[c];
         p->interface_pressure[i] = left * p->interface_pressure[i] - 2 * rigid->impedance * along;
     }
 }
@@ -157,7 +157,7 @@ void rigid_add_impulse(struct rigid *rigid, int k, const double impulse[3])
     for (int c = 0; c < 3; c++) {
         eq->impulse[c] += impulse[c];
         eq->change[c] += change[c];
-        eq->faster[c] += change[c];
+        eq->excess[c] += change[c];
     }
 }
 
@@ -177,8 +177,8 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     body->received = body->passed = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
-        for (int e = 0; e < 3; e++) resisted += eq->resisting[c][e] * eq->faster[e];
-        const double change = rates_time * s->a[c] + eq->faster[c] + eq->touch[RIGID_IMPACT][c];
+        for (int e = 0; e < 3; e++) resisted += eq->resisting[c][e] * eq->excess[e];
+        const double change = rates_time * s->a[c] + eq->excess[c] + eq->touch[RIGID_IMPACT][c];
         body->mean[c] = eq->before[c] + 0.5 * (change - change_by_solids(rigid, k, c));
         body->received += (eq->from_fluid[c] - resisted) * body->mean[c];
         s->rate[c] = -(part * s->impulse[c] + resisted) / rates_time;
@@ -214,7 +214,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double rates_time)
     body->driven += rates_time * rigid_hinge_power(rigid, k, dt);
     const double left = (1 - received_part(rigid, k, rates_time)) * s->exchange_time;
     s->exchange_time = exchange_time_after(s->exchange_time, dt);
-    if (rigid->impedance > 0) add_pressure(rigid, body, left / s->exchange_time, eq->faster);
+    if (rigid->impedance > 0) add_pressure(rigid, body, left / s->exchange_time, eq->excess);
 }
 
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt,

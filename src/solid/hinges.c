@@ -236,9 +236,9 @@ static void value_of(const struct particles *particles, int32_t i, double dt, bo
     value[1] = particles->vy[i] + dt * particles->sy[i];
     if (!resisted) return;
     const double fx = particles->face_x[i], fy = particles->face_y[i];
-    const double faster = value[0] * fx + value[1] * fy - particles->face_v[i];
-    value[0] -= faster * fx;
-    value[1] -= faster * fy;
+    const double excess = value[0] * fx + value[1] * fy - particles->face_v[i];
+    value[0] -= excess * fx;
+    value[1] -= excess * fy;
 }
 
 /* The velocity or acceleration that brings each point to its place a drift of dt later. */
