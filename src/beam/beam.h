@@ -117,7 +117,7 @@ struct beam_body {
     double impulse[3], push[3]; /* that it has of joints and of contact in the step */
     double force[3], turning;   /* of beams now; the part of the moment that turns with it */
     double off[3];              /* what d needs more by the present forces (T-107b) */
-    double yields[3][3];        /* displacement by a unit of force */
+    double compliance[3][3];    /* displacement by a unit of force */
 };
 
 struct beams {
@@ -287,7 +287,7 @@ void beam_row_move(const struct beams *beams, const struct beam_row *row, double
 bool beam_row_settled(const struct beams *beams, const struct beam_row *row, double kept);
 /* The body's velocity along a row; what a unit of impulse changes in it; and an impulse. */
 double beam_row_speed(const struct beams *beams, const struct beam_row *row);
-double beam_row_yields(const struct beams *beams, const struct beam_row *row);
+double beam_row_compliance(const struct beams *beams, const struct beam_row *row);
 void beam_row_kick(const struct beams *beams, const struct beam_row *row, double impulse);
 
 /* --- springs.c: springs and mooring lines from a beam to a place (T-108) --- */

@@ -77,9 +77,9 @@ double beam_row_speed(const struct beams *beams, const struct beam_row *row)
     return dot3(row->along, beams->body[row->body].v);
 }
 
-double beam_row_yields(const struct beams *beams, const struct beam_row *row)
+double beam_row_compliance(const struct beams *beams, const struct beam_row *row)
 {
-    const double(*const W)[3] = equations_of(beams, &beams->body[row->body])->yields;
+    const double(*const W)[3] = equations_of(beams, &beams->body[row->body])->mobility;
     double sum = 0;
     for (int c = 0; c < 3; c++) sum += row->along[c] * dot3(W[c], row->along);
     return sum;
@@ -88,7 +88,7 @@ double beam_row_yields(const struct beams *beams, const struct beam_row *row)
 void beam_row_kick(const struct beams *beams, const struct beam_row *row, double impulse)
 {
     struct beam_body *const body = &beams->body[row->body];
-    const double(*const W)[3] = equations_of(beams, body)->yields;
+    const double(*const W)[3] = equations_of(beams, body)->mobility;
     for (int c = 0; c < 3; c++) {
         body->impulse[c] -= impulse * row->along[c];
         body->v[c] -= impulse * dot3(W[c], row->along);
@@ -110,7 +110,7 @@ void beam_row_move(const struct beams *beams, const struct beam_row *row, double
 {
     if (row->body < 0) return;
     double *const to = &vector[beams_body_row(beams, row->body)];
-    for (int c = 0; c < 3; c++) to[c] -= dot3(beams->body[row->body].yields[c], row->along);
+    for (int c = 0; c < 3; c++) to[c] -= dot3(beams->body[row->body].compliance[c], row->along);
 }
 
 bool beam_row_settled(const struct beams *beams, const struct beam_row *row, double kept)
@@ -137,7 +137,7 @@ void beams_return_bodies(struct beams *beams, double dt)
     for (int k = 0; k < beams->n_bodies; k++) {
         const struct beam_body *const body = &beams->body[k];
         struct rigid_body *const to = &beams->rigid->body[k];
-        const double(*const W)[3] = equations_of(beams, body)->yields;
+        const double(*const W)[3] = equations_of(beams, body)->mobility;
         const double late = beams->rigid->mid_step ? 0.5 * dt : dt;
         bool acts = false;
         for (int c = 0; c < 3; c++) acts |= body->impulse[c] != 0 || body->push[c] != 0;
@@ -179,14 +179,14 @@ void beams_find_bodies(struct beams *beams, double dt)
     const double share = 0.5 * dt * dt;
     for (int k = 0; k < beams->n_bodies; k++) {
         struct beam_body *const body = &beams->body[k];
-        const double(*const W)[3] = equations_of(beams, body)->yields;
+        const double(*const W)[3] = equations_of(beams, body)->mobility;
         const double stiff = share * body->turning / (1 + 0.25 * square(body->d[2])),
                      rest = 1 - stiff * W[2][2], beta = rest > 0.1 ? stiff / rest : 0;
         for (int c = 0; c < 3; c++) {
             body->off[c] =
                 dt * body->v[c] + share * (body->a[c] + dot3(W[c], body->force)) - body->d[c];
             for (int e = 0; e < 3; e++)
-                body->yields[c][e] = share * (W[c][e] + beta * W[c][2] * W[2][e]);
+                body->compliance[c][e] = share * (W[c][e] + beta * W[c][2] * W[2][e]);
         }
         const double turn = body->off[2];
         for (int c = 0; c < 2 && beams->rigid->body[k].fixed; c++)

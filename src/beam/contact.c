@@ -29,9 +29,9 @@ struct beam_contact {
     struct motion_state *begin, *end; /* [n_walls] of the step */
     double *layer;                    /* [n][n_wall] that stays between surfaces; NAN: no contact */
     struct beam_pair *pair;
-    double *column; /* [most][size] displacement of nodes and bodies by a unit of force */
-    double *yields; /* [most][most] along the normals of others */
-    double *open;   /* [most] gap after the correction, m */
+    double *column;     /* [most][size] displacement of nodes and bodies by a unit of force */
+    double *compliance; /* [most][most] along the normals of others */
+    double *open;       /* [most] gap after the correction, m */
 };
 
 /* --- pieces --- */
@@ -97,7 +97,7 @@ enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag 
     TRY(arena_array(a, &contact->layer, beams->n * scene->n_wall, what, d));
     TRY(arena_array(a, &contact->pair, most, what, d));
     TRY(arena_array(a, &contact->column, most * (size_t)beams->size, what, d));
-    TRY(arena_array(a, &contact->yields, most * most, what, d));
+    TRY(arena_array(a, &contact->compliance, most * most, what, d));
     TRY(arena_array(a, &contact->open, most, what, d));
     for (int k = 0; k < beams->n; k++)
         for (int w = 0; w < scene->n_wall; w++) {
@@ -345,7 +345,7 @@ static double *column_of(const struct beams *beams, int j)
     return &beams->contact->column[j * beams->size];
 }
 
-static void find_yields(struct beams *beams)
+static void find_compliance(struct beams *beams)
 {
     struct beam_contact *const contact = beams->contact;
     for (int j = 0; j < contact->n; j++) {
@@ -361,7 +361,7 @@ static void find_yields(struct beams *beams)
         beam_row_move(beams, &t->row, column);
         beams_resist_joints(beams, column);
         for (int i = 0; i < contact->n; i++)
-            contact->yields[(size_t)i * (size_t)contact->most + (size_t)j] =
+            contact->compliance[(size_t)i * (size_t)contact->most + (size_t)j] =
                 along_unknowns(beams, &contact->pair[i], column);
     }
 }
@@ -373,7 +373,7 @@ bool beams_correct_pairs(struct beams *beams)
     struct beam_contact *const contact = beams->contact;
     double largest = (double)INFINITY, first = 0;
     if (contact->n == 0) return true;
-    find_yields(beams);
+    find_compliance(beams);
     for (int j = 0; j < contact->n; j++)
         contact->open[j] = contact->pair[j].gap + along_pair(beams, &contact->pair[j]) +
                            along_unknowns(beams, &contact->pair[j], beams->unknown);
@@ -381,14 +381,14 @@ bool beams_correct_pairs(struct beams *beams)
         largest = 0;
         for (int j = 0; j < contact->n; j++) {
             struct beam_pair *const t = &contact->pair[j];
-            const double own = contact->yields[(size_t)j * (size_t)contact->most + (size_t)j];
+            const double own = contact->compliance[(size_t)j * (size_t)contact->most + (size_t)j];
             const double force = own > 0 ? max2(0, t->row.force - contact->open[j] / own) : 0,
                          more = force - t->row.force;
             t->row.force = force;
             largest = max2(largest, fabs(more) * own);
             for (int i = 0; i < contact->n && more != 0; i++)
                 contact->open[i] +=
-                    more * contact->yields[(size_t)i * (size_t)contact->most + (size_t)j];
+                    more * contact->compliance[(size_t)i * (size_t)contact->most + (size_t)j];
             for (int64_t r = 0; r < beams->size && more != 0; r++)
                 beams->unknown[r] += more * column_of(beams, j)[r];
         }

@@ -19,9 +19,9 @@ struct beam_joint {
 struct beam_joints {
     int n;
     struct beam_joint *joint;
-    double *column;           /* [n][size] displacement of nodes and bodies by a unit of force */
-    double *yields, *factors; /* [n][n] */
-    double *open;             /* [n] */
+    double *column; /* [n][size] displacement of nodes and bodies by a unit of force */
+    double *compliance, *factors; /* [n][n] */
+    double *open;                 /* [n] */
 };
 
 /* --- start --- */
@@ -54,7 +54,7 @@ enum err beams_joints_create(struct beams *beams, struct arena *a, struct diag *
     if (!joints) return ERR_MEMORY;
     TRY(arena_array(a, &joints->joint, n, what, d));
     TRY(arena_array(a, &joints->column, n * (size_t)beams->size, what, d));
-    TRY(arena_array(a, &joints->yields, n * n, what, d));
+    TRY(arena_array(a, &joints->compliance, n * n, what, d));
     TRY(arena_array(a, &joints->factors, n * n, what, d));
     TRY(arena_array(a, &joints->open, n, what, d));
     beams->joints = joints;
@@ -124,7 +124,7 @@ static double meet(struct beams *beams)
             *v -= excess;
             continue;
         }
-        const double impulse = -excess / (1 / j->mass + beam_row_yields(beams, &j->row));
+        const double impulse = -excess / (1 / j->mass + beam_row_compliance(beams, &j->row));
         for (int k = 0; k < beams->n_nodes; k++)
             if (beams->node[k].unknown[c] == j->unknown) beams->state[k].v[c] += impulse / j->mass;
         beam_row_kick(beams, &j->row, impulse);
@@ -185,7 +185,7 @@ static void close_open(const struct beams *beams, double *vector)
 {
     const struct beam_joints *const joints = beams->joints;
     const int n = joints->n;
-    memcpy(joints->factors, joints->yields, (size_t)(n * n) * sizeof *joints->factors);
+    memcpy(joints->factors, joints->compliance, (size_t)(n * n) * sizeof *joints->factors);
     /* Not positive far from a solution: more corrections follow while joints are open. */
     (void)cholesky_solve(joints->factors, n, n, 0, joints->open);
     for (int k = 0; k < n; k++)
@@ -204,7 +204,7 @@ static void find_flexibility(const struct beams *beams)
         envelope_solve(&beams->matrix, column);
         beam_row_move(beams, &j->row, column);
         for (int i = 0; i < joints->n; i++)
-            joints->yields[i * joints->n + k] = opened_by(beams, &joints->joint[i], column);
+            joints->compliance[i * joints->n + k] = opened_by(beams, &joints->joint[i], column);
     }
 }
 

@@ -374,7 +374,7 @@ bool scene_word(const char *list, int k, char word[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
-/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. See scene_line, too. */
+/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. See key_line, too. */
 enum { LINE_NONE = -1 };
 struct scene_place {
     char text[300];

@@ -96,7 +96,7 @@ void rigid_hold(struct rigid *rigid, int k, double place, double speed)
 }
 
 /* The change of velocity by a unit of each impulse: B S^-1 B^T. */
-static void find_yields(const struct freedom *f, double A[3][3], double yields[3][3])
+static void find_mobility(const struct freedom *f, double A[3][3], double mobility[3][3])
 {
     double S[3][3] = {{0}};
     for (int i = 0; i < f->n; i++)
@@ -109,18 +109,18 @@ static void find_yields(const struct freedom *f, double A[3][3], double yields[3
         for (int i = 0; i < f->n; i++) q[i] = f->B[c][i];
         (void)cholesky_solve(M[0], f->n, 3, 0, q); /* positive, as masses and impedances are */
         for (int e = 0; e < 3; e++) {
-            yields[e][c] = 0;
-            for (int i = 0; i < f->n; i++) yields[e][c] += f->B[e][i] * q[i];
+            mobility[e][c] = 0;
+            for (int i = 0; i < f->n; i++) mobility[e][c] += f->B[e][i] * q[i];
         }
     }
 }
 
-void rigid_find_alone(struct rigid *rigid, int k, double time)
+void rigid_find_mobility_dry(struct rigid *rigid, int k, double time)
 {
     const double *const mass = rigid->body[k].mass;
     const struct freedom f = freedom_of(rigid, k, time);
-    double alone[3][3] = {{mass[0]}, {0, mass[1]}, {0, 0, mass[2]}};
-    find_yields(&f, alone, rigid->eq[k].alone);
+    double dry_mass[3][3] = {{mass[0]}, {0, mass[1]}, {0, 0, mass[2]}};
+    find_mobility(&f, dry_mass, rigid->eq[k].mobility_dry);
 }
 
 void rigid_solve(struct rigid *rigid, int k, double end, double rates_time)
@@ -145,8 +145,8 @@ void rigid_solve(struct rigid *rigid, int k, double end, double rates_time)
                 for (int j = 0; j < f.n; j++) S[i][j] += f.B[c][i] * A[c][e] * f.B[e][j];
         }
     }
-    find_yields(&f, A, eq->yields);
-    rigid_find_alone(rigid, k, end);
+    find_mobility(&f, A, eq->mobility);
+    rigid_find_mobility_dry(rigid, k, end);
     if (f.n) (void)cholesky_solve(S[0], f.n, 3, 0, q);
     for (int c = 0; c < 3; c++) {
         eq->change[c] = f.base[c] - s->v[c];
@@ -178,9 +178,9 @@ struct rigid_row *rigid_add_row(struct rigid *rigid, enum rigid_law law, const i
 }
 
 /* An impact is over before the fluid resists. */
-static const double (*yields_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
+static const double (*mobility_in(const struct rigid_equations *eq, enum rigid_stage stage))[3]
 {
-    return stage == RIGID_IMPACT ? eq->alone : eq->yields;
+    return stage == RIGID_IMPACT ? eq->mobility_dry : eq->mobility;
 }
 
 void rigid_row_along(struct rigid_row *row, int side, const double arm[2], const double e[2])
@@ -218,16 +218,16 @@ double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,
     return rate;
 }
 
-double rigid_row_yields(const struct rigid *rigid, const struct rigid_row *row,
-                        enum rigid_stage stage)
+double rigid_row_mobility(const struct rigid *rigid, const struct rigid_row *row,
+                          enum rigid_stage stage)
 {
     double sum = 0;
     for (int side = 0; side < 2; side++) {
         if (row->body[side] < 0) continue;
-        const double(*const yields)[3] = yields_in(&rigid->eq[row->body[side]], stage);
+        const double(*const mobility)[3] = mobility_in(&rigid->eq[row->body[side]], stage);
         for (int c = 0; c < 3; c++)
             for (int e = 0; e < 3; e++)
-                sum += row->along[side][c] * yields[c][e] * row->along[side][e];
+                sum += row->along[side][c] * mobility[c][e] * row->along[side][e];
     }
     return sum;
 }
@@ -238,10 +238,10 @@ void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid
     for (int side = 0; side < 2; side++) {
         if (row->body[side] < 0) continue;
         struct rigid_equations *const eq = &rigid->eq[row->body[side]];
-        const double(*const yields)[3] = yields_in(eq, stage);
+        const double(*const mobility)[3] = mobility_in(eq, stage);
         for (int c = 0; c < 3; c++)
             for (int e = 0; e < 3; e++)
-                eq->touch[stage][c] += yields[c][e] * row->along[side][e] * impulse;
+                eq->touch[stage][c] += mobility[c][e] * row->along[side][e] * impulse;
     }
 }
 
@@ -375,7 +375,7 @@ double rigid_hinge_power(const struct rigid *rigid, int k, double dt)
 }
 
 /* What a unit of a force on an end of a spring does to it at most, 1/kg. */
-static double end_yields(const struct rigid *rigid, const struct rigid_spring *spring, int end)
+static double end_mobility(const struct rigid *rigid, const struct rigid_spring *spring, int end)
 {
     if (spring->body[end] < 0) return 0;
     const double *const mass = rigid->body[spring->body[end]].mass;
@@ -399,7 +399,7 @@ double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)
     for (int j = 0; j < rigid->n_springs; j++) {
         const struct rigid_spring *const spring = &rigid->spring[j];
         if (spring->body[1] < 0) continue;
-        const double both = end_yields(rigid, spring, 0) + end_yields(rigid, spring, 1);
+        const double both = end_mobility(rigid, spring, 0) + end_mobility(rigid, spring, 1);
         omega2 += stiffness_in(rigid, spring, dt) * both;
         *damping += spring->given->damping * both;
     }
@@ -416,7 +416,8 @@ double rigid_spring_step(const struct rigid *rigid, double dt, bool laws_only, i
     for (int j = 0; j < rigid->n_springs; j++) {
         const struct rigid_spring *const spring = &rigid->spring[j];
         for (int end = 0; end < 2 && (spring->given->force.e[0] || !laws_only); end++) {
-            const double own = 2 * stiffness_in(rigid, spring, dt) * end_yields(rigid, spring, end);
+            const double own =
+                2 * stiffness_in(rigid, spring, dt) * end_mobility(rigid, spring, end);
             if (own > rate2) *stiffest = j + 1;
             rate2 = max2(rate2, own);
         }

@@ -25,23 +25,24 @@ enum rigid_stage { RIGID_IMPACT, RIGID_STEP, RIGID_PUSH, RIGID_STAGES };
 /* T-96 of a body: what acts on it in the step, the mass of fluid that resists, the solution. */
 struct rigid_equations {
     double impulse[3];
-    double resisting[3][3];           /* T' Z of T-96: mass of fluid, kg/m, kg, kg m */
-    double from_fluid[3];             /* the fluid's part of the impulse */
-    double start[3], before[3];       /* velocity; the same as hinge or guide allow it now */
-    double at_start[3];               /* velocity at the time of the start */
-    double change[3], excess[3];      /* of the velocity before, and delta */
-    double alone[3][3], yields[3][3]; /* change by a unit of impulse, without fluid and with it */
-    double push_change[3];            /* change by contact with solids and beams */
-    double touch[RIGID_STAGES][3];    /* changes by contact and by hinges between bodies */
-    double near, turn[2];             /* an angle at the end of the step; its cosine and sine */
+    double resisting[3][3];        /* T' Z of T-96: mass of fluid, kg/m, kg, kg m */
+    double from_fluid[3];          /* the fluid's part of the impulse */
+    double start[3], before[3];    /* velocity; the same as hinge or guide allow it now */
+    double at_start[3];            /* velocity at the time of the start */
+    double change[3], excess[3];   /* of the velocity before, and delta */
+    double mobility_dry[3][3];     /* change by a unit of impulse, without fluid */
+    double mobility[3][3];         /* the same with fluid */
+    double push_change[3];         /* change by contact with solids and beams */
+    double touch[RIGID_STAGES][3]; /* changes by contact and by hinges between bodies */
+    double near, turn[2];          /* an angle at the end of the step; its cosine and sine */
 };
 /* Solves them for a velocity that the hinge or guide allows at the time `end` of the step. */
 void rigid_solve(struct rigid *rigid, int k, double end, double rates_time);
 /* The reaction of hinge or guide. */
 void rigid_find_reaction(struct rigid *rigid, int k, double rates_time);
 
-/* Finds eq->alone, the masses of a body alone as it may move at a time. */
-void rigid_find_alone(struct rigid *rigid, int k, double time);
+/* Finds eq->mobility_dry, the masses of a body alone as it may move at a time. */
+void rigid_find_mobility_dry(struct rigid *rigid, int k, double time);
 
 /* --- relations of a body to another one, to a wall or to a place --- */
 
@@ -83,8 +84,8 @@ double rigid_row_rate(const struct rigid *rigid, const struct rigid_row *row,
                       enum rigid_stage stage);
 double rigid_row_change(const struct rigid *rigid, const struct rigid_row *row,
                         enum rigid_stage stage);
-double rigid_row_yields(const struct rigid *rigid, const struct rigid_row *row,
-                        enum rigid_stage stage);
+double rigid_row_mobility(const struct rigid *rigid, const struct rigid_row *row,
+                          enum rigid_stage stage);
 void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid_stage stage,
                     double impulse);
 

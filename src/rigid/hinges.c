@@ -163,7 +163,7 @@ double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, 
  * of its own hinge. Returns the change of the velocity, 0: below round-off. */
 static double hold_row(struct rigid *rigid, struct rigid_row *row, double rates_time)
 {
-    const double a = rigid_row_yields(rigid, row, RIGID_IMPACT);
+    const double a = rigid_row_mobility(rigid, row, RIGID_IMPACT);
     double rate = row->component == 2 ? -row->hinge->end_rate : 0, speed = fabs(rate);
     if (!(a > 0)) return 0;
     for (int side = 0; side < 2; side++)
@@ -178,7 +178,8 @@ static double hold_row(struct rigid *rigid, struct rigid_row *row, double rates_
         for (int c = 0; c < 3 && row->body[side] >= 0; c++) {
             struct rigid_state *const s = &rigid->state[row->body[side]];
             for (int e = 0; e < 3; e++)
-                s->v[c] += rigid->eq[row->body[side]].alone[c][e] * row->along[side][e] * impulse;
+                s->v[c] +=
+                    rigid->eq[row->body[side]].mobility_dry[c][e] * row->along[side][e] * impulse;
             if (side && rates_time > 0)
                 s->reaction[c] -= row->along[side][c] * impulse / rates_time;
         }
@@ -193,7 +194,7 @@ void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time)
         struct rigid_row *const row = &rigid->row[k];
         if (row->hinge) find_along(rigid, row);
     }
-    for (int k = 0; k < rigid->n && rigid->n_hinges; k++) rigid_find_alone(rigid, k, time);
+    for (int k = 0; k < rigid->n && rigid->n_hinges; k++) rigid_find_mobility_dry(rigid, k, time);
     for (int turn = 0; turn < 1000 && largest > 1e-12 * first; turn++) {
         largest = 0;
         for (int k = 0; k < rigid->n_rows; k++)

@@ -71,7 +71,7 @@ static double find_more(const struct rigid *rigid, const struct rigid_row *row,
 static double relax(struct rigid *rigid, struct rigid_row *row, enum rigid_stage stage,
                     const struct rigid_step *step)
 {
-    const double a = acts_in(row, stage) ? rigid_row_yields(rigid, row, stage) : 0;
+    const double a = acts_in(row, stage) ? rigid_row_mobility(rigid, row, stage) : 0;
     if (!(a > 0)) return 0;
     const double more = find_more(rigid, row, stage, a, step);
     rigid_row_push(rigid, row, stage, more);

@@ -145,7 +145,7 @@ static void velocity_by(const struct rigid_equations *eq, const double impulse[3
 {
     for (int c = 0; c < 3; c++) {
         change[c] = 0;
-        for (int e = 0; e < 3; e++) change[c] += eq->yields[c][e] * impulse[e];
+        for (int e = 0; e < 3; e++) change[c] += eq->mobility[c][e] * impulse[e];
     }
 }
 

@@ -377,22 +377,22 @@ static void set_law(struct contact *contact, const struct scene_contact *from, i
     /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
     const bool own = contact->group[a] == contact->group[b];
     const double reach = spacing + (own ? from->gap : scene_contact_gap(contact->scene, from));
-    double yields = 0, shears = 0, per_mass = 0;
+    double compliance = 0, shears = 0, per_mass = 0;
     for (int k = 0; k < 2; k++) {
         const struct solid_body *const body = &contact->solid->body[k ? b : a];
         if ((k ? b : a) >= contact->n_solids) continue;
-        yields += body->dp / body->young;
+        compliance += body->dp / body->young;
         shears += body->dp / body->mu;
         per_mass += 1 / body->mass;
     }
-    const double stiffness = from->stiffness * (2 * spacing / yields);
+    const double stiffness = from->stiffness * (2 * spacing / compliance);
     *contact_law_of(contact, a, b) = *contact_law_of(contact, b, a) = (struct contact_law){
         .on = true,
         .spacing = spacing,
         .reach = reach,
         .stiffness = stiffness,
         .per_mass = per_mass,
-        .shear = yields / shears,
+        .shear = compliance / shears,
         .damping = from->damping,
         .friction = from->friction,
     };
