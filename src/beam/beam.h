@@ -93,9 +93,9 @@ struct beam_load {
 struct beam_spring {
     const struct scene_spring *given;
     int node;
-    double length;    /* without force, m */
-    double longer;    /* elongation where the last step has found the force, m */
-    double stiffness; /* that the longest step takes into account, at least, N/m^2 */
+    double length;     /* without force, m */
+    double elongation; /* where the last step has found the force, m */
+    double stiffness;  /* that the longest step takes into account, at least, N/m^2 */
 };
 
 /* A force of contact or of a joint: on nodes and, with the opposite sign, on a rigid body. */

@@ -138,13 +138,13 @@ void beams_return_bodies(struct beams *beams, double dt)
         const struct beam_body *const body = &beams->body[k];
         struct rigid_body *const to = &beams->rigid->body[k];
         const double(*const W)[3] = equations_of(beams, body)->mobility;
-        const double late = beams->rigid->mid_step ? 0.5 * dt : dt;
+        const double lag = beams->rigid->mid_step ? 0.5 * dt : dt;
         bool acts = false;
         for (int c = 0; c < 3; c++) acts |= body->impulse[c] != 0 || body->push[c] != 0;
         if (!acts) continue;
         for (int c = 0; c < 3; c++) {
-            to->moved[c] += body->x[c] -
-                            (body->from[c] + dt * body->mean[c] + late * dot3(W[c], body->impulse));
+            to->moved[c] +=
+                body->x[c] - (body->from[c] + dt * body->mean[c] + lag * dot3(W[c], body->impulse));
             to->push_impulse[c] += body->push[c];
         }
         rigid_add_impulse(beams->rigid, k, body->impulse);

@@ -11,10 +11,10 @@ static double reach_of(const struct beams *beams, const struct beam_spring *s, c
 }
 
 /* A line that only pulls has no energy while it is slack. */
-static double elongation(const struct beam_spring *s, double length)
+static double elongation_of(const struct beam_spring *s, double length)
 {
-    const double longer = length - s->length;
-    return s->given->slack ? max2(longer, 0) : longer;
+    const double elongation = length - s->length;
+    return s->given->slack ? max2(elongation, 0) : elongation;
 }
 
 /* Adds stiffnesses along a direction and across it. */
@@ -38,10 +38,10 @@ void beams_stiffen(struct beams *beams)
         double along[2];
         if (s->node < 0) continue;
         const double length = reach_of(beams, s, beams->state[s->node].x, along),
-                     longer = elongation(s, length);
+                     elongation = elongation_of(s, length);
         for (int c = 0; c < 2; c++) along[c] /= length;
-        add_stiffness(beams, s->node, along, 0.5 * spring_slope(s->given, longer),
-                      0.5 * max2(spring_force(s->given, longer), 0) / length);
+        add_stiffness(beams, s->node, along, 0.5 * spring_slope(s->given, elongation),
+                      0.5 * max2(spring_force(s->given, elongation), 0) / length);
     }
 }
 
@@ -53,8 +53,8 @@ void beams_set_stiffness(struct beams *beams, int spring, double omega2)
     if (s->node < 0) return;
     for (int k = 0; k < beams->n_nodes; k++)
         if (beams->node[k].beam == beams->node[s->node].beam) mass += beams->node[k].mass[0];
-    const double longer = elongation(s, reach_of(beams, s, beams->state[s->node].x, reach));
-    s->stiffness = max2(spring_slope(s->given, longer), omega2 * mass);
+    const double elongation = elongation_of(s, reach_of(beams, s, beams->state[s->node].x, reach));
+    s->stiffness = max2(spring_slope(s->given, elongation), omega2 * mass);
 }
 
 /* Springs r times as stiff raise no frequency by more than sqrt(r). */
@@ -64,8 +64,9 @@ double beams_stiffer_step(const struct beams *beams)
     for (int k = 0; k < beams->n_springs; k++) {
         const struct beam_spring *const s = &beams->spring[k];
         if (s->node < 0 || !s->given->force.e[0]) continue;
-        const double longer = elongation(s, reach_of(beams, s, beams->state[s->node].x, reach));
-        most = max2(most, spring_slope(s->given, longer) / s->stiffness);
+        const double elongation =
+            elongation_of(s, reach_of(beams, s, beams->state[s->node].x, reach));
+        most = max2(most, spring_slope(s->given, elongation) / s->stiffness);
     }
     return 1 / sqrt(most);
 }
@@ -78,11 +79,11 @@ static void add_spring(struct beams *beams, struct beam_spring *s, double dt, do
     double reach[2][2], along[2];
     const double l0 = reach_of(beams, s, step->x, reach[0]),
                  l1 = reach_of(beams, s, after, reach[1]);
-    const double e0 = elongation(s, l0), e1 = elongation(s, l1);
+    const double e0 = elongation_of(s, l0), e1 = elongation_of(s, l1);
     const double taut = l0 == l1 ? e1 != 0 || !s->given->slack : (e1 - e0) / (l1 - l0),
                  stiff = 0.5 * taut * spring_slope(s->given, e1), damp = s->given->damping / dt,
                  tension = spring_mean(s->given, e0, e1, taut) + damp * (l1 - l0);
-    s->longer = e1;
+    s->elongation = e1;
     if (s->given->slack && (taut == 0 || tension <= 0)) return;
     for (int c = 0; c < 2; c++) {
         along[c] = (reach[0][c] + reach[1][c]) / (l0 + l1);
@@ -106,7 +107,7 @@ void beam_add_spring_energy(const struct beams *beams, int beam, struct body_ene
         const struct beam_spring *const s = &beams->spring[k];
         if (s->node < 0 || beams->node[s->node].beam != beam) continue;
         const double length = reach_of(beams, s, beams->state[s->node].x, reach);
-        spring_add_energy(s->given, elongation(s, length), sum);
+        spring_add_energy(s->given, elongation_of(s, length), sum);
     }
 }
 
@@ -116,10 +117,10 @@ bool beam_spring_force(const struct beams *beams, int spring, double force[2])
     if (spring >= beams->n_springs || beams->spring[spring].node < 0) return false;
     const struct beam_spring *const s = &beams->spring[spring];
     const struct beam_state *const now = &beams->state[s->node];
-    const double length = reach_of(beams, s, now->x, reach), longer = elongation(s, length);
+    const double length = reach_of(beams, s, now->x, reach), elongation = elongation_of(s, length);
     for (int c = 0; c < 2; c++) rate += reach[c] / length * now->v[c];
-    const double tension = spring_force(s->given, longer) + s->given->damping * rate;
-    const bool loose = s->given->slack && (longer == 0 || tension <= 0);
+    const double tension = spring_force(s->given, elongation) + s->given->damping * rate;
+    const bool loose = s->given->slack && (elongation == 0 || tension <= 0);
     for (int c = 0; c < 2; c++) force[c] = loose ? 0 : tension * reach[c] / length;
     return true;
 }

@@ -114,9 +114,9 @@ static struct line_carrier carrier_of(const struct beams *beams, const struct be
         of.spin += share * (arm[0] * w[1] - arm[1] * w[0] + own * w[2]);
         of.spin_rate += share * (arm[0] * a[1] - arm[1] * a[0] + own * a[2]);
     }
-    of.turns = sum / second;
-    of.spin *= of.turns;
-    of.spin_rate *= of.turns;
+    of.mass_over_inertia = sum / second;
+    of.spin *= of.mass_over_inertia;
+    of.spin_rate *= of.mass_over_inertia;
     return of;
 }
 
@@ -206,7 +206,7 @@ static void extrapolate(struct beams *beams, const struct beam_times *times)
 static void share_out(struct beams *beams, int beam, const double along[3])
 {
     const struct line_carrier *const of = &beams->line[beam]->carrier;
-    const double turning = of->turns * along[2];
+    const double turning = of->mass_over_inertia * along[2];
     for (int m = beams->beam[beam].first_node; m < beams->beam[beam].end_node; m++) {
         double arm[2], *const force = beams->step[m].fluid;
         arm_to(beams, of, m, arm);

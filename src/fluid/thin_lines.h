@@ -32,9 +32,9 @@ struct thin_line {
     bool bends;       /* of a beam */
     double dp;
     /* The rigid motion that the fluid sees along a beam (T-111a): with the rate of turning and its
-     * rate. `turns`: the mass over the moment of inertia, 1/m^2. */
+     * rate. `mass_over_inertia`: the mass over the moment of inertia, 1/m^2. */
     struct line_carrier {
-        double x[2], v[2], a[2], spin, spin_rate, turns;
+        double x[2], v[2], a[2], spin, spin_rate, mass_over_inertia;
     } carrier;
 };
 

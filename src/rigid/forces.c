@@ -245,12 +245,12 @@ void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid
     }
 }
 
-double rigid_displacement(const struct rigid *rigid, int k, int c, double late)
+double rigid_displacement(const struct rigid *rigid, int k, int c, double lag)
 {
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double v =
         eq->before[c] + eq->change[c] + eq->touch[RIGID_IMPACT][c] + eq->touch[RIGID_STEP][c];
-    return late * (v - eq->push_change[c]) + rigid->body[k].moved[c];
+    return lag * (v - eq->push_change[c]) + rigid->body[k].moved[c];
 }
 
 /* --- springs --- */
@@ -303,7 +303,7 @@ static struct spring_end end_at(const struct rigid *rigid, const struct rigid_sp
 /* A spring now: its ends, the direction between them, its elongation and the rate of that. */
 struct spring_now {
     struct spring_end end[2];
-    double along[2], longer, rate, tension;
+    double along[2], elongation, rate, tension;
 };
 
 /* T-100. A damper in a line that only pulls does not push. */
@@ -317,10 +317,10 @@ static struct spring_now spring_now(const struct rigid *rigid, const struct rigi
         now.along[c] = (b[c] - a[c]) / length;
         rate += now.along[c] * (now.end[1].v[c] - now.end[0].v[c]);
     }
-    now.longer = length - spring->length;
+    now.elongation = length - spring->length;
     now.rate = rate;
-    now.tension = spring_force(spring->given, now.longer) + spring->given->damping * rate;
-    if (spring->given->slack && (now.longer <= 0 || now.tension <= 0)) now.tension = 0;
+    now.tension = spring_force(spring->given, now.elongation) + spring->given->damping * rate;
+    if (spring->given->slack && (now.elongation <= 0 || now.tension <= 0)) now.tension = 0;
     return now;
 }
 
@@ -331,15 +331,15 @@ void rigid_add_springs(struct rigid *rigid, double dt)
         const struct spring_now now = spring_now(rigid, spring);
         const bool law = spring->given->force.e[0] && !spring->given->slack;
         const double half = law ? 0.5 * dt * now.rate : 0; /* T-100a */
-        spring->longer = now.longer + fabs(half);
-        if (spring->body[0] < 0 || (spring->given->slack && now.longer <= 0)) continue;
+        spring->elongation = now.elongation + fabs(half);
+        if (spring->body[0] < 0 || (spring->given->slack && now.elongation <= 0)) continue;
         struct rigid_row *const row = rigid_add_row(rigid, RIGID_SPRING, spring->body);
-        row->stiffness = max2(spring_slope(spring->given, now.longer), 0);
+        row->stiffness = max2(spring_slope(spring->given, now.elongation), 0);
         row->damping = spring->given->damping;
         const double shortest = -spring->length; /* both ends are in one place */
-        row->force = -spring_mean(spring->given, max2(now.longer - half, shortest),
-                                  max2(now.longer + half, shortest), 1);
-        row->later = spring->body[1] < 0 ? 0.25 : 0;
+        row->force = -spring_mean(spring->given, max2(now.elongation - half, shortest),
+                                  max2(now.elongation + half, shortest), 1);
+        row->theta = spring->body[1] < 0 ? 0.25 : 0;
         row->pulls_only = spring->given->slack;
         for (int end = 0; end < 2; end++) rigid_row_along(row, end, now.end[end].arm, now.along);
     }
@@ -359,8 +359,8 @@ void rigid_add_spring_energy(const struct rigid *rigid, int k, struct body_energ
     for (int j = 0; j < rigid->n_springs; j++) {
         if (rigid->spring[j].body[0] != k) continue;
         const struct spring_now now = spring_now(rigid, &rigid->spring[j]);
-        const bool slack = rigid->spring[j].given->slack && now.longer <= 0;
-        if (!slack) spring_add_energy(rigid->spring[j].given, now.longer, sum);
+        const bool slack = rigid->spring[j].given->slack && now.elongation <= 0;
+        if (!slack) spring_add_energy(rigid->spring[j].given, now.elongation, sum);
     }
 }
 
@@ -388,8 +388,8 @@ static double stiffness_in(const struct rigid *rigid, const struct rigid_spring 
 {
     if (!spring->given->force.e[0]) return spring->given->stiffness;
     const struct spring_now now = spring_now(rigid, spring);
-    const double slope = spring_slope(spring->given, now.longer + dt * now.rate);
-    return max2(max2(spring_slope(spring->given, now.longer), 0), isfinite(slope) ? slope : 0);
+    const double slope = spring_slope(spring->given, now.elongation + dt * now.rate);
+    return max2(max2(spring_slope(spring->given, now.elongation), 0), isfinite(slope) ? slope : 0);
 }
 
 double rigid_spring_rates(const struct rigid *rigid, double dt, double *damping)

@@ -48,7 +48,7 @@ void rigid_find_mobility_dry(struct rigid *rigid, int k, double time);
 
 /* A step, the time for which its rates act, and that for which its last velocity moves bodies. */
 struct rigid_step {
-    double dt, rates_time, late;
+    double dt, rates_time, lag;
 };
 
 /* What decides on the impulse of a row: surfaces do not come nearer than their gap; friction stops
@@ -67,7 +67,7 @@ struct rigid_row {
     double friction;           /* Coulomb's coefficient with the gap of the row before, or N */
     double stiffness, damping; /* N/m^2 and N s/m^2, or N and N s */
     double force;              /* of a spring before the step: N/m, or its moment, N */
-    double later;    /* part of a step in which its change of the rate moves it: 1/4, explicit 0 */
+    double theta;    /* part of a step in which its change of the rate moves it: 1/4, explicit 0 */
     bool pulls_only; /* a spring that does not push */
     const struct rigid_hinge *hinge; /* NULL: none */
     int component;                   /* of it: x, y or the angle */
@@ -90,7 +90,7 @@ void rigid_row_push(struct rigid *rigid, const struct rigid_row *row, enum rigid
                     double impulse);
 
 /* Component c of the displacement that the velocity after the step gives a body. */
-double rigid_displacement(const struct rigid *rigid, int k, int c, double late);
+double rigid_displacement(const struct rigid *rigid, int k, int c, double lag);
 
 /* From the centre of mass to a point of a body, where the body is. */
 void rigid_arm(const struct rigid *rigid, int k, const double at[2], double angle, double arm[2]);
@@ -103,7 +103,7 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
 /* With walls where they are at a time. */
 void rigid_add_hinges(struct rigid *rigid, double time);
 /* T-99a: the rest of the distance, or of the driven angle, after the step, as a velocity. */
-double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late);
+double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double lag);
 /* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
 void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time);
 /* Energy of the springs in the hinges that a body has. */

@@ -96,7 +96,7 @@ void rigid_add_hinges(struct rigid *rigid, double time)
             struct rigid_row *const row = add_row(rigid, h, RIGID_SPRING, 2);
             row->stiffness = given->hinge_stiffness;
             row->damping = given->hinge_damping;
-            row->later = 0.25;
+            row->theta = 0.25;
             row->force = given->hinge_stiffness * angle_of(rigid, h, wall.angle);
             row->other_rate = -wall.rate;
         }
@@ -110,10 +110,10 @@ void rigid_add_hinges(struct rigid *rigid, double time)
 
 /* Cosine and sine of the angle to which a step turns a body: to round-off by those of an angle near
  * it, since the sweeps change the angle little. */
-static void turn_after(const struct rigid *rigid, int k, double late, double turn[2])
+static void turn_after(const struct rigid *rigid, int k, double lag, double turn[2])
 {
     struct rigid_equations *const eq = &rigid->eq[k];
-    const double angle = rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, late);
+    const double angle = rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, lag);
     double off = angle - eq->near;
     if (!(fabs(off) < 1e-6)) {
         eq->near = angle;
@@ -127,16 +127,16 @@ static void turn_after(const struct rigid *rigid, int k, double late, double tur
 }
 
 /* Where a step takes the point of a hinge on a body. */
-static void place_after(const struct rigid *rigid, int k, const double at[2], double late,
+static void place_after(const struct rigid *rigid, int k, const double at[2], double lag,
                         double place[2])
 {
     const struct rigid_body *const body = &rigid->body[k];
     const double *const from = body->fixed ? body->fixed->at : body->centre;
     const double x = at[0] - from[0], y = at[1] - from[1];
     double turn[2];
-    turn_after(rigid, k, late, turn);
+    turn_after(rigid, k, lag, turn);
     for (int c = 0; c < 2; c++)
-        place[c] = from[c] + rigid->state[k].x[c] + rigid_displacement(rigid, k, c, late);
+        place[c] = from[c] + rigid->state[k].x[c] + rigid_displacement(rigid, k, c, lag);
     if (body->fixed) {
         const struct motion_state m = motion_at(rigid->scene, body->hinge_motion, rigid->end);
         memcpy(place, motion_of_point(&m, from[0], from[1]).x, 2 * sizeof *place);
@@ -145,18 +145,18 @@ static void place_after(const struct rigid *rigid, int k, const double at[2], do
     place[1] += turn[1] * x + turn[0] * y;
 }
 
-double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double late)
+double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double lag)
 {
     const bool turns = row->component == 2;
     double left = turns ? -row->hinge->end_angle : 0;
     for (int side = 0; side < 2; side++) {
         const int k = row->body[side];
         if (k < 0) continue;
-        double place[3] = {0, 0, rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, late)};
-        if (!turns) place_after(rigid, k, row->hinge->at, late, place);
+        double place[3] = {0, 0, rigid->state[k].x[2] + rigid_displacement(rigid, k, 2, lag)};
+        if (!turns) place_after(rigid, k, row->hinge->at, lag, place);
         left += side ? -place[row->component] : place[row->component];
     }
-    return left / late;
+    return left / lag;
 }
 
 /* Changes velocities to what a row allows after the step. The reaction of the second body is that

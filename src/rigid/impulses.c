@@ -15,7 +15,7 @@ static double round_off(const struct rigid *rigid, const struct rigid_row *row,
             speed += fabs(row->along[side][c]) * (fabs(eq->before[c]) + fabs(eq->change[c]));
             size += fabs(rigid->state[row->body[side]].x[c]) + (c < 2 ? fabs(body->centre[c]) : 0);
         }
-    return 1e-15 * (speed + size / step->late);
+    return 1e-15 * (speed + size / step->lag);
 }
 
 /* Springs and the friction of hinges are no impacts; friction moves nothing out. */
@@ -54,14 +54,14 @@ static double find_more(const struct rigid *rigid, const struct rigid_row *row,
     }
     case RIGID_SPRING: {
         const double K = row->stiffness, C = row->damping;
-        const double e = step->rates_time * (row->later * step->dt * K + 0.5 * C);
+        const double e = step->rates_time * (row->theta * step->dt * K + 0.5 * C);
         const double force = row->force + C * row->start_rate;
         const double more =
             -(had + step->rates_time * force + e * (rate - row->start_rate)) / (1 + e * a);
         return row->pulls_only ? max2(-had, more) : more;
     }
     case RIGID_JOINT:
-        if (stage == RIGID_STEP) return -rigid_joint_left(rigid, row, step->late) / a;
+        if (stage == RIGID_STEP) return -rigid_joint_left(rigid, row, step->lag) / a;
         return -rigid_row_change(rigid, row, stage) / a;
     }
     return 0;
@@ -154,7 +154,7 @@ void rigid_impulse_work(struct rigid *rigid)
         rigid->body[a < 0 ? b : a].driven +=
             drives ? work[0] + work[1] : -impulse * row->other_rate;
         if (a < 0 || b < 0) continue;
-        rigid->body[a].passed -= work[1];
-        rigid->body[b].passed += work[1];
+        rigid->body[a].through_springs -= work[1];
+        rigid->body[b].through_springs += work[1];
     }
 }

@@ -174,7 +174,7 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
     const struct rigid_equations *const eq = &rigid->eq[k];
     const double rates_time = step->rates_time, part = received_part(rigid, k, rates_time);
     rigid_find_reaction(rigid, k, rates_time);
-    body->received = body->passed = body->driven = 0;
+    body->received = body->through_springs = body->driven = 0;
     for (int c = 0; c < 3; c++) {
         double resisted = 0;
         for (int e = 0; e < 3; e++) resisted += eq->resisting[c][e] * eq->excess[e];
@@ -184,7 +184,7 @@ static void move_body(struct rigid *rigid, int k, const struct rigid_step *step)
         s->rate[c] = -(part * s->impulse[c] + resisted) / rates_time;
         s->impulse[c] += rates_time * s->rate[c];
         s->v[c] = eq->before[c] + change;
-        s->x[c] += step->late * (s->v[c] - eq->push_change[c]) + body->moved[c] +
+        s->x[c] += step->lag * (s->v[c] - eq->push_change[c]) + body->moved[c] +
                    step->dt * eq->touch[RIGID_PUSH][c];
     }
     rigid_hold(rigid, k, rigid->end, rigid->end);
@@ -220,7 +220,7 @@ static void end_body(struct rigid *rigid, int k, double dt, double rates_time)
 void rigid_begin(struct rigid *rigid, const double gravity[2], double time, double dt,
                  double rates_time)
 {
-    const double late = rigid->mid_step ? 0.5 * dt : dt, now = time + dt - late;
+    const double lag = rigid->mid_step ? 0.5 * dt : dt, now = time + dt - lag;
     rigid->end = time + dt;
     for (int k = 0; k < rigid->n && rigid->mid_step; k++)
         for (int c = 0; c < 3; c++) rigid->state[k].x[c] += 0.5 * dt * rigid->state[k].v[c];
@@ -239,8 +239,8 @@ void rigid_begin(struct rigid *rigid, const double gravity[2], double time, doub
 
 void rigid_advance(struct rigid *rigid, double time, double dt, double rates_time)
 {
-    const struct rigid_step step = {dt, rates_time, .late = rigid->mid_step ? 0.5 * dt : dt};
-    const double now = time + dt - step.late;
+    const struct rigid_step step = {dt, rates_time, .lag = rigid->mid_step ? 0.5 * dt : dt};
+    const double now = time + dt - step.lag;
     for (int k = 0; k < rigid->n; k++) {
         velocity_by(&rigid->eq[k], rigid->body[k].push_impulse, rigid->eq[k].push_change);
         rigid_add_impulse(rigid, k, rigid->body[k].push_impulse);

@@ -30,15 +30,15 @@ struct rigid_body {
     /* Contact with solids and beams: force now, its impulse, what it moves in the next step. */
     double push[3], push_impulse[3], moved[3];
     /* In the last step, J/m: work of the fluid, of the hinge's motion, and through springs. */
-    double received, driven, passed;
+    double received, driven, through_springs;
 };
 
 /* A [spring]: the bodies of its ends, -1: in place; of a beam both. */
 struct rigid_spring {
     const struct scene_spring *given;
     int body[2];
-    double length; /* without force, m */
-    double longer; /* the largest elongation where the last step has found the force, m */
+    double length;     /* without force, m */
+    double elongation; /* the largest where the last step has found the force, m */
 };
 
 struct rigid {

@@ -27,7 +27,8 @@ void advance_rigid(struct simulation *sim, double dt, double rates_time)
     rigid_advance(&sim->rigid, sim->state.time, dt, rates_time);
     for (int k = 0; k < sim->rigid.n; k++) {
         const struct rigid_body *const b = &sim->rigid.body[k];
-        energy_book_body(sim, scene_rigid_wall(sim->scene, k), b->received, b->driven, b->passed);
+        energy_book_body(sim, scene_rigid_wall(sim->scene, k), b->received, b->driven,
+                         b->through_springs);
     }
 }
 

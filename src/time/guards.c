@@ -389,7 +389,8 @@ static enum err check_springs(struct simulation *sim, struct diag *d)
     for (int k = 0; k < scene->n_spring; k++) {
         const struct scene_spring *const s = &scene->spring[k];
         const bool of_beam = scene_find(scene, SECTION_beam, s->body) >= 0;
-        const double e = of_beam ? sim->beams.spring[k].longer : sim->rigid.spring[k].longer;
+        const double e =
+            of_beam ? sim->beams.spring[k].elongation : sim->rigid.spring[k].elongation;
         if (!isfinite(e) || spring_is_finite(s, e)) continue;
         sim->guard.case_at_fault = true;
         return diag_fail(d, ERR_GUARD,
