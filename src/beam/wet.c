@@ -86,38 +86,38 @@ static double gyration2(const struct beam_node *node)
 }
 
 /* From the centre of a beam's carrier to a node. */
-static void arm_to(const struct beams *beams, const struct line_carrier *of, int node,
+static void arm_to(const struct beams *beams, const struct line_carrier *carrier, int node,
                    double arm[2])
 {
     for (int c = 0; c < 2; c++)
-        arm[c] = beams->node[node].X[c] + beams->state[node].x[c] - of->x[c];
+        arm[c] = beams->node[node].X[c] + beams->state[node].x[c] - carrier->x[c];
 }
 
 /* T-111a: the rigid motion with the momentum and the angular momentum of the masses c_i. */
 static struct line_carrier carrier_of(const struct beams *beams, const struct beam *b)
 {
-    struct line_carrier of = {0};
+    struct line_carrier carrier = {0};
     double sum = 0, second = 0, arm[2];
     for (int m = b->first_node; m < b->end_node; m++) sum += beams->carries[m];
     for (int m = b->first_node; m < b->end_node; m++)
         for (int c = 0; c < 2; c++) {
             const double share = beams->carries[m];
-            of.x[c] += share / sum * (beams->node[m].X[c] + beams->state[m].x[c]);
-            of.v[c] += share * beams->state[m].w[c];
-            of.a[c] += share * beams->state[m].a[c];
+            carrier.x[c] += share / sum * (beams->node[m].X[c] + beams->state[m].x[c]);
+            carrier.v[c] += share * beams->state[m].w[c];
+            carrier.a[c] += share * beams->state[m].a[c];
         }
     for (int m = b->first_node; m < b->end_node; m++) {
         const double share = beams->carries[m], own = gyration2(&beams->node[m]);
         const double *const w = beams->state[m].w, *const a = beams->state[m].a;
-        arm_to(beams, &of, m, arm);
+        arm_to(beams, &carrier, m, arm);
         second += share * (square(arm[0]) + square(arm[1]) + own);
-        of.spin += share * (arm[0] * w[1] - arm[1] * w[0] + own * w[2]);
-        of.spin_rate += share * (arm[0] * a[1] - arm[1] * a[0] + own * a[2]);
+        carrier.spin += share * (arm[0] * w[1] - arm[1] * w[0] + own * w[2]);
+        carrier.spin_rate += share * (arm[0] * a[1] - arm[1] * a[0] + own * a[2]);
     }
-    of.mass_over_inertia = sum / second;
-    of.spin *= of.mass_over_inertia;
-    of.spin_rate *= of.mass_over_inertia;
-    return of;
+    carrier.mass_over_inertia = sum / second;
+    carrier.spin *= carrier.mass_over_inertia;
+    carrier.spin_rate *= carrier.mass_over_inertia;
+    return carrier;
 }
 
 double beams_place(struct beams *beams, double since)
@@ -192,12 +192,12 @@ static void add_dummy(struct beams *beams, int beam, int64_t j, double along[3])
 /* T-36a: the force in the middle of the step, with all that the fluid gets for `rates_time`. */
 static void extrapolate(struct beams *beams, const struct beam_times *times)
 {
-    const struct force_weights by =
+    const struct force_weights weights =
         force_weights(times->rates_time / times->dt, 0.5 - beams->stage, beams->alternates);
     for (int k = 0; k < beams->n_nodes; k++)
         for (int c = 0; c < 3; c++) {
             double *const force = &beams->step[k].fluid[c];
-            *force = extrapolated_force(&by, *force, *force, !(times->last > 0),
+            *force = extrapolated_force(&weights, *force, *force, !(times->last > 0),
                                         &beams->state[k].pushed[c]);
         }
 }
@@ -205,11 +205,11 @@ static void extrapolate(struct beams *beams, const struct beam_times *times)
 /* Gives the nodes what their carrier takes. */
 static void share_out(struct beams *beams, int beam, const double along[3])
 {
-    const struct line_carrier *const of = &beams->line[beam]->carrier;
-    const double turning = of->mass_over_inertia * along[2];
+    const struct line_carrier *const carrier = &beams->line[beam]->carrier;
+    const double turning = carrier->mass_over_inertia * along[2];
     for (int m = beams->beam[beam].first_node; m < beams->beam[beam].end_node; m++) {
         double arm[2], *const force = beams->step[m].fluid;
-        arm_to(beams, of, m, arm);
+        arm_to(beams, carrier, m, arm);
         force[0] += beams->carries[m] * (along[0] - turning * arm[1]);
         force[1] += beams->carries[m] * (along[1] + turning * arm[0]);
         force[2] += beams->carries[m] * turning * gyration2(&beams->node[m]);

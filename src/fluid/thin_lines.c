@@ -69,15 +69,16 @@ void line_slides(const struct thin_line *line, int64_t i, double t[2])
 /* T-111a: along a beam its dummies have the motion of its carrier. */
 static void carry(const struct thin_line *line, int64_t j, double v[2], double a[2])
 {
-    const struct line_carrier *const by = &line->carrier;
+    const struct line_carrier *const carrier = &line->carrier;
     double t[2], foot[2], excess[2] = {0};
     line_tangent(line, j, t);
     line_foot(line, j, foot);
-    const double arm[2] = {foot[0] - by->x[0], foot[1] - by->x[1]}, across[2] = {-arm[1], arm[0]};
+    const double arm[2] = {foot[0] - carrier->x[0], foot[1] - carrier->x[1]},
+                 across[2] = {-arm[1], arm[0]};
     for (int c = 0; c < 2; c++) {
-        excess[0] += t[c] * (by->v[c] + by->spin * across[c] - v[c]);
-        excess[1] +=
-            t[c] * (by->a[c] + by->spin_rate * across[c] - square(by->spin) * arm[c] - a[c]);
+        excess[0] += t[c] * (carrier->v[c] + carrier->spin * across[c] - v[c]);
+        excess[1] += t[c] * (carrier->a[c] + carrier->spin_rate * across[c] -
+                             square(carrier->spin) * arm[c] - a[c]);
     }
     for (int c = 0; c < 2; c++) {
         v[c] += excess[0] * t[c];
