@@ -136,8 +136,8 @@ static void leave_walls(struct thin_line *line)
     for (int last = 0; last < 2; last++) {
         const double *const at = line->end[last ? 2 * parts_of(line) - 1 : 0].x;
         double start[2], inner[2];
-        place_with(line->into[last], from->pt[last ? from->n - 1 : 0], start);
-        place_with(line->into[last], from->pt[last ? from->n - 2 : 1], inner);
+        place_with(line->starts_at[last], from->pt[last ? from->n - 1 : 0], start);
+        place_with(line->starts_at[last], from->pt[last ? from->n - 2 : 1], inner);
         const double x = start[0] - inner[0], y = start[1] - inner[1];
         const double off =
             (x * (start[0] - at[0]) + y * (start[1] - at[1])) / elementary_hypot(x, y);
@@ -234,10 +234,10 @@ void lines_tie(struct lines *lines, const struct wall_motion *m)
             const struct moving_wall *const wall = &m->body[b];
             struct thin_line *const line = &lines->line[k];
             if (wall->motion < 0) continue;
-            if (line->given->wall == wall->section) line->own = wall;
+            if (line->given->wall == wall->section) line->follows = wall;
             for (int last = 0; last < 2; last++)
                 if (line->given->extend[last] > 0 && line->given->into[last] == wall->section)
-                    line->into[last] = wall;
+                    line->starts_at[last] = wall;
         }
 }
 

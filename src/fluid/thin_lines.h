@@ -26,7 +26,7 @@ struct thin_line {
     } * piece; /* its parts between its extensions, which may have no length */
     double length;
     struct box2 box;
-    const struct moving_wall *own, *into[2]; /* walls that it follows, and begins at; NULL: rest */
+    const struct moving_wall *follows, *starts_at[2]; /* walls; NULL: at rest, or none */
     double extend[2]; /* how far it continues into a wall beyond its ends, m (T-111b) */
     bool tip[2];      /* whether it ends there: fluid may flow round it */
     bool bends;       /* of a beam */

@@ -22,8 +22,8 @@ void evaluate_start(struct simulation *sim);
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
 void find_hook_forces(struct simulation *sim, enum kind kind, double time);
 
-/* Sets position, velocity and acceleration of moving walls at a time. */
-void move_walls(struct simulation *sim, double time);
+/* Sets walls, thin lines, rigid bodies and beams to where they are at a time. */
+void place_moving_walls(struct simulation *sim, double time);
 
 /* --- advance.c --- */
 

@@ -4,15 +4,15 @@
 
 #include <float.h>
 
-void move_walls(struct simulation *sim, double time)
+void place_moving_walls(struct simulation *sim, double time)
 {
     rigid_publish(&sim->rigid, sim->state.time, sim->state.dt);
     wall_motion_apply(&sim->wall_motion, sim->scene, &sim->particles[KIND_WALL],
                       scene_time(sim, time));
     for (int j = 0; j < sim->fluid.lines.n; j++) {
         struct thin_line *const line = &sim->fluid.lines.line[j];
-        if (line->bends || !(line->own || line->into[0] || line->into[1])) continue;
-        if (line->own) line_follow(line, &line->own->placed);
+        if (line->bends || !(line->follows || line->starts_at[0] || line->starts_at[1])) continue;
+        if (line->follows) line_follow(line, &line->follows->placed);
         line_place(line, &sim->particles[KIND_WALL], time != sim->state.time);
     }
     if (sim->beams.line)
@@ -61,7 +61,7 @@ static bool keeps_slopes(const struct simulation *sim, double time)
 void evaluate_rates(struct simulation *sim, double time)
 {
     if (sim->evaluated) return;
-    if (sim->effects & FX_MOTION) move_walls(sim, time);
+    if (sim->effects & FX_MOTION) place_moving_walls(sim, time);
     if (sim->gravity_varies)
         scene_gravity_at(sim->scene, scene_time(sim, time), sim->fluid.k.gravity);
     if (sim->effects & FX_OPEN) {

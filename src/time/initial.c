@@ -231,7 +231,7 @@ enum err initial_state(struct simulation *sim, struct diag *d)
         TRY(beams_wet_create(&sim->beams, a, &sim->fluid.lines, walls, sim->integrator->rates_at,
                              sim->integrator->alternates, d));
     if (sim->effects & FX_THIN) lines_tie(&sim->fluid.lines, &sim->wall_motion);
-    if (sim->effects & FX_MOTION) move_walls(sim, 0);
+    if (sim->effects & FX_MOTION) place_moving_walls(sim, 0);
     if (!(sim->effects & FX_FLUID)) set_step_of_bodies(sim);
     TRY(choose_rate(sim, d));
     set_guards(sim);

@@ -71,7 +71,7 @@ static enum err after_step(struct simulation *sim, double speed2_before, struct 
         sim->sorting.shifted = fluid_shift(&sim->fluid, &sim->particles[KIND_FLUID], sim->state.dt);
         clock = phase_add(sim, PHASE_shift, clock);
     }
-    if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
+    if (sim->effects & FX_MOTION) place_moving_walls(sim, sim->state.time);
     if (guards_strain_due(sim)) solid_write_stress(&sim->solid, &sim->particles[KIND_SOLID]);
     find_speed(sim);
     if (sim->effects & FX_OPEN) open_add_work(&sim->open, sim->state.dt);

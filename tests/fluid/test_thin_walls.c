@@ -246,7 +246,7 @@ static void test_an_end_leaves_its_wall(void)
         const double reach = KERNEL_REACH * rig.sim.fluid.k.h, way[2] = {0.01, 0};
         for (double rise = 0; rise < 2; rise += 0.25) {
             rig.sim.state.time = rise;
-            move_walls(&rig.sim, rise);
+            place_moving_walls(&rig.sim, rise);
             const double from[2] = {-0.005, line->end[1].x[1] - 0.002};
             const double seen = rise > 0 && scenes[k].leaves ? min2(1, rise + 0.002 / reach) : 0;
             assert_near(1e-6, seen,
