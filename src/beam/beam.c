@@ -394,7 +394,7 @@ static void strain_of(const struct beams *beams, int element, double strain[3])
     beam_strain(e, q, strain, turn);
 }
 
-void beam_section(const struct beams *beams, const struct beam_place *place, double out[4])
+void beam_section_force(const struct beams *beams, const struct beam_place *place, double out[4])
 {
     const struct beam_element *const e = &beams->element[place->element];
     double strain[3];

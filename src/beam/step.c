@@ -32,7 +32,7 @@ static void find_loads(struct beams *beams, double middle)
         const struct scene_load *const from = &beams->scene->load[l->section];
         const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
         const double *const X = beams->node[l->node].X, t = max2(middle, 0);
-        const double factor = from->history.e[0] ? expr_of(from->history.e[0], t) : 1;
+        const double factor = from->history.e[0] ? expr_at_arg(from->history.e[0], t) : 1;
         double own[3] = {0};
         for (int c = 0; c < 2 && value->e[c]; c++)
             own[c] = factor * (from->traction.e[0] ? l->length : l->part) *

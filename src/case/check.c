@@ -397,7 +397,7 @@ static enum err check_top(struct reader *r, const void *section)
         for (int n = 0; top->gravity_in_time.e[c] && n <= TIMES; n++) {
             const double t = top->end_time * n / TIMES;
             const struct expr *const e = top->gravity_in_time.e[c];
-            if (!isfinite(expr_of(e, t)))
+            if (!isfinite(expr_at_arg(e, t)))
                 return bad_line(r, key_line(r->scene, SECTION_top, 0, "gravity"),
                                 "gravity = %s%.200s%s: component %d is not finite at t = %g s; it "
                                 "must be finite at all times up to end_time",

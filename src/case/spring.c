@@ -6,7 +6,7 @@
 double spring_force(const struct scene_spring *spring, double e)
 {
     const struct expr *const law = spring->force.e[0];
-    return law ? expr_of(law, e) : spring->stiffness * e;
+    return law ? expr_at_arg(law, e) : spring->stiffness * e;
 }
 
 double spring_slope(const struct scene_spring *spring, double e)
@@ -28,7 +28,7 @@ double spring_mean(const struct scene_spring *spring, double from, double to, do
 {
     const struct expr *const law = spring->force.e[0];
     if (!law) return 0.5 * taut * spring->stiffness * (from + to);
-    return taut * (from == to ? expr_of(law, to) : expr_integral(law, from, to) / (to - from));
+    return taut * (from == to ? expr_at_arg(law, to) : expr_integral(law, from, to) / (to - from));
 }
 
 bool spring_is_finite(const struct scene_spring *spring, double e)

@@ -129,7 +129,7 @@ static enum err read_time_vector(struct reader *r, const struct param *param, vo
     struct scene_expr *const in_time = (void *)((char *)section + param->expr_offset);
     TRY(read_expressions(r, param, in_time));
     for (int k = 0; k < 2; k++) {
-        value[k] = expr_of(in_time->e[k], 0);
+        value[k] = expr_at_arg(in_time->e[k], 0);
         if (!(fabs(value[k]) <= 1e15))
             return bad_value(
                 r, "component %d at t = 0 must be a finite number of magnitude 1e15 or less",

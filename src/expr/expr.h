@@ -82,7 +82,7 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
 
 /* Value of an expression at a point; of one in t or e alone, which is x here. */
 double expr_at(const struct expr *e, double x, double y);
-double expr_of(const struct expr *e, double x);
+double expr_at_arg(const struct expr *e, double x);
 /* Value of an expression in x, y and t. */
 double expr_at_time(const struct expr *e, double x, double y, double t);
 

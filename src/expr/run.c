@@ -80,7 +80,7 @@ double expr_operate(const struct op *op, double a, double b)
 }
 
 double expr_at(const struct expr *e, double x, double y) { return expr_at_time(e, x, y, 0); }
-double expr_of(const struct expr *e, double x) { return expr_at_time(e, x, 0, 0); }
+double expr_at_arg(const struct expr *e, double x) { return expr_at_time(e, x, 0, 0); }
 
 double expr_at_time(const struct expr *e, double x, double y, double t)
 {
@@ -265,7 +265,7 @@ static double integral_of(const struct expr *e, const struct expr_jet *a, const 
 {
     const double length = to - from, middle = 0.5 * (to + from), off = 0.5 * length * sqrt(0.6);
     const struct expr_jet m = expr_jet_at(e, middle);
-    const double left = expr_of(e, middle - off), right = expr_of(e, middle + off);
+    const double left = expr_at_arg(e, middle - off), right = expr_at_arg(e, middle + off);
     const double gauss = length * (5 * left + 8 * m.value + 5 * right) / 18;
     const double ends = length * (0.5 * (a->value + b->value) + length * (a->d1 - b->d1) / 12);
     const double chord = b->value - a->value;

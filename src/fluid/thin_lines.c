@@ -231,7 +231,7 @@ void lines_tie(struct lines *lines, const struct wall_motion *m)
 {
     for (int k = 0; k < lines->n; k++)
         for (int b = 0; b < m->n; b++) {
-            const struct moving_wall *const wall = &m->body[b];
+            const struct moving_wall *const wall = &m->wall[b];
             struct thin_line *const line = &lines->line[k];
             if (wall->motion < 0) continue;
             if (line->given->wall == wall->section) line->follows = wall;

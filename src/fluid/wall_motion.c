@@ -7,7 +7,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
                             const struct particles *walls, struct diag *d)
 {
     m->never_skip = scene->test.never_skip;
-    TRY(arena_array(a, &m->body, scene->n_wall, "moving walls", d));
+    TRY(arena_array(a, &m->wall, scene->n_wall, "moving walls", d));
     for (int k = 0; k < scene->n_wall; k++) {
         const int motion = scene_wall_motion(scene, k);
         if (motion < 0 && k < scene_beam_wall(scene, 0)) continue;
@@ -15,7 +15,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
         while (first < walls->n && walls->body[first] != k) first++;
         int64_t end = first;
         while (end < walls->n && walls->body[end] == k) end++;
-        m->body[m->n++] = (struct moving_wall){.section = k,
+        m->wall[m->n++] = (struct moving_wall){.section = k,
                                                .motion = motion,
                                                .first = first,
                                                .end = end,
@@ -49,7 +49,7 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *scene, struct 
 {
     double most = 0;
     for (int k = 0; k < m->n; k++) {
-        struct moving_wall *const b = &m->body[k];
+        struct moving_wall *const b = &m->wall[k];
         m->moved |= b->motion < 0;
         if (b->motion < 0) continue;
         const struct motion_state now = motion_at(scene, b->motion, time);
@@ -74,7 +74,7 @@ double wall_motion_speed2(const struct wall_motion *m, const struct particles *w
 {
     double largest = 0;
     for (int k = 0; k < m->n; k++) {
-        const struct moving_wall *const b = &m->body[k];
+        const struct moving_wall *const b = &m->wall[k];
         if (b->rests) continue;
 #pragma omp parallel for schedule(static) reduction(max : largest)
         for (int64_t i = b->first; i < b->end; i++)
@@ -96,6 +96,6 @@ double wall_motion_power(const struct wall_motion *m, const struct particles *wa
 {
     double power = 0;
     for (int k = 0; k < m->n; k++)
-        if (m->body[k].driven) power += moving_wall_power(&m->body[k], walls);
+        if (m->wall[k].driven) power += moving_wall_power(&m->wall[k], walls);
     return power;
 }

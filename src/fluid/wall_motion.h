@@ -16,7 +16,7 @@ struct moving_wall {
 
 struct wall_motion {
     int n;
-    struct moving_wall *body;
+    struct moving_wall *wall;
     bool moved;        /* any wall, since the last sorting */
     double moved_most; /* m; no particle moved further since it was last set to 0 */
     bool never_skip;   /* nothing is skipped; set by tests */

@@ -13,7 +13,7 @@ void scene_gravity_at(const struct scene *scene, double t, double g[2])
 {
     for (int c = 0; c < 2; c++) {
         const struct expr *const e = scene->top.gravity_in_time.e[c];
-        g[c] = e ? expr_of(e, max2(t, 0)) : scene->top.gravity[c]; /* < 0: T-78 seeks rest */
+        g[c] = e ? expr_at_arg(e, max2(t, 0)) : scene->top.gravity[c]; /* < 0: T-78 seeks rest */
     }
 }
 

@@ -381,7 +381,7 @@ static void evaluate_beam(const struct probe *probe, const struct simulation *si
     const double part = probe->place.part;
     struct body_energy energy;
     switch ((enum probe_quantity)probe->given->quantity) {
-    case PROBE_SECTION_FORCE: beam_section(beams, &probe->place, row); return;
+    case PROBE_SECTION_FORCE: beam_section_force(beams, &probe->place, row); return;
     case PROBE_REACTION: beam_reaction(beams, probe->beam, probe->given->point, row); return;
     case PROBE_ENERGY:
         energy = beam_energy(beams, probe->beam);

@@ -139,7 +139,7 @@ static void reference_curve(const struct reference *r, const struct curve *curve
         expected->t[expected->n] = t;
         expected->value[expected->n++] = r->n > 1    ? r->value[k]
                                          : r->n == 1 ? r->value[0]
-                                                     : expr_of(r->from->formula.e[0], t);
+                                                     : expr_at_arg(r->from->formula.e[0], t);
     }
 }
 

@@ -68,8 +68,8 @@ static double find_more(const struct rigid *rigid, const struct rigid_row *row,
 }
 
 /* Changes one impulse to what its own equation asks for. Returns the change of the velocity. */
-static double relax(struct rigid *rigid, struct rigid_row *row, enum rigid_stage stage,
-                    const struct rigid_step *step)
+static double solve_row(struct rigid *rigid, struct rigid_row *row, enum rigid_stage stage,
+                        const struct rigid_step *step)
 {
     const double a = acts_in(row, stage) ? rigid_row_mobility(rigid, row, stage) : 0;
     if (!(a > 0)) return 0;
@@ -80,13 +80,13 @@ static double relax(struct rigid *rigid, struct rigid_row *row, enum rigid_stage
 }
 
 /* Projected Gauss-Seidel, in the order of the rows. */
-static void relax_all(struct rigid *rigid, enum rigid_stage stage, const struct rigid_step *step)
+static void solve_rows(struct rigid *rigid, enum rigid_stage stage, const struct rigid_step *step)
 {
     double largest = 1, first = 0;
     for (int turn = 0; turn < 1000 && largest > 1e-12 * first; turn++) {
         largest = 0;
         for (int k = 0; k < rigid->n_rows; k++)
-            largest = max2(largest, relax(rigid, &rigid->row[k], stage, step));
+            largest = max2(largest, solve_row(rigid, &rigid->row[k], stage, step));
         if (turn == 0) first = largest;
     }
 }
@@ -129,7 +129,7 @@ void rigid_find_impulses(struct rigid *rigid, double time, const struct rigid_st
     rigid_add_springs(rigid, step->dt);
     find_start(rigid, step->dt);
     for (int stage = 0; stage < RIGID_STAGES; stage++)
-        relax_all(rigid, (enum rigid_stage)stage, step);
+        solve_rows(rigid, (enum rigid_stage)stage, step);
     for (int k = 0; k < rigid->n; k++) {
         struct rigid_equations *const eq = &rigid->eq[k];
         for (int c = 0; c < 3; c++) {

@@ -20,8 +20,8 @@ enum err rigid_create(struct rigid *rigid, struct arena *a, const struct scene *
                                              .mass = {m->mass, m->mass, m->inertia},
                                              .centre = {m->centre[0], m->centre[1]}};
         for (int b = 0; b < motion->n; b++)
-            if (motion->body[b].section == scene_rigid_wall(scene, k))
-                rigid->body[k].wall = &motion->body[b];
+            if (motion->wall[b].section == scene_rigid_wall(scene, k))
+                rigid->body[k].wall = &motion->wall[b];
         rigid->state[k] =
             (struct rigid_state){.v = {scene->rigid[k].velocity[0], scene->rigid[k].velocity[1],
                                        scene->rigid[k].spin},

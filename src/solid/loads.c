@@ -159,7 +159,7 @@ void loads_forces(struct loads *loads, const struct solid *solid, struct particl
     for (int n = 0; n < loads->n_loads; n++) {
         struct load_region *const load = &loads->load[n];
         const struct expr *const history = loads->scene->load[load->section].history.e[0];
-        load->factor = history ? expr_of(history, max2(time, 0)) : 1;
+        load->factor = history ? expr_at_arg(history, max2(time, 0)) : 1;
         if (load->varies) set_forces(loads, load, particles, max2(time, 0));
         for (int64_t k = load->first; k < load->end; k++) {
             const int32_t i = loads->loaded[k].particle;

@@ -206,7 +206,7 @@ void energy_book_evaluation(struct simulation *sim, double dt)
     for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
         entry_of(sim, KIND_FLUID, 0)->supplied += dt * sim->open.rate[b].power;
     for (int b = 0; b < sim->wall_motion.n; b++) {
-        const struct moving_wall *const wall = &sim->wall_motion.body[b];
+        const struct moving_wall *const wall = &sim->wall_motion.wall[b];
         struct energy_entry *const e = entry_of(sim, KIND_WALL, wall->section);
         const double work = dt * moving_wall_power(wall, &sim->particles[KIND_WALL]);
         *(wall->driven ? &e->supplied : &e->from_fluid) += wall->driven ? work : -work;
@@ -395,7 +395,7 @@ void energy_begin(struct simulation *sim)
         for (int t = 0; t < ENERGY_TERMS; t++) e->available[t] = without_potential(&energy[k]);
     }
     for (int k = 0; k < sim->wall_motion.n; k++) {
-        const int wall = energy_entry(KIND_WALL, sim->wall_motion.body[k].section);
+        const int wall = energy_entry(KIND_WALL, sim->wall_motion.wall[k].section);
         account->entry[wall].region = wall;
     }
     join_beams(sim, scene_beam_wall(sim->scene, 0));

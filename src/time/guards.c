@@ -247,7 +247,7 @@ static enum err check_step(struct simulation *sim, struct diag *d)
 static enum err check_motion(struct simulation *sim, struct diag *d)
 {
     for (int k = 0; k < sim->wall_motion.n; k++) {
-        const struct moving_wall *const b = &sim->wall_motion.body[k];
+        const struct moving_wall *const b = &sim->wall_motion.wall[k];
         const struct motion_state *const m = &b->placed;
         const double sum = m->d[0] + m->d[1] + m->v[0] + m->v[1] + m->a[0] + m->a[1] + m->angle +
                            m->rate + m->angular_acceleration;

@@ -60,7 +60,7 @@ static void test_a_moment_rolls_the_beam_into_a_circle(void)
     const double sum = beam_energy(&rig.sim.beams, 0).elastic;
     assert_near(1e-4 * sum, 0.5 * square(2 * PI), sum, "elastic energy");
     double section[4], force[3];
-    beam_section(&rig.sim.beams, &(struct beam_place){.element = 7, .part = 0.3}, section);
+    beam_section_force(&rig.sim.beams, &(struct beam_place){.element = 7, .part = 0.3}, section);
     beam_reaction(&rig.sim.beams, 0, (double[2]){0, 0}, force);
     assert_near(1e-4, 2 * PI, section[2], "moment");
     assert_near(1e-4, 2 * PI, section[3], "curvature");
