@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Beams: lines of nodes with two displacements and a rotation each, which two-node elements join
- * (T-103). beams_advance below tells the order of a step. */
+ * (T-103). The order of a step is in README.md. */
 #pragma once
 
 #include "fluid/thin_lines.h"
@@ -64,7 +64,7 @@ struct beam_node {
     int line;           /* of its clamp or hinge in the case */
 };
 
-/* In a step: see beams_advance. */
+/* What a node has within a step. */
 struct beam_step {
     double x[3], v[3], w[3];      /* at the start */
     double load[3];               /* from outside, N/m and N */
@@ -300,7 +300,7 @@ void beams_add_springs(struct beams *beams, double dt, double *rounding);
 void beams_stiffen(struct beams *beams);
 
 /* Sets what the longest step takes into account of a spring: its stiffness at the start, or the
- * least that matters beside a lowest frequency omega. */
+ * least that matters at a lowest frequency omega. */
 void beams_set_stiffness(struct beams *beams, int spring, double omega2);
 
 /* --- for output --- */

@@ -104,7 +104,7 @@ enum err rigid_hinges_create(struct rigid *rigid, struct arena *a, struct diag *
 void rigid_add_hinges(struct rigid *rigid, double time);
 /* T-99a: the rest of the distance, or of the driven angle, after the step, as a velocity. */
 double rigid_joint_left(const struct rigid *rigid, const struct rigid_row *row, double lag);
-/* Velocities at the end of the step that the hinges allow; kick = 0: of the start. */
+/* Velocities at the end of the step that hinges allow; rates_time = 0: at the start of a run. */
 void rigid_hinges_hold(struct rigid *rigid, double time, double rates_time);
 /* Energy of the springs in the hinges that a body has. */
 double rigid_hinge_energy(const struct rigid *rigid, int k);

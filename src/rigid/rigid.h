@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Rigid bodies: moving walls whose motion is three unknowns, the displacement of the centre of mass
- * and the angle. README.md tells the order of a step. */
+ * and the angle. The order of a step is in README.md. */
 #pragma once
 
 #include "fluid/exchange.h"
