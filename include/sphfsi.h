@@ -183,11 +183,12 @@ SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_k
 /** Gives a view of a field by its name; sphfsi_field_name lists the names. Arrays of the particles
  * are not copied: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens (rho/rho0 - 1), p
  * (Pa), ux, uy (m), X, Y (m), fx, fy (N/m, the present force of the fluid on the particle) and
- * others. The fields of fields.vtkhdf are computed in the call: velocity (m/s), density (kg/m^3),
- * pressure (Pa), stress (Pa: xx yy zz xy yz xz), von_mises (Pa), displacement (m), det_F; of walls,
- * if there are beams, thickness (m), axial_force, shear_force (N/m), moment (N), curvature (1/m).
- * Fields that follow from positions, such as p, fx and ddens, are updated to the present positions
- * first; the state does not change. SPHFSI_INPUT: this kind has no such field in this scene. */
+ * others. The fields of fields.vtkhdf are computed in the call: Points (m; on its line for a
+ * particle of a beam or thin wall), velocity (m/s), density (kg/m^3), pressure (Pa), stress (Pa: xx
+ * yy zz xy yz xz), von_mises (Pa), displacement (m), det_F; of walls, if there are beams, thickness
+ * (m), axial_force, shear_force (N/m), moment (N), curvature (1/m). Fields that follow from
+ * positions, such as p, fx and ddens, are updated to the present positions first; the state does
+ * not change. SPHFSI_INPUT: this kind has no such field in this scene. */
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 

@@ -60,6 +60,13 @@ function gl_painter_of(canvas) {
       if (palette) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, palette);
       gl.drawArrays(gl.POINTS, 0, points.length / 3);
     },
+    fill(quads, view) {
+      const corners = quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]).flatMap(corner => [...corner, 0]);
+      gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(corners), gl.STREAM_DRAW);
+      gl.uniform4f(at("view"), view.x, view.y, 2 / view.w, 2 * canvas.width / view.w / canvas.height);
+      gl.uniform4fv(at("plain"), [0, 0, 0, 1]);
+      gl.drawArrays(gl.TRIANGLES, 0, 6 * quads.length);
+    },
   };
 }
 
@@ -81,7 +88,32 @@ function plain_painter_of(canvas) {
                    (view.y - points[i + 1]) * scale + (canvas.height - side) / 2, side, side);
       }
     },
+    fill(quads, view) {
+      const scale = canvas.width / view.w;
+      c.fillStyle = "black";
+      c.beginPath();
+      for (const quad of quads)
+        quad.forEach(([x, y], k) => c[k ? "lineTo" : "moveTo"]((x - view.x) * scale + canvas.width / 2,
+                                                               (view.y - y) * scale + canvas.height / 2));
+      c.fill();
+    },
   };
+}
+
+// Walls are points of x, y, thickness: 0 of particles, NaN of beams without one. The former, and for each two points of a
+// beam that follow each other, not further apart than `most`, a quad, at least `least` wide.
+function split_beams(points, least, most) {
+  const particles = [], quads = [];
+  for (let i = 0; i < points.length; i += 3) {
+    const [x, y, thickness] = points.subarray(i, i + 3);
+    if (thickness === 0) particles.push(x, y, 0);
+    if (thickness === 0 || i === 0 || !Object.is(points[i - 1], thickness)) continue;
+    const dx = x - points[i - 3], dy = y - points[i - 2], length = Math.hypot(dx, dy);
+    if (length < 0.1 * least || length > most) continue;
+    const half = 0.5 * Math.max(thickness || 0, least) / length, u = half * dy, v = half * dx;
+    quads.push([[x - dx - u, y - dy + v], [x - u, y + v], [x + u, y - v], [x - dx + u, y - dy - v]]);
+  }
+  return [new Float32Array(particles), quads];
 }
 
 // Smallest distance from one of a few particles to any other, m.

@@ -121,7 +121,7 @@ EXPORT(particles) const float *particles(int kind_number, const char *name)
 {
     const enum sphfsi_kind kind = (enum sphfsi_kind)kind_number;
     const int64_t n = sphfsi_count(simulation, kind);
-    int one = 1, wide = 1;
+    int wide = 1, three = 3;
     if (n > capacity) {
         free(points);
         points = malloc((size_t)n * 3 * sizeof *points);
@@ -129,11 +129,11 @@ EXPORT(particles) const float *particles(int kind_number, const char *name)
     }
     /* The field comes first: positions may move in memory when it is computed. */
     const double *const value = field(kind, name, &wide);
-    const double *const x = field(kind, "x", &one), *const y = field(kind, "y", &one);
-    if (!points || !x || !y) return NULL;
+    const double *const at = field(kind, "Points", &three);
+    if (!points || !at) return NULL;
     for (int64_t i = 0; i < n; i++) {
-        points[3 * i] = (float)x[i];
-        points[3 * i + 1] = (float)y[i];
+        points[3 * i] = (float)at[3 * i];
+        points[3 * i + 1] = (float)at[3 * i + 1];
         points[3 * i + 2] = value ? size_of(value + i * wide, wide) : 0;
     }
     return points;

@@ -224,12 +224,15 @@ function draw_scene(frame) {
   canvas.width = Math.round(canvas.clientWidth * ratio);
   canvas.height = Math.round(canvas.width * state.view.aspect);
   painter.clear();
+  state.spacing.fluid = state.spacing.fluid || spacing_of(frame.fluid);
+  const [walls, beams] = split_beams(frame.wall, 1.5 * state.view.w / canvas.width, 4 * state.spacing.fluid);
   for (const kind of ["wall", "fluid", "solid"]) {
-    const points = frame[kind];
+    const points = kind === "wall" ? walls : frame[kind];
     state.spacing[kind] = state.spacing[kind] || spacing_of(points);
     painter.draw(points, state.spacing[kind], state.view, kind === "wall" ? null : palette(kind),
                  kind === "wall" ? null : range(kind, points));
   }
+  painter.fill(beams, state.view);
 }
 
 function draw_legends(frame) {

@@ -91,7 +91,7 @@ function sample() {
 
 function send_frame() {
   const frame = { what: "frame", time: program.now(), end: program.end(), steps: program.steps(), busy, rows,
-                  fluid: points(0, fields.fluid), wall: points(1, ""), solid: points(2, fields.solid) };
+                  fluid: points(0, fields.fluid), wall: points(1, "thickness"), solid: points(2, fields.solid) };
   rows = [];
   shown = false;
   postMessage(frame, [frame.fluid.buffer, frame.wall.buffer, frame.solid.buffer]);

@@ -210,6 +210,7 @@ static const struct {
     const char *name, *unit;
     int width;
 } file_field[] = {
+    {D_POINTS, "Points", "m", 3},
 #include "case/pointdata.def"
 };
 
@@ -218,6 +219,7 @@ static bool has_file_field(const struct simulation *sim, enum kind kind, enum da
     const struct particles *const particles = &sim->particles[kind];
     const bool solid = kind == KIND_SOLID;
     switch (what) {
+    case D_POINTS:
     case D_VELOCITY: return true;
     case D_DENSITY: return solid || particles->dens;
     case D_PRESSURE: return particles->p;

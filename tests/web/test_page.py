@@ -69,6 +69,18 @@ def check_software_build(page):
     check_case(page, "channel")
 
 
+def check_beam(page):
+    """A plate 4 mm thick from (1.1, 0) to (1.1, 0.3) m is as thick in the picture."""
+    choose(page, "templates/thin_plate")
+    page.wait("state.spacing.fluid")
+    box = page.run("""(() => {
+        const corners = split_beams(state.frame.wall, 1e-3, 4 * state.spacing.fluid)[1].flat();
+        const ends = c => [Math.min, Math.max].map(end => end(...corners.map(at => at[c])));
+        return [...ends(0), ...ends(1)];
+    })()""")
+    assert np.allclose(box, [1.098, 1.102, 0, 0.3], atol=1e-4), box
+
+
 def check_moving_view(page):
     """The picture follows a tank that leaves it: coloured pixels are there at the end."""
     choose(page, "accelerated_tank")
@@ -166,6 +178,7 @@ def main():
             print("multiply-add:", page.run("document.body.dataset.multiply_add"))
             for case in CASES:
                 check_case(page, case)
+            check_beam(page)
             check_moving_view(page)
             check_pause_and_step(page)
             check_slider(page)
