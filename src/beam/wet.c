@@ -68,11 +68,11 @@ static void place_end(const struct beams *beams, const struct beam_element *e, i
     };
 }
 
-/* The largest displacement of a dummy from one place of its end to the other, m. */
-static double displacement_between(const struct beams *beams, const struct line_end *from,
-                                   const struct line_end *to)
+/* The largest displacement of a dummy of a line from one place of its end to the other, m. */
+static double displacement_between(const struct beams *beams, const struct scene_thin_line *line,
+                                   const struct line_end *from, const struct line_end *to)
 {
-    const double deep = KERNEL_REACH * beams->scene->h + beams->scene->top.dp;
+    const double deep = max2(line->half, KERNEL_REACH * beams->scene->h + beams->scene->top.dp);
     return elementary_hypot(to->x[0] - from->x[0], to->x[1] - from->x[1]) +
            2 * deep *
                elementary_hypot(to->normal[0] - from->normal[0], to->normal[1] - from->normal[1]);
@@ -132,7 +132,7 @@ double beams_place(struct beams *beams, double since)
                 struct line_end *const end = &line->end[2 * (m - b->first_element) + last],
                                        before = *end;
                 place_end(beams, &beams->element[m], last, since, end);
-                largest = max2(largest, displacement_between(beams, &before, end));
+                largest = max2(largest, displacement_between(beams, line->given, &before, end));
             }
         line_place(line, beams->walls, since != 0);
     }

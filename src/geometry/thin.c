@@ -63,10 +63,36 @@ static bool belongs_elsewhere(const struct scene_thin_line *line, const struct l
     return false;
 }
 
-/* Whether a dummy within the thickness lies beyond the face there: beside a corner, or beyond the
- * line's end. */
-static bool lies_outside(const struct scene_thin_line *line, const struct line_dummy *dummy)
+/* Whether a place lies within the thickness of one of the first n lines. */
+static bool in_lines(const struct scene *scene, int n, const double at[2])
 {
+    for (int j = 0; j < n; j++) {
+        const struct scene_thin_line *const line = &scene->thin[j];
+        double nearest = line->half;
+        bool inside = false;
+        for (int k = 0; k + 1 < line->n; k++) {
+            const struct line_part part = line_part_at(line, k);
+            double place[2], left;
+            const double distance = distance_from(&part, at, &left);
+            if (distance >= nearest) continue;
+            relative_to_part(&part, at, place);
+            nearest = distance;
+            inside = (place[0] > 0 || k > 0 || is_closed(line->n, line->pt)) &&
+                     (place[0] < part.length || k + 2 < line->n || is_closed(line->n, line->pt));
+        }
+        if (inside) return true;
+    }
+    return false;
+}
+
+/* Whether a dummy within the thickness lies beyond the face there: beside a corner, or beyond the
+ * line's end; or in a beam before, to which this one is joined. */
+static bool lies_outside(const struct scene *scene, const struct scene_thin_line *line,
+                         const struct line_dummy *dummy)
+{
+    double at[2];
+    place_of(line, dummy, at);
+    if (in_lines(scene, (int)(line - scene->thin), at)) return true;
     const bool end = dummy->beyond < 0 ? dummy->part == 0 : dummy->part == line->n - 2;
     return dummy->beyond != 0 && ((end && !is_closed(line->n, line->pt)) ||
                                   elementary_hypot(dummy->off, dummy->beyond) > line->half);
@@ -94,7 +120,8 @@ static enum err lay_row(struct sampler *sampler, struct scene_thin_line *line, i
                                          .beyond = along - on_part,
                                          .width = to - from,
                                          .inside = max2(0, min2(both, to) - from) / (to - from)};
-        if ((dummy.same_side && lies_outside(line, &dummy)) || belongs_elsewhere(line, &dummy, dp))
+        if ((dummy.same_side && lies_outside(sampler->scene, line, &dummy)) ||
+            belongs_elsewhere(line, &dummy, dp))
             continue;
         TRY(arena_more(&sampler->scene->arena, &line->dummy, line->n_dummies, "thin walls",
                        sampler->diag));
@@ -206,19 +233,7 @@ double geometry_line_distance(const struct scene *scene, const double at[2], dou
 
 bool geometry_in_beam(const struct scene *scene, const double at[2])
 {
-    for (int j = 0; j < scene->n_thin; j++)
-        for (int k = 0; k + 1 < scene->thin[j].n; k++) {
-            const struct scene_thin_line *const line = &scene->thin[j];
-            const struct line_part part = line_part_at(line, k);
-            const bool closed = is_closed(line->n, line->pt);
-            double place[2], left;
-            relative_to_part(&part, at, place);
-            if ((place[0] > 0 || k > 0 || closed) &&
-                (place[0] < part.length || k + 2 < line->n || closed) &&
-                distance_from(&part, at, &left) < line->half)
-                return true;
-        }
-    return false;
+    return in_lines(scene, scene->n_thin, at);
 }
 
 static bool turns_at(const struct shape *line, int k)

@@ -34,7 +34,7 @@ static double lift(void)
     const struct particles *const walls = &rig.sim.particles[KIND_WALL];
     double sum = 0;
     simulation_wall_forces(&rig.sim);
-    for (int64_t i = 0; i < walls->n; i++) sum += walls->body[i] == 1 ? walls->fy[i] : 0;
+    for (int64_t i = 0; i < walls->n; i++) sum += walls->body[i] >= 1 ? walls->fy[i] : 0;
     return sum;
 }
 
@@ -170,6 +170,48 @@ static void test_rest_beside_a_line_into_a_wall(void)
     }
 }
 
+/* Two beams that meet in a T or an L push the water from their common part once. */
+static void test_lift_of_joined_beams(void)
+{
+    static const struct {
+        const char *line, *held, *foot, *other, *joint;
+        double area;
+    } scenes[] = {{"0.2, 0.28; 0.4, 0.28; 0.6, 0.28", "0.6, 0.28", "0.4, 0.28; 0.4, 0.1",
+                   "0.4, 0.1", "0.4, 0.28", 0.4 * 0.08 + 0.14 * 0.08},
+                  {"0.2, 0.28; 0.5, 0.28", "0.2, 0.28", "0.5, 0.28; 0.5, 0.1", "0.5, 0.1",
+                   "0.5, 0.28", 0.3 * 0.08 + 0.18 * 0.08 - 0.04 * 0.04}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 WATER "[beam a]\nshape = polyline: %s\nclamp = %s\nthickness = 80 mm\n"
+                       "young = 1e12\ndensity = 1000\n"
+                       "[beam b]\nshape = polyline: %s\nclamp = %s\nclamp = %s, a\n"
+                       "thickness = 80 mm\nyoung = 1e12\ndensity = 1000\n",
+                 scenes[k].line, scenes[k].held, scenes[k].foot, scenes[k].other, scenes[k].joint);
+        rig_open(&rig, text, NULL);
+        const double wanted = 9810 * scenes[k].area;
+        assert_near(0.01 * wanted, wanted, lift(), scenes[k].foot);
+    }
+}
+
+/* The way of the outermost dummies of a beam 25 dp thick when it turns. */
+static void test_way_of_dummies(void)
+{
+    rig_open(&rig,
+             WATER "[beam b]\nshape = polyline: 2, 0; 3, 0\nthickness = 0.5\nyoung = 1e9\n"
+                   "density = 1000\n",
+             NULL);
+    const struct particles *const walls = &rig.sim.particles[KIND_WALL];
+    double before[4000][2], largest = 0;
+    TEST_ASSERT_TRUE(walls->n <= 4000);
+    for (int64_t i = 0; i < walls->n; i++) before[i][0] = walls->x[i], before[i][1] = walls->y[i];
+    for (int k = 0; k < rig.sim.beams.n_nodes; k++) rig.sim.beams.state[k].x[2] += 0.01;
+    const double allowed = beams_place(&rig.sim.beams, 0);
+    for (int64_t i = 0; i < walls->n; i++)
+        largest = max2(largest, hypot(walls->x[i] - before[i][0], walls->y[i] - before[i][1]));
+    assert_at_most(allowed, largest, "way of a dummy");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -179,5 +221,7 @@ int main(void)
     RUN_TEST(test_corners_of_a_closed_line);
     RUN_TEST(test_level_beside_faces);
     RUN_TEST(test_rest_beside_a_line_into_a_wall);
+    RUN_TEST(test_lift_of_joined_beams);
+    RUN_TEST(test_way_of_dummies);
     return UNITY_END();
 }
