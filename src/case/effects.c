@@ -109,15 +109,16 @@ effect_set effects_of_scene(const struct scene *scene)
     return effects;
 }
 
-/* "[wall bed] slip", or "integrator". */
+/* "[wall bed] slip", or "integrator"; "[rigid raft]", which is a wall without such a key. */
 static struct section_title source_name(const struct scene *scene,
                                         const struct effect_source *source)
 {
     struct section_title name;
     const bool top = source->section == SECTION_top;
-    snprintf(name.text, sizeof name.text, "%.90s%s%.60s",
-             top ? "" : section_title(section_at(scene, source->section, source->index)).text,
-             !top && *source->key ? " " : "", source->key);
+    const struct scene_section_common *const of = section_at(scene, source->section, source->index);
+    const bool keyed = top || param_find((enum section_id)of->section, source->key);
+    snprintf(name.text, sizeof name.text, "%.90s%s%.60s", top ? "" : section_title(of).text,
+             !top && keyed ? " " : "", keyed ? source->key : "");
     return name;
 }
 

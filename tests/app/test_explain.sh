@@ -56,6 +56,7 @@ stiffness = 1000
 END
 "$sphfsi" --explain "$dir/spring.cfg" >"$dir/said" 2>/dev/null || fail "--explain of springs"
 says 'the step .solid. is that of \[spring far\]'
+says 'MOTION .*: \[rigid r\]  ' # which has no key `motion`
 
 # Beams that touch after the trial: contact takes a sixth of the run.
 "$sphfsi" --explain cases/beam_on_beam.cfg >"$dir/said" 2>/dev/null || fail "--explain of contact"
