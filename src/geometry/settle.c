@@ -227,7 +227,7 @@ static enum cover cover_of(const struct sampler *sampler, const double cell[2])
     enum cover found = COVER_NONE;
     double at[2];
     place_of_cell(&sampler->scene->lattice, cell, at);
-    if (geometry_in_beam(sampler->scene, at)) return COVER_BODY;
+    if (geometry_keep_off(sampler->scene, 0, at)) return COVER_BODY;
     for (int r = 0; r < sampler->n_regions && found != COVER_BODY; r++)
         if (geometry_covers(&sampler->regions[r], at[0], at[1]))
             found = sampler->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
@@ -350,7 +350,8 @@ static void push(const struct settling *s, const struct point_grid *t, int64_t k
     }
 }
 
-/* The shifts of T-80. */
+/* The shifts of T-80. Between two dummies the push vanishes, so fluid keeps off faces by itself
+ * only if nothing crowds it: half a spacing is required. */
 static enum err settle(struct settling *s)
 {
     struct sampler *const sampler = s->sampler;
@@ -369,12 +370,11 @@ static enum err settle(struct settling *s)
             for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);
             const double length = elementary_hypot(move[k][0], move[k][1]);
             const double part = min2(1, longest * dp / max2(length, 1e-300));
-            const double from[2] = {s->x[k], s->y[k]},
-                         to[2] = {from[0] + part * move[k][0], from[1] + part * move[k][1]};
-            if (geometry_between(sampler->scene, from, to)) continue; /* a thin line stops it */
+            double to[2] = {s->x[k] + part * move[k][0], s->y[k] + part * move[k][1]};
+            geometry_keep_off(sampler->scene, 0.5 * dp, to);
+            largest = max2(largest, elementary_hypot(to[0] - s->x[k], to[1] - s->y[k]));
             s->x[k] = to[0];
             s->y[k] = to[1];
-            largest = max2(largest, part * length);
         }
     }
     return ERR_OK;

@@ -43,8 +43,11 @@ static double beam_half_thickness(const struct scene_beam *beam)
     return isnan(beam->thickness) ? 0 : 0.5 * beam->thickness;
 }
 
+/* Odd: the middle one of these places in a step is a station. */
+enum { PLACES = 15 };
+
 /* Whether a place beside a part is nearer to another one. A place as far from both belongs to the
- * first of them that has it on the same side. */
+ * first of them that has it on the same side. No part is further from the next than the longest. */
 static bool belongs_elsewhere(const struct scene_thin_line *line, const struct line_dummy *dummy,
                               double dp)
 {
@@ -59,30 +62,39 @@ static bool belongs_elsewhere(const struct scene_thin_line *line, const struct l
             (its < distance - tie || (its < distance + tie && k < dummy->part &&
                                       left * dummy->off > 0 && fabs(left) > tie)))
             return true;
+        k += (int)max2(0, (its - distance) / line->longest - 1);
     }
     return false;
 }
 
-/* Whether a place lies within the thickness of one of the first n lines. */
-static bool in_lines(const struct scene *scene, int n, const double at[2])
+/* geometry_keep_off of the first n lines. The nearest part of each counts. */
+static bool keep_off(const struct scene *scene, int n, double gap, double at[2])
 {
+    bool moved = false;
     for (int j = 0; j < n; j++) {
         const struct scene_thin_line *const line = &scene->thin[j];
-        double nearest = line->half;
-        bool inside = false;
+        const double wanted = line->half + gap;
+        double nearest = wanted, place[2], left;
+        int its = -1;
         for (int k = 0; k + 1 < line->n; k++) {
             const struct line_part part = line_part_at(line, k);
-            double place[2], left;
             const double distance = distance_from(&part, at, &left);
-            if (distance >= nearest) continue;
-            relative_to_part(&part, at, place);
-            nearest = distance;
-            inside = (place[0] > 0 || k > 0 || is_closed(line->n, line->pt)) &&
-                     (place[0] < part.length || k + 2 < line->n || is_closed(line->n, line->pt));
+            if (distance < nearest) its = k;
+            nearest = min2(nearest, distance);
+            k += (int)max2(0, (distance - wanted) / line->longest - 1);
         }
-        if (inside) return true;
+        if (its < 0) continue;
+        const struct line_part part = line_part_at(line, its);
+        relative_to_part(&part, at, place);
+        if (!is_closed(line->n, line->pt) &&
+            ((its == 0 && place[0] < 0) || (its + 2 == line->n && place[0] > part.length)))
+            continue;
+        const double along = min2(max2(place[0], 0), part.length),
+                     factor = wanted / max2(nearest, 1e-300);
+        place_on_part(&part, along + factor * (place[0] - along), factor * place[1], at);
+        moved = true;
     }
-    return false;
+    return moved;
 }
 
 /* Whether a dummy within the thickness lies beyond the face there: beside a corner, or beyond the
@@ -92,25 +104,26 @@ static bool lies_outside(const struct scene *scene, const struct scene_thin_line
 {
     double at[2];
     place_of(line, dummy, at);
-    if (in_lines(scene, (int)(line - scene->thin), at)) return true;
+    if (keep_off(scene, (int)(line - scene->thin), 0, at)) return true;
     const bool end = dummy->beyond < 0 ? dummy->part == 0 : dummy->part == line->n - 2;
     return dummy->beyond != 0 && ((end && !is_closed(line->n, line->pt)) ||
                                   elementary_hypot(dummy->off, dummy->beyond) > line->half);
 }
 
-/* A row of a part's dummies for the fluid on one side (1: left, -1: right). Rows have the stations
- * (j + 1/2) step of the whole line; `start`: where the part begins; `from`, `to`: how deep the row
- * lies below the face, in dp. */
+/* A row of a part's dummies for the fluid on one side (1: left, -1: right), one for each step of
+ * the row, which is shorter or longer than a line that turns. `start`: where the part begins;
+ * `from`, `to`: how deep the row lies below the face, in dp; `passed`: places of the row since the
+ * end of its last full step. */
 static enum err lay_row(struct sampler *sampler, struct scene_thin_line *line, int k, double start,
-                        double step, double side, double from, double to)
+                        double step, double side, double from, double to, int *passed)
 {
     const double dp = sampler->scene->top.dp, length = line_part_at(line, k).length,
                  deep = max2(line->half, dp * rows_of_line(sampler->scene)),
                  both = 2 * line->half / dp;
     const int64_t first = (int64_t)ceil((start - deep) / step - 0.5),
                   end = (int64_t)ceil((start + length + deep) / step - 0.5);
-    for (int64_t j = first; j < end; j++) {
-        const double along = ((double)j + 0.5) * step - start,
+    for (int64_t j = PLACES * first; j < PLACES * end; j++) {
+        const double along = ((double)j + 0.5) / PLACES * step - start,
                      on_part = min2(max2(along, 0), length),
                      off = 0.5 * (from + to) * dp - line->half;
         const struct line_dummy dummy = {.part = k,
@@ -123,6 +136,8 @@ static enum err lay_row(struct sampler *sampler, struct scene_thin_line *line, i
         if ((dummy.same_side && lies_outside(sampler->scene, line, &dummy)) ||
             belongs_elsewhere(line, &dummy, dp))
             continue;
+        if (++*passed <= PLACES / 2) continue;
+        *passed -= PLACES;
         TRY(arena_more(&sampler->scene->arena, &line->dummy, line->n_dummies, "thin walls",
                        sampler->diag));
         line->dummy[line->n_dummies++] = dummy;
@@ -133,14 +148,14 @@ static enum err lay_row(struct sampler *sampler, struct scene_thin_line *line, i
 /* T-110f: rows from the face on, as deep as the kernel, and at least to the line; it cuts the row
  * that it meets. */
 static enum err lay_part(struct sampler *sampler, struct scene_thin_line *line, int k, double start,
-                         double step, double side)
+                         double step, double side, int *passed)
 {
     const double half = line->half / sampler->scene->top.dp,
                  deep = max2(rows_of_line(sampler->scene), half), nothing = 1e-6;
     for (double from = 0, to; from < deep; from = to) {
         to = min2(deep, floor(from + 1 + nothing));
         if (from < half - nothing && half < to - nothing) to = half;
-        TRY(lay_row(sampler, line, k, start, step, side, from, to));
+        TRY(lay_row(sampler, line, k, start, step, side, from, to, passed++));
     }
     return ERR_OK;
 }
@@ -212,8 +227,12 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
         if (line->extend[last] > 0)
             place_on_part(&part, along, 0, line->seen[last ? line->n - 1 : 0]);
     }
+    const int rows = rows_of_line(scene) + (int)(line->half / scene->top.dp) + 2;
+    int *passed;
+    TRY(geometry_array(sampler, &passed, 2 * rows));
     for (int k = 0; k + 1 < line->n && scene->n_fluid; start += line_part_at(line, k++).length)
-        for (int side = -1; side < 2; side += 2) TRY(lay_part(sampler, line, k, start, step, side));
+        for (int side = 0; side < 2; side++)
+            TRY(lay_part(sampler, line, k, start, step, side ? 1 : -1, passed + side * rows));
     return ERR_OK;
 }
 
@@ -231,9 +250,9 @@ double geometry_line_distance(const struct scene *scene, const double at[2], dou
     return nearest;
 }
 
-bool geometry_in_beam(const struct scene *scene, const double at[2])
+bool geometry_keep_off(const struct scene *scene, double gap, double at[2])
 {
-    return in_lines(scene, scene->n_thin, at);
+    return keep_off(scene, scene->n_thin, gap, at);
 }
 
 static bool turns_at(const struct shape *line, int k)

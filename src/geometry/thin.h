@@ -44,8 +44,9 @@ SPHFSI_INLINE void place_on_part(const struct line_part *part, double along, dou
 
 /* The first line that a connection crosses an odd number of times, from 1; 0: none. */
 int geometry_between(const struct scene *scene, const double from[2], const double to[2]);
-/* Whether a place lies within the thickness of a beam. */
-bool geometry_in_beam(const struct scene *scene, const double at[2]);
+/* Moves a place beside a line that is nearer to its face than `gap`, or behind it, to this distance
+ * from the face; returns whether it did. Without a thickness the line is the face. */
+bool geometry_keep_off(const struct scene *scene, double gap, double at[2]);
 /* Distance of a place from the nearest line, m; INFINITY: there are none. `left` of it by so much.
  */
 double geometry_line_distance(const struct scene *scene, const double at[2], double *left);

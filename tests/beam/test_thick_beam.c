@@ -128,6 +128,41 @@ static void test_corners_of_a_closed_line(void)
             TEST_ASSERT_TRUE(hypot(fluid->x[i] - corner[k][0], fluid->y[i] - corner[k][1]) > 0.02);
 }
 
+/* Water round a curve and under a slanted beam begins half a spacing from its faces or further, and
+ * with the force of water at rest. The first hose has corners at its stations. */
+static void test_start_beside_curved_and_slanted_faces(void)
+{
+    static const struct {
+        const char *minus, *line;
+        double radius, thickness, share; /* share: error of the lift */
+    } scenes[] = {
+        {"minus = circle 0.4, 0.4, 0.205\n", "arc: 0.4, 0.4, 0.2, 0, 360 deg", 0.2, 0.01, 0.02},
+        {"minus = circle 0.4, 0.4, 0.21\n", "arc: 0.4, 0.4, 0.2, 0, 360 deg", 0.2, 0.02, 0.02},
+        {"minus = circle 0.4, 0.4, 0.22\n", "arc: 0.4, 0.4, 0.2, 0, 360 deg", 0.2, 0.04, 0.02},
+        {"minus = circle 0.4, 0.4, 0.23\n", "arc: 0.4, 0.4, 0.2, 0, 360 deg", 0.2, 0.06, 0.02},
+        {"", "polyline: 0.2, 0.1; 0.6, 0.3", 0, 0.02, 0.05},
+        {"", "polyline: 0.2, 0.1; 0.6, 0.3", 0, 0.04, 0.05}};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        char text[1000], what[80];
+        const double half = 0.5 * scenes[k].thickness, r = scenes[k].radius;
+        const double wanted = r > 0 ? 0.5 * PI * 9810 * square(r + half)
+                                    : 9810 * scenes[k].thickness * hypot(0.4, 0.2);
+        snprintf(what, sizeof what, "%s of %g m", scenes[k].line, scenes[k].thickness);
+        snprintf(text, sizeof text,
+                 "scheme = standard\ndp = 20 mm\nend_time = 9\ngravity = 0, -9.81\n"
+                 "[fluid w]\nshape = box 0, 0, 0.8, 0.4\n%ssound_speed = 25\nsurface = 0.4\n"
+                 "[wall tank]\nshape = polyline: 0, 0.6; 0, 0; 0.8, 0; 0.8, 0.6\n"
+                 "[beam b]\nshape = %s\nthickness = %g\nyoung = 1e9\ndensity = 1000\n",
+                 scenes[k].minus, scenes[k].line, scenes[k].thickness);
+        rig_open(&rig, text, NULL);
+        const struct particles *const fluid = &rig.sim.particles[KIND_FLUID];
+        for (int64_t i = 0; i < fluid->n && r > 0; i++)
+            TEST_ASSERT_TRUE_MESSAGE(hypot(fluid->x[i] - 0.4, fluid->y[i] - 0.4) - r > half + 0.009,
+                                     what);
+        assert_near(scenes[k].share * wanted, wanted, lift(), what);
+    }
+}
+
 /* The level beside a plate of rows of any depth that stands out of the water. */
 static void test_level_beside_faces(void)
 {
@@ -219,6 +254,7 @@ int main(void)
     RUN_TEST(test_a_float);
     RUN_TEST(test_what_is_displaced);
     RUN_TEST(test_corners_of_a_closed_line);
+    RUN_TEST(test_start_beside_curved_and_slanted_faces);
     RUN_TEST(test_level_beside_faces);
     RUN_TEST(test_rest_beside_a_line_into_a_wall);
     RUN_TEST(test_lift_of_joined_beams);
