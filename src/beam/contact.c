@@ -77,8 +77,7 @@ static enum err create_pieces(struct beams *beams, struct arena *a, struct arena
 
 static double half_of(const struct beams *beams, int beam)
 {
-    const double t = beams->beam[beam].given->thickness;
-    return isnan(t) ? 0 : 0.5 * t;
+    return scene_half_thickness(beams->beam[beam].given);
 }
 
 enum err beams_contact_create(struct beams *beams, struct arena *a, struct diag *d)

@@ -365,6 +365,12 @@ enum probe_target scene_probe_target(const struct scene_probe *probe);
 /* The contact section of two bodies or of one with itself, walls after solids; NULL: no contact. */
 const struct scene_contact *scene_contact_of(const struct scene *scene, int a, int b);
 
+/* Half the thickness of a beam, m; 0: one of which only stiffness and mass are given. */
+SPHFSI_INLINE double scene_half_thickness(const struct scene_beam *beam)
+{
+    return isnan(beam->thickness) ? 0 : 0.5 * beam->thickness;
+}
+
 /* The gap that it keeps, m: by default one layer of fluid with fluid and the standard scheme. */
 double scene_contact_gap(const struct scene *scene, const struct scene_contact *c);
 

@@ -22,11 +22,19 @@ static bool is_near(const double a[2], const double b[2], double within)
     return elementary_hypot(a[0] - b[0], a[1] - b[1]) <= within;
 }
 
-/* Whether a clamp or hinge of a beam on another (NULL: any body) is near a place. */
+/* Half the thickness of a part, m. */
+static double half_of(const struct scene_beam *beam)
+{
+    return beam ? scene_half_thickness(beam) : 0;
+}
+
+/* Whether a clamp or hinge of a beam on another (NULL: any body) is near a place: also where lines
+ * that meet at 30 degrees leave each other's thickness. */
 static bool is_held(const struct check *check, const struct scene_beam *beam, const double at[2],
                     const struct scene_beam *other)
 {
-    const double reach = beam->element > 0 ? beam->element : check->scene->top.dp;
+    const double reach = max2(beam->element > 0 ? beam->element : check->scene->top.dp,
+                              2 * (half_of(beam) + half_of(other)));
     for (int k = 0; k < beam->clamp.n + beam->hinge.n; k++) {
         const struct hinge_point *const h =
             k < beam->clamp.n ? &beam->clamp.item[k] : &beam->hinge.item[k - beam->clamp.n];
@@ -50,24 +58,50 @@ static bool may_meet(const struct check *check, const struct part *p, const stru
            (is_near(at, p->line.from, nothing) && is_near(at, q->line.to, nothing));
 }
 
-/* Whether two parts meet where they may not, and where. */
+/* Half the thickness of both, m. A line with itself: 0, as where it bends its faces may meet. */
+static double thickness_between(const struct part *p, const struct part *q)
+{
+    return p->beam == q->beam ? 0 : half_of(p->beam) + half_of(q->beam);
+}
+
+/* Whether two parts meet where they may not, and where; those of two lines by their thickness, too.
+ */
 static bool meet(const struct check *check, const struct part *p, const struct part *q,
                  double at[2])
 {
-    const double nothing = beside * check->scene->top.dp;
+    const double nothing = beside * check->scene->top.dp, thick = thickness_between(p, q),
+                 least = max2(nothing, thick - nothing);
     double end[4][2]; /* of q relative to p, of p relative to q */
     for (int k = 0; k < 4; k++) {
         const struct part *const on = k < 2 ? p : q, *const of = k < 2 ? q : p;
         memcpy(at, k % 2 ? of->line.to : of->line.from, 2 * sizeof *at);
         relative_to_part(&on->line, at, end[k]);
         const double beyond = max2(-end[k][0], end[k][0] - on->line.length);
-        if (fabs(end[k][1]) < nothing && beyond < nothing && !may_meet(check, p, q, at))
-            return true;
+        if (fabs(end[k][1]) < least && beyond < nothing && !may_meet(check, p, q, at)) return true;
     }
     if (!(end[0][1] * end[1][1] < 0 && end[2][1] * end[3][1] < 0)) return false;
     const double part = end[0][1] / (end[0][1] - end[1][1]);
     place_on_part(&p->line, end[0][0] + part * (end[1][0] - end[0][0]), 0, at);
     return !may_meet(check, p, q, at);
+}
+
+struct overlap {
+    char text[100];
+};
+
+/* Says by how much parts that meet at an end of one of them overlap, if their lines do not meet. */
+static struct overlap by_thickness(const struct part *p, const struct part *q, const double at[2])
+{
+    struct overlap to = {""};
+    double mine[2], its[2];
+    relative_to_part(&p->line, at, mine);
+    relative_to_part(&q->line, at, its);
+    const double apart = max2(fabs(mine[1]), fabs(its[1])), thick = thickness_between(p, q);
+    if (apart > 0.01 * thick)
+        snprintf(to.text, sizeof to.text,
+                 ": the lines are %.4g m apart there, and their thicknesses need %.4g m", apart,
+                 thick);
+    return to;
 }
 
 /* A beam with itself or with one before it. */
@@ -91,28 +125,40 @@ static enum err refuse_meeting(const struct check *check, const struct scene_bea
                                "m; move the points of its line apart",
                                beam->common.name, at[0], at[1]);
             return fail_at(check->diag, check->scene, line->line,
-                           "[beam %s] meets [beam %s] at (%.6g, %.6g) m without a joint; give "
+                           "[beam %s] meets [beam %s] at (%.6g, %.6g) m without a joint%s; give "
                            "[beam %s] a `clamp` or `hinge` = X, Y, %s there, besides joints with "
                            "other beams, or move one of them",
-                           beam->common.name, other->common.name, at[0], at[1], beam->common.name,
-                           other->common.name);
+                           beam->common.name, other->common.name, at[0], at[1],
+                           by_thickness(&p, &q, at).text, beam->common.name, other->common.name);
         }
     return ERR_OK;
 }
 
 /* --- bodies --- */
 
-/* Whether a place of a part, other than its ends, lies in a region or on its face. */
-static bool lies_in(const struct line_part *p, const struct region *region, double dp, double at[2])
+/* How far a part lies in a region by so much on each side of it, m, and where; 0: not at all. Its
+ * ends do not count, nor does its thickness where it is held. */
+static double lies_in(const struct check *check, const struct part *p, const struct region *region,
+                      double by, double at[2])
 {
-    const double inner = p->length - 2 * ahead * dp;
+    const double dp = check->scene->top.dp, inner = p->line.length - 2 * ahead * dp;
     const int n = 1 + (int)max2(0, inner / (between * dp));
     for (int k = 0; k <= n; k++)
         for (int side = -1; side < 2; side += 2) {
-            place_on_part(p, ahead * dp + inner * k / n, side * beside * dp, at);
-            if (geometry_covers(region, at[0], at[1])) return true;
+            const double along = ahead * dp + inner * k / n;
+            double from = 0, to = by, inside[2];
+            place_on_part(&p->line, along, side * by, at);
+            if (!geometry_covers(region, at[0], at[1]) ||
+                (by > beside * dp && is_held(check, p->beam, at, NULL)))
+                continue;
+            while (to - from > 1e-5 * by) {
+                const double middle = 0.5 * (from + to);
+                place_on_part(&p->line, along, side * middle, inside);
+                *(geometry_covers(region, inside[0], inside[1]) ? &to : &from) = middle;
+            }
+            return by - from;
         }
-    return false;
+    return 0;
 }
 
 /* Whether a region has points at a distance from a place. */
@@ -134,11 +180,18 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
     for (int k = 0; k < line->n; k++) {
         const struct part p = part_of(beam, line, k + 1 < line->n ? k : k - 1);
         double at[2];
-        if (lies_in(&p.line, region, dp, at))
+        if (lies_in(check, &p, region, beside * dp, at) > 0)
             return fail_at(check->diag, check->scene, line->line,
                            "[beam %s] lies in %s or on its face, at (%.6g, %.6g) m; end its "
                            "line at the face of the body",
                            beam->common.name, section_title(region->common).text, at[0], at[1]);
+        const double depth = lies_in(check, &p, region, half_of(beam) - beside * dp, at);
+        if (half_of(beam) > 2 * beside * dp && depth > 0)
+            return fail_at(check->diag, check->scene, line->line,
+                           "[beam %s] lies %.4g m deep in %s by its thickness of %.4g m, at "
+                           "(%.6g, %.6g) m; move its line away or make it thinner",
+                           beam->common.name, depth, section_title(region->common).text,
+                           2 * half_of(beam), at[0], at[1]);
         if (is_about(region, line->pt[k], beside * dp) && !is_held(check, beam, line->pt[k], NULL))
             return fail_at(check->diag, check->scene, line->line,
                            "[beam %s] touches %s with a free point, at (%.6g, %.6g) m; hold "
@@ -154,9 +207,10 @@ static enum err refuse_in_body(const struct check *check, const struct scene_bea
                 double at[2];
                 if (meet(check, &p, &q, at))
                     return fail_at(check->diag, check->scene, line->line,
-                                   "[beam %s] meets the line of [wall %s] at (%.6g, %.6g) m; hold "
-                                   "it there by `clamp` or `hinge`, or leave a gap",
-                                   beam->common.name, region->common->name, at[0], at[1]);
+                                   "[beam %s] meets the line of [wall %s] at (%.6g, %.6g) m%s; "
+                                   "hold it there by `clamp` or `hinge`, or leave a gap",
+                                   beam->common.name, region->common->name, at[0], at[1],
+                                   by_thickness(&p, &q, at).text);
             }
     }
     return ERR_OK;

@@ -37,12 +37,6 @@ static int rows_of_line(const struct scene *scene)
     return (int)ceil(KERNEL_REACH * scene->h / scene->top.dp - 1e-9);
 }
 
-/* In m; 0: a beam of which only stiffness and mass are given. */
-static double beam_half_thickness(const struct scene_beam *beam)
-{
-    return isnan(beam->thickness) ? 0 : 0.5 * beam->thickness;
-}
-
 /* Odd: the middle one of these places in a step is a station. */
 enum { PLACES = 15 };
 
@@ -207,7 +201,7 @@ static enum err add_line(struct sampler *sampler, int wall, const struct shape *
     TRY(arena_more(&scene->arena, &scene->thin, scene->n_thin, "thin walls", sampler->diag));
     struct scene_thin_line *const line = &scene->thin[scene->n_thin++];
     *line = (struct scene_thin_line){.wall = wall, .n = shape->n, .pt = shape->pt};
-    if (beam >= 0) line->half = beam_half_thickness(&scene->beam[beam]);
+    if (beam >= 0) line->half = scene_half_thickness(&scene->beam[beam]);
     double length = 0, start = 0;
     for (int k = 0; k + 1 < line->n; k++) {
         const double part = line_part_at(line, k).length;
@@ -276,7 +270,7 @@ enum err geometry_subtract_beams(struct sampler *sampler, struct outlines *minus
     for (int k = 0; k < own.n; k++) outlines_add(minus, &own.item[k], own.shape[k]);
     for (int b = 0; b < scene->n_beam; b++) {
         const struct shape *const line = scene->beam[b].shape.item;
-        const double half = beam_half_thickness(&scene->beam[b]);
+        const double half = scene_half_thickness(&scene->beam[b]);
         for (int k = 0; k + 1 < line->n && half > 0; k++) {
             const struct line_part part = line_part(line->pt[k], line->pt[k + 1]);
             struct outline box = {.n = 4},

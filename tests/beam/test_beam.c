@@ -296,8 +296,11 @@ static void test_bad_input_is_refused(void)
     }
 }
 
-#define BAR(name, line) \
-    "[beam " name "]\nshape = polyline: " line "\nthickness = 1 mm\nyoung = 1e9\ndensity = 1000\n"
+#define BAR_OF(thickness, name, line)                                          \
+    "[beam " name "]\nshape = polyline: " line "\nthickness = " thickness "\n" \
+    "young = 1e9\ndensity = 1000\n"
+#define BAR(name, line) BAR_OF("1 mm", name, line)
+#define THICK(name, line) BAR_OF("50 mm", name, line)
 #define DRY "dp = 1 cm\nend_time = 1\n"
 
 /* Contact keeps beams on their side of what they meet, so they must begin on one. */
@@ -321,8 +324,18 @@ static void test_beams_begin_beside_each_other_and_bodies(void)
         {BAR("a", "0, 0; 1, 0") "[solid s]\nshape = box 0.2, -0.5, 0.8, 0.5\nyoung = 1e6\n"
                                 "poisson = 0\ndensity = 1000\n",
          "lies in [solid s]"},
+        {THICK("a", "0, 0.005; 1, 0.005") "[wall w]\nshape = box -1, -1, 2, 0\n",
+         "lies 0.02 m deep in [wall w] by its thickness of 0.05 m, at ("},
+        {THICK("a", "0, 0.02; 1, 0.02") "[wall w]\nshape = polyline thickness 0: -1, 0; 2, 0\n",
+         "the lines are 0.02 m apart there, and their thicknesses need 0.025 m"},
+        {THICK("a", "0, 0; 1, 0") THICK("b", "0.2, 0.02; 0.8, 0.02"),
+         "the lines are 0.02 m apart there, and their thicknesses need 0.05 m"},
     };
     static const char *const lie_beside[] = {
+        THICK("a", "0, 0.025; 1, 0.025") "[wall w]\nshape = box -1, -1, 2, 0\n",
+        THICK("a", "0, 0; 1, 0.7") "clamp = 0, 0\n[wall w]\nshape = box -1, -1, 0, 1\n",
+        THICK("a", "0, 0; 1, 0") THICK("b", "0.01, 0; 0.01, 0.02; 0.5, 0.5") "hinge = 0.01, 0, a\n",
+        THICK("a", "0, 0; 1, 0") THICK("b", "0, 0.05; 1, 0.05"),
         BAR("a", "0, 0; 1, 0") BAR("b", "0.5, -1; 0.5, 1") "hinge = 0.5, 0, a\n",
         BAR("a", "0, 0; 1, 0") BAR("b", "0.5, -1; 0.5, 1") "[contact c]\nbetween = a, b\n"
                                                            "enabled = off\n",
