@@ -267,7 +267,8 @@ static void say_next(const struct sphfsi_options *o, const struct simulation *si
     if (!guard)
         session_result(o, "to go on: the same command with --restart%s",
                        o->fork ? " instead of --fork" : "");
-    else if (fast || (sim->state.steps <= 1 && scene->numerics.fixed_step == 0))
+    else if (fast || sim->guard.soft_beam ||
+             (sim->state.steps <= 1 && scene->numerics.fixed_step == 0))
         /* A checkpoint keeps its speed of sound and its state. */
         session_result(o, "change the case, then start again: the same command with another --out");
     else if (sim->guard.case_at_fault)

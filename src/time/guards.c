@@ -79,6 +79,16 @@ static bool fluid_is_valid(struct simulation *sim)
     "or a wall or structure presses too hard on the fluid; for a soft or light structure a " \
     "longer damping_time may help"
 
+/* Names the damping with which soft sheets stayed at rest in still water, if a beam has less. */
+static bool find_soft_beam(struct simulation *sim, char help[64])
+{
+    const double time = 5 * sim->scene->h / sim->scene->c0;
+    for (int k = 0; k < sim->scene->n_beam && sim->effects & FX_FLUID; k++)
+        sim->guard.soft_beam |= sim->scene->beam[k].damping_time < time;
+    if (sim->guard.soft_beam) snprintf(help, 64, "damping_time = %.2g s in each [beam]", time);
+    return sim->guard.soft_beam;
+}
+
 /* Molteni's diffusion removes the excess density of a front's first particle, which then sinks into
  * the bed that the front runs over. */
 #define ENTERED                                                                              \
@@ -90,8 +100,13 @@ static enum err check_fluid(struct simulation *sim, struct diag *d)
     if (!fluid_is_valid(sim)) {
         const struct finding f = find_invalid(&sim->particles[KIND_FLUID], sim->guard.speed_limit,
                                               sim->guard.dens_limit);
-        if (f.particle >= 0)
-            return invalid(sim, KIND_FLUID, f, sim->guard.warned_entered ? ENTERED : UNSTABLE, d);
+        const char *cause = sim->guard.warned_entered ? ENTERED : UNSTABLE;
+        char help[64] = "", text[200];
+        if (find_soft_beam(sim, help) && !sim->guard.warned_entered) cause = text;
+        snprintf(text, sizeof text,
+                 "%s may help a soft beam, a smaller cfl does not; or sound_speed is too low",
+                 help);
+        if (f.particle >= 0) return invalid(sim, KIND_FLUID, f, cause, d);
     }
     if (sim->state.speed_high > SPEED_WARNING * sim->scene->c0)
         warn_once(sim, &sim->guard.warned_speed, d,
@@ -416,17 +431,18 @@ static enum err check_loads(struct simulation *sim, struct diag *d)
                      scene_place(sim->scene, load->line).text, time_text(sim).text, load->name);
 }
 
-static enum err check_newton(const struct simulation *sim, struct diag *d)
+static enum err check_newton(struct simulation *sim, struct diag *d)
 {
-    const struct implicit *const implicit = sim->solid.implicit;
-    const bool solid = implicit && implicit->failed;
+    const bool solid = sim->solid.implicit && sim->solid.implicit->failed;
+    char help[64] = "a smaller fixed_step";
     if (!solid && !sim->beams.failed) return ERR_OK;
+    if (!solid) find_soft_beam(sim, help);
     return diag_fail(d, ERR_GUARD,
                      "%s: Newton's method finds no solution for the implicit step of the %s, %.3g "
-                     "s, nor for shorter steps (residual: %.2g of the largest force); a smaller "
-                     "fixed_step or %s may help",
+                     "s, nor for shorter steps (residual: %.2g of the largest force); %s or %s may "
+                     "help",
                      time_text(sim).text, solid ? "solid" : "beams", sim->state.dt,
-                     solid ? implicit->residual : sim->beams.residual,
+                     solid ? sim->solid.implicit->residual : sim->beams.residual, help,
                      solid ? "solid_steps = explicit"
                            : "an `element` shorter than sqrt(EI/N), with the axial force N,");
 }

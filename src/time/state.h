@@ -21,6 +21,7 @@ struct guard {
         warned_voids, warned_rigid, warned_beams, warned_beam_in_solid,
         warned_left[ENERGY_ENTRIES]; /* of each section */
     bool case_at_fault; /* what stopped the run would stop it with shorter steps, too */
+    bool soft_beam;     /* a beam without enough damping may have; its last state is lost already */
 };
 
 enum bound {

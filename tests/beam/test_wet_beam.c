@@ -155,6 +155,26 @@ static void test_snapshots_have_what_is_in_the_section(void)
     }
 }
 
+/* A sheet of nearly no stiffness is unstable in still water, unless it has the damping_time that
+ * the message names. */
+static void test_a_soft_sheet_needs_damping(void)
+{
+    static const char sheet[] =
+        "dp = 20 mm\nend_time = 1\ngravity = 0, -9.81\n"
+        "[fluid w]\nshape = box 0, 0, 0.6, 0.4\nsurface = 0.4\nsound_speed = 25\n"
+        "[wall tank]\nshape = polyline: 0, 0.6; 0, 0; 0.6, 0; 0.6, 0.6\n"
+        "[beam b]\nshape = polyline: 0.1, 0.2; 0.5, 0.2\nhinge = 0.1, 0.2\nhinge = 0.5, 0.2\n"
+        "thickness = 2 mm\ndensity = 1000\naxial_stiffness = 1e5\nbending_stiffness = 0.01\n";
+    rig_open(&rig, sheet, NULL);
+    rig.diag = (struct diag){0};
+    while (rig.sim.state.time < 0.1 && !simulation_step(&rig.sim, 0.1, &rig.diag)) {
+    }
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "damping_time = 0.0054 s in each [beam]"),
+                                 rig.diag.text);
+    rig_open(&rig, sheet, "b.damping_time=5.4 ms", NULL);
+    rig_run(&rig, 0.1);
+}
+
 static void test_one_side_is_refused(void)
 {
     rig_refuses(COLUMN "[numerics]\nsides = one\n", "would gain energy in fluid with");
@@ -296,6 +316,7 @@ int main(void)
     RUN_TEST(test_a_violent_exchange_gains_little);
     RUN_TEST(test_light_plates_in_still_water);
     RUN_TEST(test_waves_that_no_step_resolves);
+    RUN_TEST(test_a_soft_sheet_needs_damping);
     RUN_TEST(test_one_side_is_refused);
     RUN_TEST(test_settling_does_not_pass_a_line);
     RUN_TEST(test_an_end_leaves_its_wall);
