@@ -85,7 +85,7 @@ static enum err neighbour_scratch_create(struct fluid *fluid, struct arena *a, i
         fluid->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
     for (int t = 0; t < fluid->threads && fluid->effects & FX_THIN; t++) {
         TRY(arena_place(a, &fluid->neighbour_scratch[t].pieces,
-                        (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), 5 * sizeof(double),
+                        (size_t)(fluid->lines.n_pieces * CELLS_IMAGES), NEAR_PIECE_BYTES,
                         "thin walls", d));
     }
     return ERR_OK;

@@ -161,6 +161,9 @@ SPHFSI_INLINE int pair_sum_count(effect_set effects)
     return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_DIFFUSED + 1 : SUM_RATE + 1;
 }
 
+/* Bytes of struct near_piece (fluid/neighbours.h) in double precision. */
+enum { NEAR_PIECE_BYTES = 8 * sizeof(double) };
+
 /* Neighbour clusters of a cell and of a cluster: scratch memory of a thread. */
 struct neighbour_scratch {
     struct neighbour_clusters around[KIND_COUNT];

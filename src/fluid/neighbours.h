@@ -92,6 +92,7 @@ struct near_piece {
     real from[2], to[2], line;
     real length, tip[2]; /* distance of `from` from the tips of the line along it; FAR: none */
 };
+_Static_assert(sizeof(struct near_piece) <= NEAR_PIECE_BYTES, "fluid_create allocates them");
 
 /* Lists the pieces that a connection from a place in a cell may cross; returns their number. */
 static int near_pieces(const struct fluid *fluid, const struct cells *cells, int32_t cell,
