@@ -77,7 +77,7 @@ struct sphfsi_progress {
     double time, end_time; /**< s, simulated */
     double start_time;     /**< s, simulated, at which this process began */
     double dt;             /**< s, last time step */
-    const char *bound;     /**< what limited it */
+    const char *bound;     /**< what limited dt */
     double particle_steps_per_second;
     double wall_seconds; /**< s, wall time since this process began to step */
     double seconds_left; /**< s, wall time, estimated; negative: not known yet */
@@ -251,7 +251,8 @@ SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
  * case. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
 
-/** Prints the same as one JSON text through the message callback; docs/formats.md lists its keys.
+/** Prints what sphfsi_explain prints as one JSON text through the message callback; docs/formats.md
+ * lists its keys.
  */
 SPHFSI_API enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options);
 
@@ -272,8 +273,8 @@ SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
  * quantities of a probe. The other options may be zero. */
 SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 
-/** Prints them and the effects as one JSON text through the message callback: type, unit, range,
- * default, meaning and example of each key. */
+/** Prints what sphfsi_keys prints, and the effects, as one JSON text through the message callback:
+ * type, unit, range, default, meaning and example of each key. */
 SPHFSI_API enum sphfsi_status sphfsi_keys_json(const struct sphfsi_options *options);
 
 /** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has

@@ -119,6 +119,18 @@ void coupling_predict(struct coupling *coupling, double dt)
     predict_motion(coupling, coupling->rates_at * dt);
 }
 
+/* The state at the start gives the mean velocity and acceleration of the step. */
+static void keep_start(struct particles *particles)
+{
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < particles->n; i++) {
+        particles->ux0[i] = particles->ux[i];
+        particles->uy0[i] = particles->uy[i];
+        particles->vx0[i] = particles->vx[i];
+        particles->vy0[i] = particles->vy[i];
+    }
+}
+
 double coupling_advance(struct coupling *coupling, double dt, int n, double rates_time,
                         bool first_step)
 {
@@ -129,14 +141,7 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double rate
     const double middle = 0.5 * (coupling->solid->centred ? dt : dt - dt / n);
     coupling->lead = middle - coupling->rates_at * dt;
     if (particles->mean_fx) extrapolate_forces(coupling, dt, rates_time, first_step);
-        /* The state at the start gives the mean velocity and acceleration of the step. */
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < particles->n; i++) {
-        particles->ux0[i] = particles->ux[i];
-        particles->uy0[i] = particles->uy[i];
-        particles->vx0[i] = particles->vx[i];
-        particles->vy0[i] = particles->vy[i];
-    }
+    keep_start(particles);
     if (impedance) impulse_begin(coupling, implicit_is_next(coupling->solid) ? 0 : dt / n);
     implicit_advance(coupling->solid, particles, dt / n, n);
     if (impedance) impulse_end(coupling);

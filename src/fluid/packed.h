@@ -69,8 +69,8 @@ SPHFSI_INLINE struct packing packing_of(const struct fluid *fluid)
                             fluid->effects & FX_ANTUONO && fluid->keeps_slopes};
 }
 
-/* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), or with a
- * damper (Fourtakas, Vacondio and Rogers 2025; T-9a) psi, of dens less its value with delay. */
+/* Pressure that acts on the neighbours of the four particles from i on: Tait's (T-3), and with the
+ * acoustic damper also P' = rho0 c0^2 (dens - dens_slow) (T-9a). */
 SPHFSI_INLINE four_double acting_pressure(const struct packing *packing,
                                           const struct particles *particles, int32_t i,
                                           four_double dens)

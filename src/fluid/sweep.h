@@ -43,13 +43,15 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
                                const struct vector_constants *k, struct pair_set effects,
                                struct chunk_totals *largest)
 {
-    four_double full = 1 + FOUR(fluid->predict_by > 0 ? particles->dens_half : particles->dens, i);
-    four_double factor = k->acceleration + 0 * full;
-    four_double rate = full * even_sum(s, deferred, SUM_RATE);
+    const four_double density =
+        1 + FOUR(fluid->predict_by > 0 ? particles->dens_half : particles->dens, i);
+    four_double per_volume = density; /* of the particle, in units of that at rest */
+    four_double factor = k->acceleration + 0 * density;
+    four_double rate = density * even_sum(s, deferred, SUM_RATE);
     if (PAIR_HAS(effects, MASSES)) { /* all sums contain the volume of the particle itself */
         const four_double inverse_mass = 1 / FOUR(particles->m, i);
         factor = factor * inverse_mass;
-        full = full * inverse_mass;
+        per_volume = per_volume * inverse_mass;
     }
     const four_double fx_a = factor * odd_sum(s, deferred, SUM_X),
                       fy_a = factor * odd_sum(s, deferred, SUM_Y);
@@ -59,8 +61,8 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
             PAIR_HAS(effects, LIMITER) ? 2 * STRAIN_DIFFUSION : k->diffusion_factor;
         rate = rate + diffusion * odd_sum(s, deferred, SUM_DIFFUSED);
     }
-    full = k->kernel_slope * full;
-    const four_double ddens = -full * rate, a2 = ax * ax + ay * ay;
+    const four_double slope = k->kernel_slope * per_volume;
+    const four_double ddens = -slope * rate, a2 = ax * ax + ay * ay;
     store_four(particles->ax + i, ax, count);
     store_four(particles->ay + i, ay, count);
     store_four(particles->ddens + i, ddens, count);
@@ -70,9 +72,9 @@ SPHFSI_INLINE void rates_store(const struct fluid *fluid, struct particles *part
         for (int r = 0; r < count; r++)
             largest->acceleration2[r] = max2(largest->acceleration2[r], a2[r]);
     if (!(PAIR_HAS(effects, SHIFTING))) return;
-    store_four(particles->grad_c_x + i, -full * odd_sum(s, deferred, SUM_GRAD_C_X), count);
-    store_four(particles->grad_c_y + i, -full * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
-    store_four(particles->div_r + i, fluid->k.h * full * even_sum(s, deferred, SUM_DIV_R), count);
+    store_four(particles->grad_c_x + i, -slope * odd_sum(s, deferred, SUM_GRAD_C_X), count);
+    store_four(particles->grad_c_y + i, -slope * odd_sum(s, deferred, SUM_GRAD_C_Y), count);
+    store_four(particles->div_r + i, fluid->k.h * slope * even_sum(s, deferred, SUM_DIV_R), count);
 }
 
 /* Receivers of the fluid from their packed fields. */

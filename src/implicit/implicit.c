@@ -336,5 +336,5 @@ double implicit_period(struct solid *solid, struct particles *particles)
         *(below > 3 * implicit->n_free ? &high : &low) = middle;
     }
     implicit->factored = false;
-    return high > 2 * rounding ? 2 * M_PI / sqrt(high) : (double)INFINITY;
+    return high > 2 * rounding ? 2 * PI / sqrt(high) : (double)INFINITY;
 }

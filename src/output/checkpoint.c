@@ -42,7 +42,7 @@ struct block_header {
 
 struct file_footer {
     char magic[8];
-    uint64_t sum; /* checksum (base/base.h) of everything before the footer */
+    uint64_t sum; /* checksum (base/hash.h) of everything before the footer */
 };
 
 _Static_assert(sizeof(struct file_header) == 136 && sizeof(struct block_header) == 48 &&

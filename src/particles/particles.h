@@ -84,7 +84,7 @@ void particles_permute(struct particles *particles, const int32_t *order, int64_
 /* Copies every active STATE field of one particle. */
 void particles_copy(struct particles *particles, int64_t from, int64_t to);
 
-/* Hash of every STATE field, in array order, continued from `seed` (base/base.h). */
+/* Hash of every STATE field, in array order, continued from `seed` (base/hash.h). */
 uint64_t particles_hash(const struct particles *particles, uint64_t seed);
 
 /* Bytes of all arrays of p. */

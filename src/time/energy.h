@@ -23,7 +23,8 @@
     LEDGER(det_low, "1", "current smallest det F")                                        \
     LEDGER(dt, "s", "last time step")                                                     \
     LEDGER(newton_steps, "1", "corrections of Newton's method in the last implicit step") \
-    LEDGER(newton_residual, "1", "its residual, over the largest force of a particle")    \
+    LEDGER(newton_residual, "1",                                                          \
+           "residual of the last implicit step, over the largest force of a particle")    \
     LEDGER(damped, "J_per_m", "the part of `dissipated` that [damping] zones have taken")
 
 struct ledger {

@@ -165,6 +165,7 @@ static enum err create_solids(struct simulation *sim, struct diag *d)
     if (implicit_pays(sim)) {
         sim->effects |= FX_IMPLICIT;
         TRY(particles_add(particles, a, G_MATRIX, "solid", d));
+        /* In double precision. What the first call has allocated stays in the arena, unused. */
         TRY(create_bare_solids(sim, d));
     }
     if (sim->effects & FX_CONTACT)

@@ -5,11 +5,6 @@
 
 #include "time/energy.h"
 
-/* Registers `f`, which adds accelerations to the particles of a kind (fluid or solid) from the
- * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
-enum err simulation_set_force_hook(struct simulation *sim, enum kind kind, force_hook_function *f,
-                                   void *context, struct diag *d) SPHFSI_CHECKED;
-
 /* Builds the state at time zero of a scene, or arrays for a checkpoint. Frees all if it fails. */
 enum err simulation_create(struct simulation *sim, const struct scene *scene, struct diag *d)
     SPHFSI_CHECKED;
@@ -31,6 +26,11 @@ enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKE
 /* Hash of every STATE field and state scalar but those of the energy account, which measures the
  * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
+
+/* Registers `f`, which adds accelerations to the particles of a kind (fluid or solid) from the
+ * next evaluation on. It is called at each evaluation of the fluid, for sub-steps too. */
+enum err simulation_set_force_hook(struct simulation *sim, enum kind kind, force_hook_function *f,
+                                   void *context, struct diag *d) SPHFSI_CHECKED;
 
 /* --- evaluation.c --- */
 

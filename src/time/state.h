@@ -107,10 +107,11 @@ struct simulation {
     effect_set effects;             /* bits of case/effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
-    double dt_solid;              /* stable step of the solid times its safety, s */
-    double dt_lone_solid;         /* the same as if there were no contact */
-    int stiffest;                 /* the [spring] that sets it without solids, from 1; 0: none */
-    int substeps;                 /* solid steps in the last fluid step */
+    double dt_solid;      /* step that solids allow, with solid_safety; without solids that of
+                             rigid bodies and beams, s */
+    double dt_lone_solid; /* dt_solid as if there were no contact, s */
+    int stiffest;         /* the [spring] that sets dt_solid without solids, from 1; 0: none */
+    int substeps;         /* solid steps in the last fluid step */
     struct team team;
     double phase_seconds[PHASE_COUNT];
     struct extremes extremes; /* of the fluid */
