@@ -217,7 +217,8 @@ static enum err find_target(struct reader *r, const char *prefix, int *target)
     for (int k = 0; k < r->n_sections; k++) {
         const struct case_section *const s = &r->sections[k];
         if (*prefix && s->id != SECTION_top) nearest_offer(&near, prefix, name_of(s));
-        if (strcmp(section_table[s->id].word, prefix) == 0)
+        if (*s->name && strcmp(section_table[s->id].word, prefix) == 0 &&
+            (!near.name || near.distance > 0))
             near = (struct nearest){.name = s->name};
         if (!means_section(s, prefix)) continue;
         if (meant < 0) meant = s->id;
