@@ -81,6 +81,37 @@ static enum err inherit(struct reader *r, const struct param *like, struct scene
                      section_table[like->section].word, nearest_hint(&near));
 }
 
+/* Drops inherited values that a given one replaces or determines, and those of hinges and clamps
+ * unless such a point is given. */
+static void drop_inherited(const struct reader *r, int section, void *target)
+{
+    static const struct {
+        const char *key;
+        bool given; /* drop if one of the others is given, or if none is */
+        const char *other[2];
+    } drops[] = {{"surface", true, {"pressure", "pressure"}},
+                 {"pressure", true, {"surface", "surface"}},
+                 {"density", true, {"mass", "mass"}},
+                 {"mass", true, {"density", "density"}},
+                 {"inertia", true, {"density", "mass"}},
+                 {"axial_stiffness", true, {"young", "thickness"}},
+                 {"bending_stiffness", true, {"young", "thickness"}},
+                 {"shear_stiffness", true, {"young", "thickness"}},
+                 {"hinge_stiffness", false, {"hinge", "hinge"}},
+                 {"hinge_damping", false, {"hinge", "hinge"}},
+                 {"hinge_friction", false, {"hinge", "hinge"}},
+                 {"hinge_motion", false, {"hinge", "hinge"}},
+                 {"clamp_motion", false, {"clamp", "clamp"}},
+                 {"motion", false, {"clamp", "hinge"}}};
+    for (size_t k = 0; k < COUNT_OF(drops); k++) {
+        const struct param *const param =
+            param_find((enum section_id)r->sections[section].id, drops[k].key);
+        const bool given =
+            case_entry(r, section, drops[k].other[0]) || case_entry(r, section, drops[k].other[1]);
+        if (param && given == drops[k].given) param_set_default(param, target);
+    }
+}
+
 /* --- keys --- */
 
 static enum err unknown_key(struct reader *r, int id)
@@ -103,15 +134,7 @@ static enum err read_section(struct reader *r, int section)
     void *const target = section_of(r, &r->sections[section]);
     r->entry = case_entry(r, section, "like");
     if (like && r->entry) TRY(case_go_on(r, inherit(r, like, target)));
-    /* One that is given replaces the other one that is inherited. */
-    static const char *const instead[][2] = {{"surface", "pressure"},
-                                             {"pressure", "surface"},
-                                             {"density", "mass"},
-                                             {"mass", "density"}};
-    for (size_t k = 0; like && k < COUNT_OF(instead); k++) {
-        const struct param *const other = param_find(id, instead[k][1]);
-        if (other && case_entry(r, section, instead[k][0])) param_set_default(other, target);
-    }
+    if (like) drop_inherited(r, section, target);
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = r->entry = &r->entries[k];
         if (e->section != section) continue;

@@ -251,6 +251,52 @@ static void test_like_of_rigid_bodies_and_beams(void)
     TEST_ASSERT_EQUAL_INT(0, scene.beam[1].clamp.n);
 }
 
+/* Given density, mass, young or thickness determine what the other section states of its own. */
+static void test_like_drops_what_given_values_determine(void)
+{
+    parse(TOP "[rigid a]\nmass = 0.05\ninertia = 3\nshape = box 0, 0, 10 mm, 10 mm\n"
+              "[rigid b]\nlike = a\ndensity = 500\nshape = box 20 mm, 0, 30 mm, 10 mm\n"
+              "[rigid c]\nlike = a\nmass = 0.1\nshape = box 40 mm, 0, 50 mm, 10 mm\n"
+              "[rigid d]\nlike = a\nspin = 1\nshape = box 60 mm, 0, 70 mm, 10 mm\n"
+              "[beam e]\naxial_stiffness = 1e6\nbending_stiffness = 50\nshear_stiffness = 1e5\n"
+              "mass = 30\nshape = polyline: 0, 50 mm; 0.1, 50 mm\n"
+              "[beam f]\nlike = e\nyoung = 1e9\nthickness = 1 mm\nshear_stiffness = 7\n"
+              "shape = polyline: 0, 90 mm; 0.1, 90 mm\n"
+              "[beam g]\nlike = f\nthickness = 2 mm\nshape = polyline: 0, 0.2; 0.1, 0.2\n",
+          0, NULL);
+    TEST_ASSERT_TRUE(isnan(scene.rigid[1].inertia) && isnan(scene.rigid[1].mass));
+    TEST_ASSERT_TRUE(isnan(scene.rigid[2].inertia));
+    TEST_ASSERT_TRUE(scene.rigid[3].inertia == 3 && scene.rigid[3].mass == 0.05);
+    const struct scene_beam *const f = &scene.beam[1];
+    TEST_ASSERT_TRUE(isnan(f->axial_stiffness) && isnan(f->bending_stiffness));
+    TEST_ASSERT_TRUE(f->shear_stiffness == 7 && f->mass == 30);
+    TEST_ASSERT_TRUE(isnan(scene.beam[2].shear_stiffness) && scene.beam[2].young == 1e9);
+}
+
+/* Keys of hinges and clamps are inherited by a section that has such points of its own. */
+static void test_like_and_the_keys_of_supports(void)
+{
+    parse(TOP "[motion m]\nx = 0.1*t\n"
+              "[rigid a]\ndensity = 500\nhinge = 5 mm, 5 mm\nhinge_stiffness = 10\n"
+              "hinge_damping = 2\nhinge_friction = 1\nshape = box 0, 0, 10 mm, 10 mm\n"
+              "[rigid b]\nlike = a\nshape = box 20 mm, 0, 30 mm, 10 mm\n"
+              "[rigid c]\nlike = a\nhinge = 45 mm, 0\nshape = box 40 mm, 0, 50 mm, 10 mm\n"
+              "[beam d]\nyoung = 1e6\nthickness = 1 mm\ndensity = 900\nclamp = 0, 50 mm\n"
+              "motion = m\nshape = polyline: 0, 50 mm; 0.1, 50 mm\n"
+              "[beam e]\nlike = d\nshape = polyline: 0, 90 mm; 0.1, 90 mm\n"
+              "[beam f]\nlike = d\nhinge = 0, 0.2\nshape = polyline: 0, 0.2; 0.1, 0.2\n"
+              "[solid g]\nshape = box 0, 0.3, 10 mm, 0.32\ndensity = 1000\nyoung = 1 MPa\n"
+              "poisson = 0.3\nclamp = box 0, 0.3, 10 mm, 0.305\nclamp_motion = m\n"
+              "[solid h]\nlike = g\nshape = box 20 mm, 0.3, 30 mm, 0.32\n",
+          0, NULL);
+    const struct scene_rigid *const b = &scene.rigid[1], *const c = &scene.rigid[2];
+    TEST_ASSERT_TRUE(b->hinge_stiffness == 0 && b->hinge_damping == 0 && b->hinge_friction == 0);
+    TEST_ASSERT_TRUE(c->hinge_stiffness == 10 && c->hinge_damping == 2 && c->hinge_friction == 1);
+    TEST_ASSERT_EQUAL_STRING("", scene.beam[1].motion);
+    TEST_ASSERT_EQUAL_STRING("m", scene.beam[2].motion);
+    TEST_ASSERT_EQUAL_STRING("", scene.solid[1].clamp_motion);
+}
+
 static void test_sound_speed_follows_eq_3(void)
 {
     parse(TOP "[fluid w]\nshape = box 0, 0, 9 mm, 9 mm\nmax_speed = 2 m/s\nmax_pressure = 9 kPa\n",
@@ -436,6 +482,8 @@ int main(void)
     RUN_TEST(test_a_key_wins_over_the_scheme);
     RUN_TEST(test_like_inherits_values_but_no_regions);
     RUN_TEST(test_like_of_rigid_bodies_and_beams);
+    RUN_TEST(test_like_drops_what_given_values_determine);
+    RUN_TEST(test_like_and_the_keys_of_supports);
     RUN_TEST(test_sound_speed_follows_eq_3);
     RUN_TEST(test_line_ends_and_marks_of_other_systems);
     RUN_TEST(test_every_kind_of_value_comes_back);
