@@ -394,7 +394,7 @@ static void strain_of(const struct beams *beams, int element, double strain[3])
     beam_strain(e, q, strain, turn);
 }
 
-void beam_strain_force(const struct beams *beams, const struct beam_place *place, double out[4])
+void beam_section_force(const struct beams *beams, const struct beam_place *place, double out[4])
 {
     const struct beam_element *const e = &beams->element[place->element];
     double strain[3];
@@ -403,26 +403,6 @@ void beam_strain_force(const struct beams *beams, const struct beam_place *place
     /* The shear force is constant within an element, and the moment falls by it (T-103c). */
     out[2] -= out[1] * (place->part - 0.5) * e->length;
     out[3] = out[2] / e->stiffness[2];
-}
-
-void beam_section_force(const struct beams *beams, const struct beam_place *place, double out[4])
-{
-    const struct beam_element *const e = &beams->element[place->element];
-    const bool last = place->part > 0.5;
-    const struct beam_node *const node = &beams->node[e->node[last]];
-    const struct beam *const of = &beams->beam[node->beam];
-    const bool end = last ? place->part == 1 && place->element == of->end_element - 1
-                          : place->part == 0 && place->element == of->first_element;
-    beam_strain_force(beams, place, out);
-    if (!end || (node->unknown[0] >= 0 && node->body < 0)) return;
-    const struct beam_state *const s = &beams->state[e->node[last]];
-    const double sign = last ? 1 : -1, cosine = elementary_cos(s->x[2]),
-                 sine = elementary_sin(s->x[2]),
-                 t[2] = {(cosine * e->between[0] - sine * e->between[1]) / e->length,
-                         (sine * e->between[0] + cosine * e->between[1]) / e->length};
-    out[0] = sign * (s->reaction[0] * t[0] + s->reaction[1] * t[1]);
-    out[1] = sign * (s->reaction[1] * t[0] - s->reaction[0] * t[1]);
-    out[2] = sign * s->reaction[2];
 }
 
 void beam_reaction(const struct beams *beams, int beam, const double about[2], double out[3])

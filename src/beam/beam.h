@@ -181,8 +181,6 @@ struct beam_place {
 struct beam_place beam_find(const struct beams *beams, int beam, const double at[2]);
 
 /* Axial force and shear force, N/m, moment, N, and curvature, 1/m, at a place. */
-void beam_strain_force(const struct beams *beams, const struct beam_place *place, double out[4]);
-/* The same; at a held end by the reaction, which has all forces on the last half of an element. */
 void beam_section_force(const struct beams *beams, const struct beam_place *place, double out[4]);
 
 /* The sum of the forces of clamps and hinges, N/m, and their moment about a point, N. */

@@ -18,7 +18,7 @@ static double beam_value(enum data what, const struct simulation *sim, const str
     if (what == D_THICKNESS) return sim->scene->beam[beam].thickness;
     const struct beam_place place = {sim->beams.beam[beam].first_element + dummy->part,
                                      dummy->along, 0};
-    beam_strain_force(&sim->beams, &place, section);
+    beam_section_force(&sim->beams, &place, section);
     return section[what - D_AXIAL_FORCE];
 }
 
