@@ -81,7 +81,7 @@ static bool put_particles(struct drawing *g, enum kind kind, int body, bool held
     bool any = false;
     fprintf(g->file, "<path class=\"body %s\" stroke-width=\"%.2f\" d=\"", class, side * g->scale);
     for (int64_t i = 0; i < p->n; i++) {
-        const bool thin = kind == KIND_WALL && scene_line_of(g->scene, i);
+        const bool thin = kind == KIND_WALL && scene_thin_line_of(g->scene, i);
         if (p->body[i] != body || (p->clamped && p->clamped[i]) != held || thin) continue;
         box2_include(&g->view, p->x[i], p->y[i]);
         fprintf(g->file, "M%.1f %.1fh.01", px(g, 0, p->x[i]), px(g, 1, p->y[i]));

@@ -336,7 +336,7 @@ SPHFSI_INLINE int scene_rigid_motion(const struct scene *scene, int rigid)
     return scene->n_motion - scene->n_rigid + rigid;
 }
 /* The thin line that a particle of a wall is a dummy of, from 1; 0: none. */
-SPHFSI_INLINE int scene_line_of(const struct scene *scene, int64_t wall_particle)
+SPHFSI_INLINE int scene_thin_line_of(const struct scene *scene, int64_t wall_particle)
 {
     for (int k = 0; k < scene->n_thin; k++)
         if (wall_particle >= scene->thin[k].first &&

@@ -137,9 +137,11 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
     struct scene_points *const to = &scene->points[kind];
     int64_t n = 0, k = 0;
     double part[2][3];
-    for (int64_t j = 0; j < samples->n; j++)
-        if (kept[j] && sampler->regions[samples->region[j]].kind == kind)
-            n += geometry_cut(scene, samples->x[j], samples->y[j], part);
+    for (int64_t j = 0; j < samples->n; j++) {
+        const struct region *const region = &sampler->regions[samples->region[j]];
+        if (kept[j] && region->kind == kind)
+            n += geometry_cut(scene, kind, region->body, samples->x[j], samples->y[j], part);
+    }
     if (kind == KIND_WALL)
         for (int j = 0; j < scene->n_thin; j++) n += scene->thin[j].n_dummies;
     TRY(geometry_points(sampler, kind, n, false, to));
@@ -147,7 +149,8 @@ static enum err store(struct sampler *sampler, const struct samples *samples, co
         const struct region *const region = &sampler->regions[r];
         for (; k < samples->n && samples->region[k] == r; k++) {
             if (!kept[k] || region->kind != kind) continue;
-            const int parts = geometry_cut(scene, samples->x[k], samples->y[k], part);
+            const int parts =
+                geometry_cut(scene, kind, region->body, samples->x[k], samples->y[k], part);
             for (int p = 0; p < parts; p++, to->n++) {
                 to->x[to->n] = part[p][0];
                 to->y[to->n] = part[p][1];

@@ -136,9 +136,10 @@ enum err geometry_thicken(struct sampler *sampler, const struct region *wall) SP
 
 /* The thin lines of all walls and their dummies (geometry/thin.c), once walls have outlines. */
 enum err geometry_thin(struct sampler *sampler) SPHFSI_CHECKED;
-/* A particle of a wall that a line cuts as it goes on into the wall has a part on each side
+/* A particle of the wall into which a line goes on, and which it cuts, has a part on each side
  * (T-110g). Sets places and volumes over dp^2; returns the number of parts: 1 or 2. */
-int geometry_cut(const struct scene *scene, double x, double y, double to[2][3]);
+int geometry_cut(const struct scene *scene, enum kind kind, int body, double x, double y,
+                 double to[2][3]);
 /* Appends the dummies of a wall's lines to its particles. */
 void geometry_thin_store(struct scene *scene, int wall);
 

@@ -309,7 +309,7 @@ static enum err gather(struct settling *s)
                     !beside(s, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
                     continue;
                 if (moves) s->particle[s->n] = k;
-                const int line = kind == KIND_WALL ? scene_line_of(scene, k) : 0;
+                const int line = kind == KIND_WALL ? scene_thin_line_of(scene, k) : 0;
                 const struct scene_thin_line *const of = line ? &scene->thin[line - 1] : NULL;
                 const struct line_dummy *const dummy = of ? &of->dummy[k - of->first] : NULL;
                 if (dummy && !dummy->same_side) s->line[s->n] = line;

@@ -343,13 +343,15 @@ enum err geometry_thin(struct sampler *sampler)
     return ERR_OK;
 }
 
-int geometry_cut(const struct scene *scene, double x, double y, double to[2][3])
+int geometry_cut(const struct scene *scene, enum kind kind, int body, double x, double y,
+                 double to[2][3])
 {
     const struct scene_lattice *const l = &scene->lattice;
     const double at[2] = {x, y}, nothing = 1e-6;
-    for (int k = 0; k < 2 * scene->n_thin; k++) {
+    for (int k = 0; k < 2 * scene->n_thin && kind == KIND_WALL; k++) {
         const struct scene_thin_line *const line = &scene->thin[k / 2];
         const bool last = k % 2;
+        if (line->into[last] != body) continue;
         const struct line_part part = line_part_at(line, last ? line->n - 2 : 0);
         const double along = part.t[0] * l->turn[0] + part.t[1] * l->turn[1],
                      across = part.t[1] * l->turn[0] - part.t[0] * l->turn[1],

@@ -205,6 +205,21 @@ static void test_rest_beside_a_line_into_a_wall(void)
     }
 }
 
+/* Fluid behind a wall as thin as two spacings is no part of the wall that a line goes on into. */
+static void test_a_line_cuts_nothing_but_its_wall(void)
+{
+    rig_open(&rig,
+             "scheme = standard\ndp = 20 mm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.4, 0.4\n"
+             "shape = box 0.44, 0, 0.8, 0.4\nsound_speed = 25\nsurface = 0.4\n"
+             "[wall tank]\nshape = polyline: 0, 0.6; 0, 0; 0.8, 0; 0.8, 0.6\n"
+             "[wall mid]\nshape = box 0.4, 0, 0.44, 0.6\n"
+             "[beam b]\nshape = polyline: 0, 0.21; 0.4, 0.21\nclamp = 0, 0.21\nclamp = 0.4, 0.21\n"
+             "thickness = 0.5 mm\nyoung = 1e12\ndensity = 1000\n",
+             NULL);
+    TEST_ASSERT_EQUAL_INT64(20 * 20 + 18 * 20, rig.sim.particles[KIND_FLUID].n);
+}
+
 /* Two beams that meet in a T or an L push the water from their common part once. */
 static void test_lift_of_joined_beams(void)
 {
@@ -257,6 +272,7 @@ int main(void)
     RUN_TEST(test_start_beside_curved_and_slanted_faces);
     RUN_TEST(test_level_beside_faces);
     RUN_TEST(test_rest_beside_a_line_into_a_wall);
+    RUN_TEST(test_a_line_cuts_nothing_but_its_wall);
     RUN_TEST(test_lift_of_joined_beams);
     RUN_TEST(test_way_of_dummies);
     return UNITY_END();
