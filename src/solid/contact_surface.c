@@ -20,7 +20,10 @@ struct cloud {
     int32_t *point; /* [n] number at the surface; -1: inside */
 };
 
-static int body_at(const struct cloud *of, int64_t i) { return of->first_body + of->section[i]; }
+static int body_of_cloud(const struct cloud *of, int64_t i)
+{
+    return of->first_body + of->section[i];
+}
 
 /* Particles of the same group within reach of the circles. */
 enum { AROUND = 64 };
@@ -82,15 +85,16 @@ static enum err find_links(const struct contact *contact, const struct cloud *of
     struct point_grid g;
     double side = 0;
     for (int64_t i = 0; i < of->n; i++)
-        side = max2(side, 2 * roll * contact_dp(contact, body_at(of, i)));
+        side = max2(side, 2 * roll * contact_dp(contact, body_of_cloud(of, i)));
     TRY(grid_of(&g, side, of->n, of->x, of->y, NULL, temp, d));
     *n_links = 0;
     for (int64_t i = 0; i < of->n; i++) {
-        const int32_t group = contact->group[body_at(of, i)];
-        struct around at = {of, (int32_t)i, roll * contact_dp(contact, body_at(of, i)), .n = 0};
+        const int32_t group = contact->group[body_of_cloud(of, i)];
+        struct around at = {of, (int32_t)i, roll * contact_dp(contact, body_of_cloud(of, i)),
+                            .n = 0};
         struct point_visit v = point_grid_visit(&g, of->x[i], of->y[i], 2 * at.radius);
         while (point_grid_next(&g, &v))
-            if (v.k != i && contact->group[body_at(of, v.k)] == group && at.n < AROUND)
+            if (v.k != i && contact->group[body_of_cloud(of, v.k)] == group && at.n < AROUND)
                 at.item[at.n++] = (int32_t)v.k;
         const int64_t before = *n_links;
         *n_links = links_of(&at, link, *n_links);
@@ -104,7 +108,7 @@ static enum err find_links(const struct contact *contact, const struct cloud *of
 static void number_points(struct contact *contact, const struct cloud *of, bool moves)
 {
     for (int64_t i = 0; i < of->n; i++) {
-        const int body = body_at(of, i);
+        const int body = body_of_cloud(of, i);
         const int32_t group = contact->group[body];
         if (of->point[i] < 0 || (group > contact->n_solids) != moves) continue;
         of->point[i] = (int32_t)contact->n_points++;
