@@ -244,8 +244,8 @@ static void test_lift_of_joined_beams(void)
     }
 }
 
-/* The way of the outermost dummies of a beam 25 dp thick when it turns. */
-static void test_way_of_dummies(void)
+/* How far the outermost dummies of a beam 25 dp thick move when it turns. */
+static void test_displacement_of_dummies(void)
 {
     rig_open(&rig,
              WATER "[beam b]\nshape = polyline: 2, 0; 3, 0\nthickness = 0.5\nyoung = 1e9\n"
@@ -259,7 +259,7 @@ static void test_way_of_dummies(void)
     const double allowed = beams_place(&rig.sim.beams, 0);
     for (int64_t i = 0; i < walls->n; i++)
         largest = max2(largest, hypot(walls->x[i] - before[i][0], walls->y[i] - before[i][1]));
-    assert_at_most(allowed, largest, "way of a dummy");
+    assert_at_most(allowed, largest, "displacement of a dummy");
 }
 
 int main(void)
@@ -274,6 +274,6 @@ int main(void)
     RUN_TEST(test_rest_beside_a_line_into_a_wall);
     RUN_TEST(test_a_line_cuts_nothing_but_its_wall);
     RUN_TEST(test_lift_of_joined_beams);
-    RUN_TEST(test_way_of_dummies);
+    RUN_TEST(test_displacement_of_dummies);
     return UNITY_END();
 }
